@@ -272,13 +272,16 @@ fn what_a_scenario_is_made_of_is_said() {
 fn large_files_are_refused_before_they_cost_much() {
     let million = 1_000_000;
     let work = folder(&[
-        ("keys.toml", &(0..million).map(|k| format!("k{k} = 1\n")).collect::<String>()),
+        ("keys.toml", &(0..million).map(|k| format!("k{k} = 1\n")).collect::<Vec<_>>().concat()),
         ("lines.toml", &"x y = 1\n".repeat(million)),
-        ("few.toml", &(0..20_000).map(|k| format!("unknown_key_{k} = {k}\n")).collect::<String>()),
+        ("few.toml", &(0..20_000).map(|k| format!("unknown_key_{k} = {k}\n")).collect::<Vec<_>>().concat()),
         ("long.toml", &format!("{SLIDE}[run]\nbase_rate = \"{}\"\n", "9".repeat(10 * million))),
         ("deep.xml", &format!("<mujoco><worldbody>{}</worldbody></mujoco>", "<body>".repeat(million))),
         ("wide.xml", &format!("<mujoco>{}</mujoco>", "<a b='c'/>".repeat(250_000))),
-        ("attributes.xml", &format!("<mujoco {}/>", (0..million).map(|k| format!("a{k}='' ")).collect::<String>())),
+        (
+            "attributes.xml",
+            &format!("<mujoco {}/>", (0..million).map(|k| format!("a{k}='' ")).collect::<Vec<_>>().concat()),
+        ),
     ]);
     let path = |name: &str| work.path().join(name);
     for name in ["keys.toml", "lines.toml", "few.toml", "long.toml"] {

@@ -9,7 +9,7 @@ mod regular;
 mod shortage;
 mod xml_bounds;
 
-pub use made_of::{FileRole, MadeOf, sha256};
+pub use made_of::{FileRole, MadeOf, digits, sha256};
 pub use quoted::{MOST_QUOTED, Quoted, listed, named, quoted, with_short_quotes};
 pub use regular::{FileId, metadata, open, read, read_text};
 pub use shortage::is_shortage;

@@ -1,6 +1,7 @@
 //! Which files a scenario is made of.
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
+use std::fmt::Write as _;
 use std::io::{self, Read};
 
 /// What a file is to a scenario.
@@ -69,8 +70,14 @@ pub fn sha256(mut source: impl Read) -> io::Result<(String, u64)> {
     Ok((digits(&hash.finalize()), size))
 }
 
-fn digits(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// `bytes` as hexadecimal digits, two each.
+#[must_use]
+pub fn digits(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        write!(text, "{byte:02x}").ok();
+        text
+    })
 }
 
 #[cfg(test)]

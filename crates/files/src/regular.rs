@@ -16,18 +16,17 @@ impl FileId {
     /// # Errors
     /// Those of the operating system; where it knows no such thing, [`ErrorKind::Unsupported`].
     pub fn of(path: &Path) -> io::Result<Self> {
-        Self::from_metadata(&std::fs::metadata(path)?)
-    }
-
-    #[cfg(unix)]
-    fn from_metadata(about: &Metadata) -> io::Result<Self> {
-        use std::os::unix::fs::MetadataExt as _;
-        Ok(Self { device: about.dev(), inode: about.ino() })
-    }
-
-    #[cfg(not(unix))]
-    fn from_metadata(_: &Metadata) -> io::Result<Self> {
-        Err(ErrorKind::Unsupported.into())
+        let about = std::fs::metadata(path)?;
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt as _;
+            Ok(Self { device: about.dev(), inode: about.ino() })
+        }
+        #[cfg(not(unix))]
+        {
+            drop(about);
+            Err(ErrorKind::Unsupported.into())
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! What something was made of, as one number.
 use serde::{Deserialize, Serialize};
+use servobench_files::digits;
 use sha2::{Digest as _, Sha256};
-use std::fmt::{self, Write as _};
+use std::fmt;
 
 /// A SHA-256 (FIPS 180-4) as 64 hexadecimal digits; empty where nobody computed one.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -12,7 +13,7 @@ impl Digest {
     /// That of `bytes`.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
-        Self(hexadecimal(&Sha256::digest(bytes)))
+        Self(digits(&Sha256::digest(bytes)))
     }
 }
 
@@ -39,16 +40,8 @@ impl Digester {
     /// The digest.
     #[must_use]
     pub fn finish(self) -> Digest {
-        Digest(hexadecimal(&self.0.finalize()))
+        Digest(digits(&self.0.finalize()))
     }
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a string cannot fail.
-        write!(text, "{byte:02x}").ok();
-        text
-    })
 }
 
 #[cfg(test)]
@@ -64,7 +57,7 @@ mod tests {
 
     #[test]
     fn parts_are_told_apart() {
-        let of = |parts: &[&str]| parts.iter().fold(Digester::default(), |digester, part| digester.with(part)).finish();
+        let of = |parts: &[&str]| parts.iter().fold(Digester::default(), Digester::with).finish();
         assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
         assert_ne!(of(&["ab", ""]), of(&["ab"]));
         assert_eq!(of(&["ab", "c"]), of(&["ab", "c"]));

@@ -72,13 +72,12 @@ const WAY_OUT: &str = "files of a scenario stay within its project, the nearest 
 /// Those of the operating system, when there is no such folder.
 pub fn root_of(folder: &Path, given: Option<&Path>) -> io::Result<PathBuf> {
     let resolved = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
-    let root = match given {
-        Some(given) => resolved(given)?,
-        None => {
-            let own = resolved(folder)?;
-            let project = own.ancestors().find(|above| above.join(PROJECT).symlink_metadata().is_ok());
-            project.map_or_else(|| own.clone(), Path::to_owned)
-        }
+    let root = if let Some(given) = given {
+        resolved(given)?
+    } else {
+        let own = resolved(folder)?;
+        let project = own.ancestors().find(|above| above.join(PROJECT).symlink_metadata().is_ok());
+        project.map_or_else(|| own.clone(), Path::to_owned)
     };
     if root.is_dir() { Ok(root) } else { Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder")) }
 }
@@ -124,20 +123,19 @@ impl FileAccess {
     /// The text of the file at `path`. One that is named again is not read again.
     pub(crate) fn text(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refused> {
         let real = self.within(path)?;
-        let text = match self.texts.get(&real) {
-            Some(text) => Arc::clone(text),
-            None => {
-                let bytes = read(&real, self.left(role)).map_err(|error| self.noted(path, &error))?;
-                let text = String::from_utf8(bytes)
-                    .map_err(|_| unreadable(path, &io::Error::other("it is no text in UTF-8")))?;
-                self.total += text.len() as u64;
-                let text: Arc<str> = text.into();
-                self.texts.insert(real.clone(), Arc::clone(&text));
-                text
-            }
+        let text = if let Some(text) = self.texts.get(&real) {
+            Arc::clone(text)
+        } else {
+            let bytes = read(&real, self.left(role)).map_err(|error| self.noted(path, &error))?;
+            let text =
+                String::from_utf8(bytes).map_err(|_| unreadable(path, &io::Error::other("it is no text in UTF-8")))?;
+            self.total += text.len() as u64;
+            let text: Arc<str> = text.into();
+            self.texts.insert(real.clone(), Arc::clone(&text));
+            text
         };
         if self.known.insert((real.clone(), role)) {
-            self.made_of.push(MadeOf::of_bytes(self.from_root(&real), role, text.as_bytes()));
+            self.made_of.push(MadeOf::of_bytes(self.path_from_root(&real), role, text.as_bytes()));
         }
         Ok(text)
     }
@@ -152,20 +150,18 @@ impl FileAccess {
         let digest = open(&real, most).and_then(sha256);
         let (sha256, size) = digest.map_err(|error| self.noted(path, &error))?;
         self.total += size;
-        self.made_of.push(MadeOf { path: self.from_root(&real), role, size, sha256 });
+        self.made_of.push(MadeOf { path: self.path_from_root(&real), role, size, sha256 });
         self.known.insert((real, role));
         Ok(())
     }
 
     /// Whether there is a regular file at `path`; it may be outside, which is an error then.
     pub(crate) fn has_file(&self, path: &Path, role: FileRole) -> Result<bool, Refused> {
-        match path.symlink_metadata() {
-            Err(_) => Ok(false),
-            Ok(_) => {
-                let real = self.within(path)?;
-                metadata(&real, most_of(role)).map(|_| true).map_err(|error| unreadable(path, &error))
-            }
+        if path.symlink_metadata().is_err() {
+            return Ok(false);
         }
+        let real = self.within(path)?;
+        metadata(&real, most_of(role)).map(|_| true).map_err(|error| unreadable(path, &error))
     }
 
     /// Notes what is built in.
@@ -195,9 +191,8 @@ impl FileAccess {
         };
         match path.canonicalize() {
             Ok(real) if real.starts_with(root) => Ok(real),
-            Ok(_) => Err(outside()),
             Err(error) if lexical(path).is_some_and(|path| path.starts_with(root)) => Err(unreadable(path, &error)),
-            Err(_) => Err(outside()),
+            Ok(_) | Err(_) => Err(outside()),
         }
     }
 
@@ -206,7 +201,7 @@ impl FileAccess {
         most_of(role).min(MOST_OF_ALL.saturating_sub(self.total))
     }
 
-    fn from_root(&self, real: &Path) -> String {
+    fn path_from_root(&self, real: &Path) -> String {
         let path = self.root.as_ref().and_then(|root| real.strip_prefix(root).ok()).unwrap_or(real);
         path.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
     }

@@ -185,18 +185,13 @@ pub(crate) fn read_beside(
         }
         Place::Embedded(folder) => {
             let path = folder.join(file);
-            let text = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8);
-            match text {
-                Some(text) => {
-                    let path = Path::new(EMBEDDED).join("models").join(path);
-                    let text = files.embedded(path.display().to_string(), role, text);
-                    Ok((path, text))
-                }
-                None => {
-                    let message = format!("there is no embedded file `{}`", path.display());
-                    Err(Refused { message, help: RELATIVE })
-                }
-            }
+            let Some(text) = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8) else {
+                let message = format!("there is no embedded file `{}`", path.display());
+                return Err(Refused { message, help: RELATIVE });
+            };
+            let path = Path::new(EMBEDDED).join("models").join(path);
+            let text = files.embedded(path.display().to_string(), role, text);
+            Ok((path, text))
         }
     }
 }

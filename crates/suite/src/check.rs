@@ -121,9 +121,8 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         | BuildError::NothingToAbort { index, .. }
         | BuildError::TooLong { step: Some(index), .. } => format!("program.{index}"),
         BuildError::UnknownChannel { .. } => "record.channels".to_owned(),
-        BuildError::TooLong { step: None, .. } => "run.duration".to_owned(),
         BuildError::IdleDisturbance { index, .. } => format!("disturbance.{index}"),
-        BuildError::TooManyTicks { .. } => "run.duration".to_owned(),
+        BuildError::TooLong { step: None, .. } | BuildError::TooManyTicks { .. } => "run.duration".to_owned(),
         BuildError::TooMuchMemory { .. } => "record".to_owned(),
         BuildError::Rate(_) => "drive".to_owned(),
         BuildError::Objects(_) => "drive.objects".to_owned(),

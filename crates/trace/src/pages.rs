@@ -197,10 +197,10 @@ mod tests {
             let mut zigzag = ((value << 1) ^ (value >> 63)).cast_unsigned();
             let mut bytes = vec![0x15];
             while zigzag > 0x7f {
-                bytes.push((zigzag & 0x7f) as u8 | 0x80);
+                bytes.push(zigzag.to_le_bytes()[0] | 0x80);
                 zigzag >>= 7;
             }
-            bytes.push(zigzag as u8);
+            bytes.push(zigzag.to_le_bytes()[0]);
             bytes
         };
         let of = |value: u8| integer(i64::from(value));

@@ -164,6 +164,18 @@ acceleration = "1 m/s2"
 move_to = "10 mm"
 "#;
 
+/// The folder `folder`, with these files.
+fn folder_of(folder: &Path, files: &[(&str, &str)]) -> Result<PathBuf, Failure> {
+    for (file, text) in files {
+        let path = folder.join(file);
+        let own = path.parent().unwrap_or(folder);
+        fs::create_dir_all(own).map_err(Failure::file("make", own))?;
+        fs::write(&path, text).map_err(Failure::file("write", &path))?;
+    }
+    fs::create_dir_all(folder).map_err(Failure::file("make", folder))?;
+    Ok(folder.to_owned())
+}
+
 fn kinds(workspace: &Workspace, room: &Path) -> Result<Vec<Kind>, Failure> {
     let text = |path: &Path| {
         let path = workspace.root.join(path);
@@ -173,27 +185,16 @@ fn kinds(workspace: &Workspace, room: &Path) -> Result<Vec<Kind>, Failure> {
         let tracked = workspace.tracked(paths)?;
         tracked.iter().filter(|path| path.extension().is_some_and(|own| own == ending)).map(|path| text(path)).collect()
     };
-    let folder = |name: &str, files: &[(&str, &str)]| -> Result<PathBuf, Failure> {
-        let folder = room.join(name);
-        for (file, text) in files {
-            let path = folder.join(file);
-            let own = path.parent().unwrap_or(&folder);
-            fs::create_dir_all(own).map_err(Failure::file("make", own))?;
-            fs::write(&path, text).map_err(Failure::file("write", &path))?;
-        }
-        fs::create_dir_all(&folder).map_err(Failure::file("make", &folder))?;
-        Ok(folder)
-    };
-    let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let folder = |name: &str, files: &[(&str, &str)]| folder_of(&room.join(name), files);
     let tiny = [("tiny.toml", TINY), ("table.csv", TABLE)];
-    let seeds = Seeds::made(workspace, folder("seeds", &tiny)?)?;
+    let seeds = Seeds::made(workspace, &folder("seeds", &tiny)?)?;
     let mjcf = text(Path::new("scenarios/own-mjcf.toml"))?.replace("../models/axes/swaying-load.xml", "own.xml");
     let kind = |name, mutator, file, cleared, command: &[&str], folder| Kind {
         name,
         mutator,
         file,
         cleared,
-        command: words(command),
+        command: command.iter().map(|word| (*word).to_owned()).collect(),
         folder,
     };
     let scenarios: Vec<String> = texts(&["scenarios"], "toml")?;
@@ -284,9 +285,9 @@ struct Seeds {
 
 impl Seeds {
     /// Runs the program in `folder`.
-    fn made(workspace: &Workspace, folder: PathBuf) -> Result<Self, Failure> {
+    fn made(workspace: &Workspace, folder: &Path) -> Result<Self, Failure> {
         let arguments = ["run", "tiny.toml", "--out", "out"];
-        run_command(workspace.servobench(arguments).arg("-q").current_dir(&folder), 0)?;
+        run_command(workspace.servobench(arguments).arg("-q").current_dir(folder), 0)?;
         let read = |name: &str| {
             let path = folder.join("out").join(name);
             fs::read(&path).map_err(Failure::file("read", path))
