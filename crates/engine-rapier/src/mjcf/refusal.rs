@@ -1,5 +1,5 @@
 //! Why an MJCF file is refused.
-use servobench_files::{listed, quoted};
+use servobench_files::{listed, named, quoted};
 use servobench_plant::{Refusal, RefusedAt};
 use thiserror::Error;
 
@@ -14,7 +14,7 @@ pub(crate) enum MjcfRefusal {
         message: String,
     },
     /// An element outside the subset.
-    #[error("line {line}: `<{}>` in `<{parent}>` is not simulated; there can be {supported}", quoted(.element))]
+    #[error("line {line}: `<{}>` in `<{parent}>` is not simulated; there can be {supported}", named(.element))]
     Element {
         /// Line in the file, from 1.
         line: u32,
@@ -26,7 +26,7 @@ pub(crate) enum MjcfRefusal {
         supported: String,
     },
     /// An attribute outside the subset.
-    #[error("line {line}: attribute `{}` of `<{element}>` is not simulated; it can have {supported}", quoted(.attribute))]
+    #[error("line {line}: attribute `{}` of `<{element}>` is not simulated; it can have {supported}", named(.attribute))]
     Attribute {
         /// Line in the file, from 1.
         line: u32,
