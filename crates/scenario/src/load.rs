@@ -108,8 +108,11 @@ pub fn parse_within(
     root: Option<&Path>,
 ) -> Result<Loaded, LoadError> {
     let mut files = match folder {
-        Some(folder) => access(Path::new(name), folder, root)?,
-        None => FileAccess::default(),
+        // In a folder that is not there is no file to read.
+        Some(folder) if root.is_some() || folder.as_os_str().is_empty() || folder.exists() => {
+            access(Path::new(name), folder, root)?
+        }
+        _ => FileAccess::default(),
     };
     let own = Path::new(name).file_name().map_or_else(|| name.into(), std::ffi::OsStr::to_string_lossy);
     files.note_scenario(&own, text);

@@ -31,7 +31,8 @@ friction = true
 
 fn run(text: &str) -> Recording {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc");
-    let loaded = scenario::parse("test", text, Some(&folder)).unwrap_or_else(|error| panic!("{error}"));
+    let loaded = scenario::parse_within("test", text, Some(&folder), &[], Some(Path::new("/")))
+        .unwrap_or_else(|error| panic!("{error}"));
     let bench = Bench::new(&loaded.scenario, &Exact).unwrap_or_else(|error| panic!("{error}"));
     let Outcome { recording, failure } = bench.run(&mut |_| {});
     assert_eq!(failure, None);
@@ -419,7 +420,8 @@ fn points_that_the_object_does_not_hold_are_refused() {
     let file = sine(30);
     let refused = |object, objects: &str| {
         let text = by_object(object, objects, &table(&file), "");
-        let loaded = scenario::parse("test", &text, Some(Path::new("."))).unwrap_or_else(|error| panic!("{error}"));
+        let loaded = scenario::parse_within("test", &text, Some(Path::new(".")), &[], Some(Path::new("/")))
+            .unwrap_or_else(|error| panic!("{error}"));
         Bench::new(&loaded.scenario, &Exact).err().map(|error| error.to_string()).unwrap_or_default()
     };
     for object in ["2010h", "115h"] {

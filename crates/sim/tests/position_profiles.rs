@@ -63,7 +63,8 @@ mode = \"pv\"
 ",
         cycle * f64::from(*every),
     );
-    let loaded = scenario::parse("test", &text, Some(&folder)).unwrap_or_else(|error| panic!("{error}"));
+    let loaded = scenario::parse_within("test", &text, Some(&folder), &[], Some(Path::new("/")))
+        .unwrap_or_else(|error| panic!("{error}"));
     let bench = Bench::new(&loaded.scenario, &Exact).unwrap_or_else(|error| panic!("{error}"));
     let Outcome { recording, failure } = bench.run(&mut |_| {});
     assert_eq!(failure, None);

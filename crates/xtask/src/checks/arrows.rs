@@ -85,6 +85,7 @@ const PLAN: [(&str, May); 34] = [
             "metrics",
         ]),
     ),
+    ("results", May::On(&["base", "files", "trace", "metrics"])),
     (
         "report",
         May::On(&[
@@ -92,7 +93,6 @@ const PLAN: [(&str, May); 34] = [
             "results",
         ]),
     ),
-    ("results", May::On(&["base", "files", "trace", "metrics"])),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
