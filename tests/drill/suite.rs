@@ -158,10 +158,9 @@ impl Suite {
         );
         fault.lift(self, name);
         let known = self.known_by_journal(name, &place);
-        let how = format!(
-            "{status}, {} runs had ended",
-            known.map_or_else(|| "no journal:".into(), |known| known.to_string())
-        );
+        let had_ended =
+            known.map_or_else(|| "nothing is left to run".into(), |known| format!("{known} runs had a verdict"));
+        let how = format!("{status}, {had_ended}");
         self.go_on(fault, name, known, &place);
         fault.clean(self, name);
         how

@@ -60,6 +60,7 @@ mod unix {
     use crate::console::say;
     use crate::error::CliError;
     use servobench_isolation::end_all;
+    use servobench_trace::unfinished_by;
     use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
@@ -152,12 +153,8 @@ mod unix {
 
     /// Removes files under way of this process: their names have its id.
     fn remove_unfinished(folder: &Path) {
-        let id = std::process::id();
-        let partial = format!(".{id}-");
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let is_ours = name.starts_with('.') && name.contains(&partial) && name.ends_with(".partial");
-            if is_ours {
+            if unfinished_by(&entry.file_name().to_string_lossy()) == Some(std::process::id()) {
                 std::fs::remove_file(entry.path()).ok();
             }
         }

@@ -1,6 +1,7 @@
 //! The folder that a suite writes into: one suite at a time, nothing left of those before.
 use crate::journal;
 use crate::results::{Results, read_results};
+use servobench_trace::unfinished_by;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
@@ -76,7 +77,10 @@ impl Folder {
         let cannot_lock = |source| FolderError::Lock { path: path.to_owned(), source };
         let folder = File::open(path).map_err(cannot_lock)?;
         match folder.try_lock() {
-            Ok(()) => Ok(Self { path: path.to_owned(), _lock: folder }),
+            Ok(()) => {
+                remove_unfinished(path);
+                Ok(Self { path: path.to_owned(), _lock: folder })
+            }
             Err(TryLockError::WouldBlock) => Err(FolderError::InUse(path.to_owned())),
             Err(TryLockError::Error(error)) => Err(cannot_lock(error)),
         }
@@ -139,6 +143,16 @@ impl Folder {
         for name in left_by(stems).filter(|name| !named.contains(name.as_str())) {
             // Most were never there.
             fs::remove_file(self.path.join(name)).ok();
+        }
+    }
+}
+
+/// Removes what programs that were killed had not completed: nobody else writes into a folder that is locked.
+fn remove_unfinished(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if unfinished_by(&entry.file_name().to_string_lossy()).is_some() {
+            // It is only in the way.
+            fs::remove_file(entry.path()).ok();
         }
     }
 }

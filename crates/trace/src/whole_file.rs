@@ -93,6 +93,15 @@ impl Drop for Unfinished {
 const LONGEST: usize = 200;
 
 /// A name beside `target` that no other writer uses: unique within the process by the number, across them by its id.
+/// The process that was writing the file called `name` when it ended, if that is one which is not whole.
+#[must_use]
+pub fn unfinished_by(name: &str) -> Option<u32> {
+    let (_, number) = name.strip_prefix('.')?.strip_suffix(".partial")?.rsplit_once('.')?;
+    let (process, count) = number.split_once('-')?;
+    count.parse::<u64>().ok()?;
+    process.parse().ok()
+}
+
 fn partial_path(target: &Path, number: u64) -> PathBuf {
     let mut name = OsString::from(".");
     let whole = target.file_name().unwrap_or_default();
@@ -109,6 +118,15 @@ fn partial_path(target: &Path, number: u64) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_is_not_whole_is_known_by_its_name() {
+        let path = partial_path(Path::new("out/a.b.parquet"), 7);
+        assert_eq!(unfinished_by(path.file_name().unwrap().to_str().unwrap()), Some(process::id()));
+        for name in ["a.parquet", ".partial", ".a.partial", ".a.7.partial", ".a.x-7.partial", "a.7-7.partial"] {
+            assert_eq!(unfinished_by(name), None, "{name}");
+        }
+    }
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
