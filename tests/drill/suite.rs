@@ -53,6 +53,11 @@ outputs = { force = "disturbance.load" }
 /// How long one that hangs is waited for.
 const PATIENCE: Duration = Duration::from_mins(2);
 
+/// The slide on these engines, whose following error is to keep `limit`.
+pub(crate) fn slide(engines: &[&str], duration: &str, limit: &str) -> String {
+    format!("engine = {engines:?}{}", SLIDE.replace("DURATION", duration).replace("LIMIT", limit))
+}
+
 /// Scenarios, and what comes of them when nothing happens.
 pub(crate) struct Suite {
     work: TempDir,
@@ -72,9 +77,7 @@ impl Suite {
     pub(crate) fn new() -> Self {
         let work = tempfile::tempdir().unwrap();
         make_fmu(work.path());
-        let scenario = |engine: &str, duration: &str, limit: &str| {
-            format!("engine = \"{engine}\"{}", SLIDE.replace("DURATION", duration).replace("LIMIT", limit))
-        };
+        let scenario = |engine: &str, duration: &str, limit: &str| slide(&[engine], duration, limit);
         let files = [
             ("a-exact", scenario("exact", "20 s", "1 m")),
             ("b-rapier", scenario("rapier", "5 s", "1 m")),

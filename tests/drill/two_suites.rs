@@ -1,38 +1,10 @@
 //! Two suites that are begun at once with one output folder.
 use crate::count;
-use crate::suite::finished;
+use crate::suite::{finished, slide};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-
-const MOVE: &str = r#"
-name = "same"
-engine = ["exact", "rapier"]
-[run]
-base_rate = "4 kHz"
-duration = "0.6 s"
-[axis]
-motion = "linear"
-motor_side = { mass = "20 kg" }
-[motor]
-kind = "ideal-source"
-[drive.velocity]
-rate = "4 kHz"
-bandwidth = "80 Hz"
-[drive.position]
-rate = "4 kHz"
-bandwidth = "10 Hz"
-[setpoint]
-order = 3
-velocity = "1 m/s"
-acceleration = "5 m/s2"
-jerk = "50 m/s3"
-[[program]]
-move_to = "100 mm"
-[limits]
-following_error_peak_load = "LIMIT"
-"#;
 
 /// The first one passes, the second one fails; their runs have the same names. Each in a PID namespace of its own where the machine
 /// allows it, so that both have the same numbers for their processes.
@@ -41,7 +13,7 @@ fn two_suites_in_one_folder_never_have_a_verdict_of_each_other() {
     let work = tempfile::tempdir().unwrap();
     for (folder, limit) in [("passes", "1 m"), ("fails", "1 nm")] {
         fs::create_dir(work.path().join(folder)).unwrap();
-        fs::write(work.path().join(folder).join("same.toml"), MOVE.replace("LIMIT", limit)).unwrap();
+        fs::write(work.path().join(folder).join("same.toml"), slide(&["exact", "rapier"], "0.6 s", limit)).unwrap();
     }
     let isolates = ["-p", "-f", "--mount-proc"];
     let probe = Command::new("unshare").args(isolates).arg("true").stderr(Stdio::null()).status();

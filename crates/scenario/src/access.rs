@@ -48,15 +48,13 @@ pub(crate) struct Refused {
     pub(crate) help: &'static str,
 }
 
-impl Refused {
-    /// The error of reading the scenario at `path` itself, beside which its name stands already.
-    pub(crate) fn into_error_of(self, path: &Path) -> io::Error {
-        let Self { message, help } = self;
-        let name = path.display();
-        let own = [format!("cannot read `{name}`: "), format!("`{name}` ")];
-        let why = own.iter().find_map(|own| message.strip_prefix(own)).unwrap_or(&message);
-        io::Error::other(if help == RELATIVE { why.to_owned() } else { format!("it {why}; {help}") })
-    }
+/// The same before it is known what it stops.
+#[derive(Debug)]
+enum Refusal {
+    Unreadable(io::Error),
+    Outside,
+    /// A scenario without a folder has no files.
+    NoFolder,
 }
 
 /// Said of a path that leads nowhere.
@@ -107,11 +105,28 @@ impl FileAccess {
     }
 
     /// Why the file at `path` cannot be read.
-    fn noted(&mut self, path: &Path, error: &io::Error) -> Refused {
-        if is_shortage(error) {
+    fn unreadable(&mut self, path: &Path, error: io::Error) -> Refusal {
+        if is_shortage(&error) {
             self.shortage = error.raw_os_error().map(|code| (path.to_owned(), code));
         }
-        unreadable(path, error)
+        Refusal::Unreadable(error)
+    }
+
+    /// Why the file at `path` is not read, for a message about the key that names it.
+    fn told(&self, path: &Path, refusal: &Refusal) -> Refused {
+        let name = path.display();
+        match refusal {
+            Refusal::Unreadable(error) => Refused { message: format!("cannot read `{name}`: {error}"), help: RELATIVE },
+            Refusal::Outside => Refused { message: format!("`{name}` is {}", self.outside()), help: WAY_OUT },
+            Refusal::NoFolder => {
+                let message = format!("`{name}` is not read: a scenario without a folder cannot name files");
+                Refused { message, help: "" }
+            }
+        }
+    }
+
+    fn outside(&self) -> String {
+        format!("outside of the root of this scenario, `{}`", self.root().unwrap_or(Path::new("")).display())
     }
 
     /// Whether a folder is within the root.
@@ -122,13 +137,28 @@ impl FileAccess {
 
     /// The text of the file at `path`. One that is named again is not read again.
     pub(crate) fn text(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refused> {
+        self.read(path, role).map_err(|refusal| self.told(path, &refusal))
+    }
+
+    /// The text of the scenario at `path` itself.
+    ///
+    /// # Errors
+    /// Those of the operating system, or why it is not read; its name is not in it.
+    pub(crate) fn scenario(&mut self, path: &Path) -> io::Result<Arc<str>> {
+        self.read(path, FileRole::Scenario).map_err(|refusal| match refusal {
+            Refusal::Unreadable(error) => error,
+            Refusal::Outside | Refusal::NoFolder => io::Error::other(format!("it is {}; {WAY_OUT}", self.outside())),
+        })
+    }
+
+    fn read(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refusal> {
         let real = self.within(path)?;
         let text = if let Some(text) = self.texts.get(&real) {
             Arc::clone(text)
         } else {
-            let bytes = read(&real, self.left(role)).map_err(|error| self.noted(path, &error))?;
-            let text =
-                String::from_utf8(bytes).map_err(|_| unreadable(path, &io::Error::other("it is no text in UTF-8")))?;
+            let bytes = read(&real, self.left(role)).map_err(|error| self.unreadable(path, error))?;
+            let text = String::from_utf8(bytes)
+                .map_err(|_| Refusal::Unreadable(io::Error::other("it is no text in UTF-8")))?;
             self.total += text.len() as u64;
             let text: Arc<str> = text.into();
             self.texts.insert(real.clone(), Arc::clone(&text));
@@ -142,13 +172,16 @@ impl FileAccess {
 
     /// Looks through the file at `path`, which somebody else reads.
     pub(crate) fn look_through(&mut self, path: &Path, role: FileRole) -> Result<(), Refused> {
-        let real = self.within(path)?;
+        let real = self.within(path).map_err(|refusal| self.told(path, &refusal))?;
         if self.known.contains(&(real.clone(), role)) {
             return Ok(());
         }
         let most = self.left(role);
         let digest = open(&real, most).and_then(sha256);
-        let (sha256, size) = digest.map_err(|error| self.noted(path, &error))?;
+        let (sha256, size) = digest.map_err(|error| {
+            let refusal = self.unreadable(path, error);
+            self.told(path, &refusal)
+        })?;
         self.total += size;
         self.made_of.push(MadeOf { path: self.path_from_root(&real), role, size, sha256 });
         self.known.insert((real, role));
@@ -160,8 +193,8 @@ impl FileAccess {
         if path.symlink_metadata().is_err() {
             return Ok(false);
         }
-        let real = self.within(path)?;
-        metadata(&real, most_of(role)).map(|_| true).map_err(|error| unreadable(path, &error))
+        let found = self.within(path).and_then(|real| metadata(&real, most_of(role)).map_err(Refusal::Unreadable));
+        found.map(|_| true).map_err(|refusal| self.told(path, &refusal))
     }
 
     /// Notes what is built in.
@@ -180,19 +213,12 @@ impl FileAccess {
 
     /// The path with links resolved, when that is within the root. A file outside is refused whether it is there or not: what is
     /// there is nobody's business either.
-    fn within(&self, path: &Path) -> Result<PathBuf, Refused> {
-        let Some(root) = &self.root else {
-            let message = format!("`{}` is not read: a scenario without a folder cannot name files", path.display());
-            return Err(Refused { message, help: "" });
-        };
-        let outside = || Refused {
-            message: format!("`{}` is outside of the root of this scenario, `{}`", path.display(), root.display()),
-            help: WAY_OUT,
-        };
+    fn within(&self, path: &Path) -> Result<PathBuf, Refusal> {
+        let root = self.root.as_ref().ok_or(Refusal::NoFolder)?;
         match path.canonicalize() {
             Ok(real) if real.starts_with(root) => Ok(real),
-            Err(error) if lexical(path).is_some_and(|path| path.starts_with(root)) => Err(unreadable(path, &error)),
-            Ok(_) | Err(_) => Err(outside()),
+            Err(error) if lexical(path).is_some_and(|path| path.starts_with(root)) => Err(Refusal::Unreadable(error)),
+            Ok(_) | Err(_) => Err(Refusal::Outside),
         }
     }
 
@@ -205,10 +231,6 @@ impl FileAccess {
         let path = self.root.as_ref().and_then(|root| real.strip_prefix(root).ok()).unwrap_or(real);
         path.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
     }
-}
-
-fn unreadable(path: &Path, error: &io::Error) -> Refused {
-    Refused { message: format!("cannot read `{}`: {error}", path.display()), help: RELATIVE }
 }
 
 const fn most_of(role: FileRole) -> u64 {

@@ -14,7 +14,6 @@ use crate::tree::{self, Node, Table, Value};
 use crate::{foreign, format};
 use servobench_base::Coordinate;
 use servobench_config::Choice;
-use servobench_files::FileRole;
 use std::ops::Range;
 use std::path::Path;
 
@@ -61,11 +60,7 @@ pub fn load_within(path: &Path, overrides: &[Override], root: Option<&Path>) -> 
     let unreadable = |error| LoadError::Read { path: path.to_owned(), error };
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let mut files = access(path, folder, root)?;
-    let text = files.text(path, FileRole::Scenario);
-    let text = text.map_err(|refused| match files.shortage() {
-        Some((_, error)) => unreadable(error),
-        None => unreadable(refused.into_error_of(path)),
-    })?;
+    let text = files.scenario(path).map_err(unreadable)?;
     let mut loaded = parse_from(&path.display().to_string(), &text, Some(folder), overrides, files)?;
     loaded.scenario.path = Some(path.to_owned());
     Ok(loaded)

@@ -274,7 +274,10 @@ fn text_of(results: &Results, args: &RunArgs, out: &Path, former: &Former) -> St
     if !results.unfinished.is_empty() {
         let (count, of) = (results.unfinished.len(), results.unfinished.len() + results.scenarios.len());
         let trust = if args.fmus.allow_unisolated_fmus { " --allow-unisolated-fmus" } else { "" };
-        parts.push(format!("{count} of {of} runs have no result yet; to run them: {} run --resume {out}{trust}\n", program()));
+        parts.push(format!(
+            "{count} of {of} runs have no result yet; to run them: {} run --resume {out}{trust}\n",
+            program()
+        ));
     }
     parts.extend((args.rrd && kept > 0).then(|| format!("look at them: {} view {out}\n", program())));
     parts.concat()
