@@ -1,7 +1,9 @@
-//! Fuzz target: whatever is in a `results.json`, it is refused, or it is written again as it was read. `docs/testing.md`
-//! says how to run more of it.
+//! Fuzz targets: whatever is in a `results.json` or a journal, it is refused, or it is written again as it was read.
+//! `docs/testing.md` says how to run more of them.
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_results::Results;
+use servobench_results::{Journal, Results, read_journal};
+use std::path::Path;
+use twox_hash::XxHash64;
 
 const FILES: [&str; 2] = [
     r#"{"schema":"servobench-results/1","generator":"servobench 0.1.0","scenarios":[]}"#,
@@ -60,5 +62,39 @@ fn results_files() {
             assert_eq!(again.to_json().unwrap(), written);
         }
         Err(error) => assert!(!error.to_string().is_empty()),
+    });
+}
+
+/// Records of a journal without their digests.
+const RECORDS: [&str; 1] = [
+    r#"{"suite":{"version":1,"suite":"ab","command":["run","a.toml"],"folder":"here","stems":["a.exact"]}}
+{"finished":{"index":0,"seconds":0.25,"result":{"name":"a","file":"a.toml","engine":"exact","verdict":"passed","duration":1.8,"reasons":[],"metrics":{"settling_time":{"value":0.06,"unit":"s","limit":0.07,"pass":true}},"absent":{},"moves":[],"events":[],"recording":"a.exact.parquet"}}}
+{"finished":{"index":1,"seconds":0.5,"result":{"name":"b","file":null,"engine":"mujoco","verdict":"error","duration":0.0,"reasons":["diverged"],"metrics":{},"absent":{},"moves":[],"events":[],"recording":null}}}"#,
+];
+
+/// Each line with the digest that fits, so that what is behind it is read.
+fn with_digests(text: &str) -> String {
+    let line = |line: &str| format!("{:016x} {line}\n", XxHash64::oneshot(0, line.as_bytes()));
+    text.split('\n').map(line).collect::<Vec<_>>().concat()
+}
+
+#[test]
+fn journals() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("results.journal");
+    assert_eq!(read_journal(with_digests(RECORDS[0]).as_bytes(), &path).unwrap().1.len(), 2);
+    fuzz(check!(), 500, Splice::text(&RECORDS, WORDS), |text: &String| {
+        // Without digests no line is whole.
+        assert!(read_journal(text.as_bytes(), Path::new("x")).is_err());
+        match read_journal(with_digests(text).as_bytes(), Path::new("x")) {
+            Ok((suite, finished)) => {
+                assert!(finished.windows(2).all(|pair| pair[0].index < pair[1].index));
+                let mut journal = Journal::create(path.clone(), &suite).unwrap();
+                finished.iter().try_for_each(|one| journal.append(one)).unwrap();
+                let (_, again, runs) = Journal::resume(path.clone()).unwrap();
+                assert_eq!((again, runs), (suite, finished));
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
     });
 }
