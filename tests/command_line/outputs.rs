@@ -279,7 +279,13 @@ fn a_link_in_the_folder_is_replaced_and_not_followed() {
         symlink(work.path().join("victim"), link).unwrap();
     };
     let is_whole = || assert_eq!(fs::read_to_string(work.path().join("victim")).unwrap(), "victim");
-    let names = ["out/results.json", "out/results.journal", "out/a.exact.parquet", "out/a.exact.rrd", "junit.xml"];
+    // Results behind a link are those of a suite; anything else there is refused.
+    let (results, list) = (work.path().join("results.json"), work.path().join("out/results.json"));
+    let output = within(work.path(), &["run", "a.toml", "--out", "."]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let of_a_suite = fs::read(&results).unwrap();
+    symlink(&results, &list).unwrap();
+    let names = ["out/results.journal", "out/a.exact.parquet", "out/a.exact.rrd", "junit.xml"];
     for name in names {
         plant(name);
     }
@@ -287,8 +293,9 @@ fn a_link_in_the_folder_is_replaced_and_not_followed() {
     let output = within(work.path(), &arguments);
     assert_eq!(code(&output), 0, "{}", said(&output));
     is_whole();
-    assert!(names.iter().all(|name| !work.path().join(name).is_symlink()));
-    for name in ["out/comparison.json", "out/a-against-b.rrd", "plan.csv", "new.csv"] {
+    assert!(names.iter().all(|name| !work.path().join(name).is_symlink()) && !list.is_symlink());
+    assert_eq!(fs::read(&results).unwrap(), of_a_suite);
+    for name in ["out/a-against-b.rrd", "plan.csv", "new.csv"] {
         plant(name);
     }
     let output = within(work.path(), &["compare", "a.toml", "b.toml", "--out", "out"]);

@@ -124,12 +124,17 @@ fn a_list_of_others_removes_nothing() {
         run();
         assert!(victim.is_file(), "{path}");
     }
-    fs::write(&list, text.replace("servobench-results/3", "servobench-results/4")).unwrap();
-    let said = run();
-    assert!(
-        said.contains("what the run before left stays") && said.contains("`servobench-results/4`, newer"),
-        "{said}"
-    );
+    // What cannot be read as results is somebody else's.
+    let of_others =
+        ["{}".to_owned(), "mine\n".to_owned(), text.replace("servobench-results/3", "servobench-results/4")];
+    for (text, why) in of_others.iter().zip(["missing field", "expected value", "`servobench-results/4`, newer"]) {
+        fs::write(&list, text).unwrap();
+        let output = servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        let said = said(&output);
+        assert_eq!(code(&output), 2, "{said}");
+        assert!(said.contains("--out") && said.contains(why) && said.contains("would be lost"), "{said}");
+        assert_eq!(&fs::read_to_string(&list).unwrap(), text);
+    }
 }
 
 #[test]

@@ -15,6 +15,26 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(shown(text, has_colour(&std::io::stdout())).as_bytes())
 }
 
+/// The same with a text in parts, whole lines each, as they come.
+pub(crate) fn print_parts<E>(parts: impl Iterator<Item = Result<String, E>>) -> Result<(), CliError>
+where
+    CliError: From<E>,
+{
+    let colour = has_colour(&std::io::stdout());
+    let mut text = String::new();
+    for part in parts {
+        text += &shown(&part?, colour);
+        if text.len() >= BLOCK {
+            print_bytes(text.as_bytes())?;
+            text.clear();
+        }
+    }
+    print_bytes(text.as_bytes())
+}
+
+/// Bytes of a text in parts that are printed at once.
+const BLOCK: usize = 1 << 16;
+
 /// The same with JSON, which keeps its meaning.
 pub(crate) fn print_json(json: &str) -> Result<(), CliError> {
     print_bytes(printable_json(json).as_bytes())

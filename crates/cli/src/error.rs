@@ -183,6 +183,7 @@ impl CliError {
             | Self::NoRecording { .. }
             | Self::OtherRecording(_)
             | Self::NothingToResume(_)
+            | Self::Folder(FolderError::NotOurs { .. })
             | Self::OtherSuite(_)
             | Self::TrustAgain
             | Self::NothingForTheViewer

@@ -7,7 +7,8 @@ use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
 use servobench_report::{TimingOptions, timing_diagram};
 use servobench_results::{
-    COMPARISON, Digest, Digester, LimitPlace, Outcome, Results, RunIdentity, RunResult, printable_lines, read_results,
+    COMPARISON, Digest, Digester, LimitPlace, Outcome, RunIdentity, RunResult, Runs, Unfinished, files_of_results,
+    printable_lines,
 };
 use servobench_scenario::{Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
@@ -31,9 +32,9 @@ const RECORDING: &str = ".parquet";
 const DIAGRAM: &str = ".timing.svg";
 const FOR_THE_VIEWER: &str = ".rrd";
 
-/// Names of all files that the run of `job` may leave.
-pub(crate) fn names_of(job: &Job) -> impl Iterator<Item = String> {
-    [RECORDING, DIAGRAM, FOR_THE_VIEWER].into_iter().map(|end| format!("{}{end}", job.id))
+/// The run that may leave a file called `name`.
+pub(crate) fn run_of(name: &str) -> Option<&str> {
+    [RECORDING, DIAGRAM, FOR_THE_VIEWER].into_iter().find_map(|end| name.strip_suffix(end))
 }
 
 /// What a run left in its folder.
@@ -97,18 +98,22 @@ impl Written {
     }
 }
 
-/// How many recordings in `folder` neither `results` nor the comparison beside them name. A folder that cannot be read
+/// How many recordings in `folder` neither `runs` nor the comparison beside them name. A folder that cannot be read
 /// is said to hold none.
-pub(crate) fn older_recordings(folder: &Path, results: &Results) -> usize {
-    let comparison = read_results(&folder.join(COMPARISON)).ok();
-    let comparison = comparison.and_then(|text| Results::from_json(&text).ok());
+pub(crate) fn older_recordings(folder: &Path, runs: &dyn Runs) -> usize {
     let stem = |path: &Path| path.file_stem().map(OsStr::to_owned);
-    let runs = results.scenarios.iter().chain(comparison.iter().flat_map(|comparison| &comparison.scenarios));
-    let named: HashSet<_> = runs.filter_map(|run| stem(run.recording.as_deref()?.as_ref())).collect();
     let is_recording = |path: &Path| path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let found: HashSet<_> = entries.filter(|path| is_recording(path)).filter_map(|path| stem(&path)).collect();
-    found.difference(&named).count()
+    let mut found: HashSet<_> = entries.filter(|path| is_recording(path)).filter_map(|path| stem(&path)).collect();
+    // What a comparison names but its recording is none.
+    for name in files_of_results(&folder.join(COMPARISON)).unwrap_or_default() {
+        stem(name.as_ref()).map(|stem| found.remove(&stem));
+    }
+    for head in runs.heads().filter(|head| head.has_recording) {
+        let recording = runs.result(head.index).ok().and_then(|run| run.recording.clone());
+        recording.and_then(|name| stem(name.as_ref())).map(|stem| found.remove(&stem));
+    }
+    found.len()
 }
 
 /// Which run it is, for results, and what it left.
@@ -127,6 +132,13 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
         overrides: scenario.overrides.iter().map(ToString::to_string).collect(),
         limits: limit_places(scenario),
     }
+}
+
+/// Which run it is, for lists of runs.
+pub(crate) fn unfinished(job: &Job) -> Unfinished {
+    let Scenario { name, path, .. } = &job.scenario;
+    let file = path.as_ref().map(|path| path.display().to_string());
+    Unfinished { name: name.clone(), file, engine: job.engine.to_string() }
 }
 
 /// Digest of all that the run of `job` is made of.

@@ -10,7 +10,7 @@ pub(crate) use target::Output;
 use crate::error::CliError;
 use place::{Kind, Place};
 use servobench_files::FileId;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -73,12 +73,26 @@ pub(crate) enum Refused {
 }
 
 /// The outputs of a command.
-#[derive(Debug, Default)]
-pub(crate) struct Outputs {
-    claimed: HashMap<Place, String>,
+#[derive(Default)]
+pub(crate) struct Outputs<'a> {
+    files: HashMap<Place, String>,
+    folders: Vec<ClaimedFolder<'a>>,
 }
 
-impl Outputs {
+/// A folder for files with names of its own.
+struct ClaimedFolder<'a> {
+    option: String,
+    place: Place,
+    is_name_of_its_own: Box<dyn Fn(&str) -> bool + 'a>,
+}
+
+impl ClaimedFolder<'_> {
+    fn claims(&self, place: &Place) -> bool {
+        place.name_in(&self.place).is_some_and(|name| (self.is_name_of_its_own)(name))
+    }
+}
+
+impl<'a> Outputs<'a> {
     /// The file at `path`, which `option` names.
     pub(crate) fn file(&mut self, option: &str, path: &Path) -> Result<Output, Refused> {
         let kind = Kind::of(path);
@@ -88,7 +102,13 @@ impl Outputs {
         spares(option, path)?;
         // A device has room for all.
         if kind != Kind::Device {
-            self.claim(option, path, Place::of(path))?;
+            let place = Place::of(path);
+            let of_a_folder = self.folders.iter().find(|folder| folder.claims(&place)).map(|folder| &folder.option);
+            if let Some(other) = of_a_folder.or_else(|| self.files.get(&place)) {
+                let (option, other) = (option.to_owned(), other.clone());
+                return Err(Refused::Twice { option, other, path: path.to_owned() });
+            }
+            self.files.insert(place, option.to_owned());
         }
         Ok(Output::at(path, kind))
     }
@@ -111,26 +131,20 @@ impl Outputs {
         }
     }
 
-    /// The folder at `path`, which `option` names, for files that are called `names` in it.
+    /// The folder at `path`, which `option` names, for files whose names are `is_name_of_its_own`. There may be many: they are
+    /// not listed.
     pub(crate) fn folder(
         &mut self,
         option: &str,
         path: &Path,
-        names: impl IntoIterator<Item = String>,
+        is_name_of_its_own: impl Fn(&str) -> bool + 'a,
     ) -> Result<OutputFolder, Refused> {
         if std::fs::metadata(path).is_ok_and(|found| !found.is_dir()) {
             return Err(Refused::NoFolder { option: option.to_owned(), path: path.to_owned() });
         }
-        let folder = Place::of_folder(path);
-        let mut claimed = HashSet::new();
-        for name in names {
-            is_name(&name)?;
-            self.claim(option, &path.join(&name), folder.file(&name))?;
-            claimed.insert(name);
-        }
         // Only what is there already can be an input.
         for entry in std::fs::read_dir(path).into_iter().flatten().flatten() {
-            if entry.file_name().to_str().is_some_and(|name| claimed.contains(name)) {
+            if entry.file_name().to_str().is_some_and(&is_name_of_its_own) {
                 let taken = entry.path();
                 if taken.is_dir() {
                     return Err(Refused::Folder { option: option.to_owned(), path: taken });
@@ -138,14 +152,14 @@ impl Outputs {
                 spares(option, &taken)?;
             }
         }
-        Ok(OutputFolder { path: path.to_owned() })
-    }
-
-    fn claim(&mut self, option: &str, path: &Path, place: Place) -> Result<(), Refused> {
-        match self.claimed.insert(place, option.to_owned()) {
-            Some(other) => Err(Refused::Twice { option: option.to_owned(), other, path: path.to_owned() }),
-            None => Ok(()),
+        let (option, place) = (option.to_owned(), Place::of_folder(path));
+        let folder = ClaimedFolder { option, place, is_name_of_its_own: Box::new(is_name_of_its_own) };
+        if let Some((file, other)) = self.files.iter().find(|(file, _)| folder.claims(file)) {
+            let path = path.join(file.name_in(&folder.place).unwrap_or_default());
+            return Err(Refused::Twice { option: folder.option, other: other.clone(), path });
         }
+        self.folders.push(folder);
+        Ok(OutputFolder { path: path.to_owned() })
     }
 }
 

@@ -110,7 +110,7 @@ pub(crate) fn load(paths: &[PathBuf], with: &OverrideArgs) -> Result<Vec<Source>
     let mut mistakes = Vec::new();
     let mut sources = Vec::new();
     for found in each(paths, with)? {
-        match found {
+        match found? {
             Ok(source) => sources.push(source),
             Err(unusable) => mistakes.push(unusable),
         }
@@ -144,21 +144,29 @@ impl fmt::Display for Unusable {
     }
 }
 
-/// Every file by itself: one that cannot be used does not keep the others from being used.
-pub(crate) fn each(paths: &[PathBuf], with: &OverrideArgs) -> Result<Vec<Result<Source, Unusable>>, CliError> {
+/// Every file by itself, when its turn comes: one that cannot be used does not keep the others from being used.
+pub(crate) fn each(
+    paths: &[PathBuf],
+    with: &OverrideArgs,
+) -> Result<impl Iterator<Item = Result<Result<Source, Unusable>, CliError>>, CliError> {
     let files = files(paths, with.root.as_deref())?;
-    let each = files.into_iter().map(|path| match loaded(&path, with).and_then(trusted) {
-        Ok(loaded) => Ok(Ok(source(loaded))),
+    Ok(files.into_iter().map(|path| match loaded(&path, with).and_then(trusted) {
+        Ok(loaded) => {
+            warn(&loaded);
+            Ok(Ok(source(loaded)))
+        }
         // A suite whose scenarios cannot be read now is another one when they can.
         Err(error) if error.is_shortage() => Err(CliError::Shortage(error)),
         Err(error) => Ok(Err(Unusable { path, error })),
-    });
-    each.collect()
+    }))
 }
 
-/// What is run of a file; what is doubtful in it is said.
+/// A file that was read before, once more: it was noted, and what is doubtful in it was said.
+pub(crate) fn again(path: &Path, with: &OverrideArgs) -> Result<Source, LoadError> {
+    parsed(path, with).and_then(trusted).map(source)
+}
+
 fn source(loaded: Loaded) -> Source {
-    warn(&loaded);
     let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
     Source { scenario: loaded.scenario, text }
 }
@@ -168,13 +176,19 @@ pub(crate) fn read(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError
     loaded(path, with).inspect(warn)
 }
 
-/// A file, or what comes in on standard input: files that it names are looked for in the current folder.
+/// A file, or what comes in on standard input; what is read for it is noted.
 fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
-    let OverrideArgs { overrides, root } = with;
     if !is_stdin(path) {
         reads(path, format_args!("the scenario {}", path.display()));
-        let loaded = load_within(path, overrides, root.as_deref());
-        return loaded.inspect(|loaded| note_files(loaded, path, root.as_deref()));
+    }
+    parsed(path, with).inspect(|loaded| note_files(loaded, path, with.root.as_deref()))
+}
+
+/// A file, or what comes in on standard input: files that it names are looked for in the current folder.
+fn parsed(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
+    let OverrideArgs { overrides, root } = with;
+    if !is_stdin(path) {
+        return load_within(path, overrides, root.as_deref());
     }
     let text = if let Some(text) = TEXT_OF_STDIN.get() {
         text.clone()
@@ -184,7 +198,6 @@ fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     };
     let mut loaded = parse_within(NAME_OF_STDIN, &text, Some(Path::new("")), overrides, root.as_deref())?;
     loaded.scenario.path = Some(path.to_owned());
-    note_files(&loaded, path, root.as_deref());
     Ok(loaded)
 }
 
@@ -223,7 +236,8 @@ fn read_stdin() -> std::io::Result<String> {
 /// The embedded demo.
 pub(crate) fn demo(with: &OverrideArgs) -> Result<Vec<Source>, LoadError> {
     let demo = servobench_scenario::embedded_demo().into_iter();
-    demo.map(|(name, text)| parse_within(name, text, None, &with.overrides, None).map(source)).collect()
+    let loaded = demo.map(|(name, text)| parse_within(name, text, None, &with.overrides, None));
+    loaded.map(|loaded| loaded.inspect(warn).map(source)).collect()
 }
 
 fn warn(loaded: &Loaded) {

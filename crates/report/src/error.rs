@@ -1,29 +1,16 @@
 //! Why a report could not be written.
+use servobench_results::JournalError;
 use thiserror::Error;
 
-/// Why a report could not be written or read.
+/// Why a report could not be written.
 #[derive(Debug, Error)]
 pub enum ReportError {
-    /// The results are no JSON of this schema.
-    #[error("the results are not as docs/results.schema.json says: {0}")]
+    /// It cannot be written as JSON.
+    #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// Results of a later version.
-    #[error(
-        "the results have schema `{found}`, newer than this build, which reads versions 1 to {known}; use the servobench that wrote \
-         them, or run the scenarios again"
-    )]
-    Newer {
-        /// Schema of the file.
-        found: String,
-        /// Newest version that this build reads.
-        known: u32,
-    },
-    /// Something else than results.
-    #[error("the file has schema `{found}`, which is none of servobench's results")]
-    Schema {
-        /// Schema of the file.
-        found: String,
-    },
+    /// The result of a run cannot be read.
+    #[error(transparent)]
+    Run(#[from] JournalError),
     /// A table of samples that nobody can read.
     #[error(
         "a table of {rows} rows at a sample time of {sample_time:?} s; at most {limit} are written: take a longer sample \

@@ -5,11 +5,12 @@ use crate::metric_table::metric_table;
 use crate::said::last_words;
 use crate::style::Style;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-use servobench_results::{Outcome, Results, RunResult, Unfinished, printable, printable_lines};
+use servobench_results::{Outcome, RunResult, Runs, Unfinished, printable, printable_lines};
+use std::iter::once;
 use std::time::Duration;
 
-/// One test case for each scenario and engine, with the `times` (wall clock) that the runs took: results hold none; without
-/// any the times are left out.
+/// One test case for each scenario and engine, with the time by the clock that the run took, where it is known. The parts are those of
+/// one text.
 ///
 /// A run that did not end is an error, so that a suite that was ended before its time is never taken for one that passed.
 /// What failed is a failure: its message says which limit is missed by how much or which requirement is broken, its text
@@ -18,21 +19,56 @@ use std::time::Duration;
 /// case's output, what FMUs said at last its error output.
 ///
 /// # Errors
-/// [`ReportError::Junit`].
-pub fn junit(results: &Results, times: &[Duration]) -> Result<String, ReportError> {
-    let mut suite = TestSuite::new("servobench");
-    let cases = results.scenarios.iter().enumerate().map(|(k, run)| case(run, times.get(k).copied()));
-    suite.add_test_cases(cases);
-    suite.add_test_cases(results.unfinished.iter().map(unfinished));
-    let mut report = Report::new("servobench");
-    if !times.is_empty() {
-        let sum = times.iter().sum();
-        suite.set_time(sum);
-        report.set_time(sum);
+/// [`ReportError::Junit`]; [`ReportError::Run`] in place of a run that cannot be read.
+pub fn junit(runs: &dyn Runs) -> impl Iterator<Item = Result<String, ReportError>> {
+    let unfinished = runs.unfinished().count();
+    let mut suite = TestSuite::new(NAME);
+    let count = |kind| runs.heads().filter(|head| kind_of(head.verdict) == Some(kind)).count();
+    suite.tests = runs.heads().count() + unfinished;
+    suite.failures = count(NonSuccessKind::Failure);
+    suite.errors = count(NonSuccessKind::Error) + unfinished;
+    if runs.heads().any(|head| head.took.is_some()) {
+        suite.set_time(runs.heads().filter_map(|head| head.took).sum());
     }
-    report.add_test_suite(suite);
-    Ok(printable_lines(&report.to_string()?))
+    let (start, end) = match written(suite, TestCase::new(NAME, TestCaseStatus::success())) {
+        Ok(Written { start, end, .. }) => (Ok(start), Ok(end)),
+        Err(error) => (Err(error), Ok(String::new())),
+    };
+    let text = |case| Ok(written(TestSuite::new(NAME), case)?.case);
+    let cases = runs.heads().map(move |head| text(case(&*runs.result(head.index)?, head.took)));
+    let unfinished = runs.unfinished().map(move |run| text(unfinished_case(run)));
+    let parts = once(start).chain(cases).chain(unfinished).chain(once(end));
+    parts.map(|part| part.map(|text| printable_lines(&text)))
 }
+
+const NAME: &str = "servobench";
+
+/// A report with one case, in parts.
+struct Written {
+    /// Before the case.
+    start: String,
+    case: String,
+    /// After it.
+    end: String,
+}
+
+/// A report with the numbers of `suite` and `case` in it. The library writes whole reports only, and one of many runs is larger than
+/// memory: so each case is written in a report of its own, and what is around it once.
+fn written(mut suite: TestSuite, case: TestCase) -> Result<Written, ReportError> {
+    let mut report = Report::new(NAME);
+    report.time = suite.time;
+    suite.test_cases.push(case);
+    report.add_test_suite(suite);
+    let text = report.to_string()?;
+    // Before it there are names and numbers of ours alone, behind it nothing but the ends of what is around it.
+    let start = text.find(CASE).unwrap_or_default();
+    let end = text.rfind(END).unwrap_or(text.len());
+    Ok(Written { start: text[..start].to_owned(), case: text[start..end].to_owned(), end: text[end..].to_owned() })
+}
+
+/// The beginning of a case, and the end of a suite.
+const CASE: &str = "        <testcase ";
+const END: &str = "    </testsuite>";
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let engine = if run.engine.is_empty() { String::new() } else { format!(" [{}]", run.engine) };
@@ -69,7 +105,7 @@ fn class_name(file: Option<&str>) -> String {
 }
 
 /// A run that has no result.
-fn unfinished(run: &Unfinished) -> TestCase {
+fn unfinished_case(run: &Unfinished) -> TestCase {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_type("unfinished").set_message("the suite was ended before this run");
     let mut case = TestCase::new(format!("{} [{}]", printable(&run.name).trim(), run.engine), status);
@@ -87,12 +123,17 @@ fn output(run: &RunResult) -> String {
     lines.join("\n")
 }
 
+/// What kind of trouble an outcome is, if it is one.
+const fn kind_of(outcome: Outcome) -> Option<NonSuccessKind> {
+    match outcome {
+        Outcome::Passed | Outcome::Unjudged => None,
+        Outcome::Failed => Some(NonSuccessKind::Failure),
+        Outcome::Invalid | Outcome::Error => Some(NonSuccessKind::Error),
+    }
+}
+
 fn status(run: &RunResult) -> TestCaseStatus {
-    let kind = match run.verdict {
-        Outcome::Passed | Outcome::Unjudged => return TestCaseStatus::success(),
-        Outcome::Failed => NonSuccessKind::Failure,
-        Outcome::Invalid | Outcome::Error => NonSuccessKind::Error,
-    };
+    let Some(kind) = kind_of(run.verdict) else { return TestCaseStatus::success() };
     let (what, told) = if run.verdict == Outcome::Failed { failures(run) } else { (run.verdict.word(), vec![]) };
     let told = if told.is_empty() { run.reasons.clone() } else { told };
     let more = told.len().saturating_sub(1);
@@ -122,10 +163,25 @@ fn failures(run: &RunResult) -> (&'static str, Vec<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_results::samples;
+    use servobench_results::{Finished, Kept, Results, samples};
 
-    fn read(times: &[Duration]) -> Report {
-        Report::deserialize_from_str(&junit(&samples::results(), times).unwrap()).unwrap()
+    fn text_of(runs: &dyn Runs) -> String {
+        junit(runs).collect::<Result<_, _>>().unwrap()
+    }
+
+    fn read(runs: &dyn Runs) -> Report {
+        Report::deserialize_from_str(&text_of(runs)).unwrap()
+    }
+
+    /// The same runs, and how long they took (ms).
+    fn timed(results: Results, times: [u32; 7]) -> Kept {
+        let unfinished =
+            |run: &RunResult| Unfinished { name: run.name.clone(), file: None, engine: run.engine.clone() };
+        let mut kept = Kept::new(None, results.scenarios.iter().map(unfinished).collect());
+        for ((index, result), time) in results.scenarios.into_iter().enumerate().zip(times) {
+            kept.note(Finished { index, seconds: f64::from(time) * 1e-3, result }).unwrap();
+        }
+        kept
     }
 
     /// Kind, type, message and text of a case that did not succeed.
@@ -140,7 +196,7 @@ mod tests {
 
     #[test]
     fn reads_back_with_failures_and_errors_told_apart() {
-        let report = read(&[]);
+        let report = read(&samples::results());
         assert_eq!((report.tests, report.failures, report.errors), (7, 2, 2));
         let cases = &report.test_suites[0].test_cases;
         assert_eq!(cases[0].name.as_str(), "lambrechts-jerk [exact]");
@@ -159,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_missed_limit_is_told_with_its_size_its_file_and_its_line() {
-        let report = read(&[]);
+        let report = read(&samples::results());
         let case = &report.test_suites[0].test_cases[1];
         let (kind, ty, message, description) = told(case);
         let file = "scenarios/feed-axis-reversal-at-low-speed-with-stick-slip.toml";
@@ -172,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_broken_requirement_is_a_failure_and_what_is_lifted_is_said() {
-        let report = read(&[]);
+        let report = read(&samples::results());
         let cases = &report.test_suites[0].test_cases;
         let (kind, ty, message, _) = told(&cases[6]);
         assert_eq!((kind, ty), (NonSuccessKind::Failure, "requirement broken"));
@@ -186,7 +242,7 @@ mod tests {
         let mut results = samples::results();
         results.unfinished =
             vec![Unfinished { name: "last".into(), file: Some("last.toml".into()), engine: "mujoco".into() }];
-        let report = Report::deserialize_from_str(&junit(&results, &[]).unwrap()).unwrap();
+        let report = read(&results);
         assert_eq!((report.tests, report.errors), (8, 3));
         let (kind, ty, message, _) = told(&report.test_suites[0].test_cases[7]);
         assert_eq!((kind, ty, message), (NonSuccessKind::Error, "unfinished", "the suite was ended before this run"));
@@ -194,16 +250,30 @@ mod tests {
 
     #[test]
     fn times_are_those_of_the_clock() {
-        let report = read(&[1500, 250, 0, 0, 0, 0, 4].map(Duration::from_millis));
+        let report = read(&timed(samples::results(), [1500, 250, 0, 0, 0, 0, 4]));
         let cases = &report.test_suites[0].test_cases;
         assert_eq!(cases[1].time, Some(Duration::from_millis(250)));
         assert_eq!(report.time, Some(Duration::from_millis(1754)));
-        assert_eq!(read(&[]).test_suites[0].test_cases[1].time, None);
+        assert_eq!(read(&samples::results()).test_suites[0].test_cases[1].time, None);
+    }
+
+    /// Put together from its parts it is what the library writes in one piece.
+    #[test]
+    fn the_parts_are_one_report() {
+        let mut results = samples::results();
+        results.unfinished = vec![Unfinished { name: "\u{1b}[<x>".into(), file: None, engine: "mujoco".into() }; 2];
+        results.scenarios[0].name = "    </testsuite>\n        <testcase name=\"\">".into();
+        results.scenarios[1].reasons.push("    </testsuite>\n        <testcase ".into());
+        let mut suite = TestSuite::new(NAME);
+        suite.add_test_cases(results.scenarios.iter().map(|run| case(run, None)));
+        suite.add_test_cases(results.unfinished.iter().map(unfinished_case));
+        let mut report = Report::new(NAME);
+        report.add_test_suite(suite);
+        assert_eq!(text_of(&results), printable_lines(&report.to_string().unwrap()));
     }
 
     #[test]
     fn two_reports_are_the_same_bytes() {
-        let times = [Duration::from_millis(3); 7];
-        assert_eq!(junit(&samples::results(), &times).unwrap(), junit(&samples::results(), &times).unwrap());
+        assert_eq!(text_of(&timed(samples::results(), [3; 7])), text_of(&timed(samples::results(), [3; 7])));
     }
 }

@@ -4,8 +4,9 @@ use crate::row_notes::row_notes;
 use crate::style::{Ink, Style};
 use crate::text::{widest, wrapped};
 use servobench_metrics::{Name, Quantity};
-use servobench_results::printable;
-use servobench_results::{Outcome, Results, RunResult};
+use servobench_results::{JournalError, Outcome, RunHead, RunResult, Runs, printable};
+use std::collections::{HashMap, HashSet};
+use std::iter::once;
 
 /// Numbers that every row shows, with their headings.
 const COLUMNS: [(&str, Name); 4] = [
@@ -42,83 +43,102 @@ const fn shown(outcome: Outcome) -> (&'static str, Ink) {
 ///
 /// MOVE is the set-point's duration, SETTLING the time after it until the load stays in its window, PEAK ERR the peak
 /// following error of the load, VIBR P-P its residual vibration, peak-to-peak.
-#[must_use]
-pub fn verdict_table(results: &Results, style: Style, all_metrics: bool) -> String {
-    let runs = &results.scenarios;
-    let mut table = String::new();
-    if let [run] = runs.as_slice()
-        && has_metrics(run)
-    {
-        table += &metric_table(run, style);
-        line(&mut table, "");
-    }
-    let columns = Columns::of(runs, style);
-    line(&mut table, &style.paint(Ink::Heading, &columns.heading()));
-    for outcome in ORDER {
-        for run in runs.iter().filter(|run| run.verdict == outcome) {
-            columns.row(&mut table, run, runs, style);
-            table += &row_notes(run, INDENT, style);
-            if all_metrics && runs.len() > 1 && has_metrics(run) {
-                table += &metric_table(run, style);
-                line(&mut table, "");
-            }
+///
+/// The parts are those of one text, whole lines each.
+///
+/// # Errors
+/// [`JournalError`] in place of a run that cannot be read.
+pub fn verdict_table(runs: &dyn Runs, style: Style, all_metrics: bool) -> impl Iterator<Item = Part> {
+    let heads: Vec<_> = runs.heads().collect();
+    let names = told_apart(&heads);
+    let columns = Columns::of(&heads, &names, style);
+    let is_single = heads.len() == 1;
+    let start = match heads.as_slice() {
+        [head] => runs.result(head.index).map(|run| metrics_of(&run, style)),
+        _ => Ok(String::new()),
+    };
+    let start = start.map(|metrics| format!("{metrics}{}\n", style.paint(Ink::Heading, &columns.heading())));
+    let rows: Vec<(usize, String)> = in_order(&heads).into_iter().map(|k| (heads[k].index, names[k].clone())).collect();
+    let rows = rows.into_iter().map(move |(index, name)| {
+        let run = runs.result(index)?;
+        let mut row = columns.row(&run, &name, style);
+        row += &row_notes(&run, INDENT, style);
+        if all_metrics && !is_single {
+            row += &metrics_of(&run, style);
         }
+        Ok(row)
+    });
+    let mut end = String::from("\n");
+    for (k, part) in wrapped(&overridden(runs), style.width.saturating_sub(2)).iter().enumerate() {
+        line(&mut end, &format!("{}{part}", if k == 0 { "" } else { "  " }));
     }
-    line(&mut table, "");
-    for (k, part) in wrapped(&overridden(results), style.width.saturating_sub(2)).iter().enumerate() {
-        line(&mut table, &format!("{}{part}", if k == 0 { "" } else { "  " }));
-    }
-    line(&mut table, &summary(results, style));
-    table
+    line(&mut end, &summary(runs, style));
+    once(start).chain(rows).chain(once(Ok(end)))
+}
+
+/// A part of a text about runs, or why there is none.
+type Part = Result<String, JournalError>;
+
+/// Places in `heads`, in the order of [`ORDER`].
+fn in_order(heads: &[RunHead<'_>]) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..heads.len()).collect();
+    places.sort_by_key(|k| ORDER.iter().position(|outcome| *outcome == heads[*k].verdict));
+    places
+}
+
+/// All metrics of a run that has some, and an empty line.
+fn metrics_of(run: &RunResult, style: Style) -> String {
+    let has_metrics = run.verdict.is_whole() && !run.metrics.is_empty();
+    if has_metrics { metric_table(run, style) + "\n" } else { String::new() }
 }
 
 /// Which keys had another value than the files give them; empty where none had.
-fn overridden(results: &Results) -> String {
-    let mut all: Vec<&str> = Vec::new();
-    for one in results.scenarios.iter().flat_map(|run| &run.overrides) {
-        if !all.contains(&one.as_str()) {
-            all.push(one);
-        }
-    }
+fn overridden(runs: &dyn Runs) -> String {
+    let all = runs.overrides();
     if all.is_empty() { String::new() } else { printable(&format!("overrides: {}", all.join(", "))) }
 }
 
-/// One line for each run that did not pass, the overrides and the count.
-#[must_use]
-pub fn brief(results: &Results) -> String {
-    let runs = &results.scenarios;
-    let bad = ORDER.into_iter().filter(|outcome| !outcome.is_good());
-    let bad = bad.flat_map(|outcome| runs.iter().filter(move |run| run.verdict == outcome));
-    let mut text = String::new();
-    for run in bad {
+/// One line for each run that did not pass, the overrides and the count. The parts are those of one text.
+///
+/// # Errors
+/// [`JournalError`] in place of a run that cannot be read.
+pub fn brief(runs: &dyn Runs) -> impl Iterator<Item = Part> {
+    let heads: Vec<_> = runs.heads().collect();
+    let names = told_apart(&heads);
+    let bad = in_order(&heads).into_iter().filter(|k| !heads[*k].verdict.is_good());
+    let bad: Vec<(usize, String)> = bad.map(|k| (heads[k].index, names[k].clone())).collect();
+    let rows = bad.into_iter().map(|(index, name)| {
+        let run = runs.result(index)?;
         let engine = if run.engine.is_empty() { String::new() } else { format!(" on {}", run.engine) };
         let first = run.reasons.first().map_or("", String::as_str);
         let more = run.reasons.len().saturating_sub(1);
         let more = if more > 0 { format!(" (and {more} more)") } else { String::new() };
-        let name = told_apart(run, runs);
-        line(&mut text, &printable(&format!("{:VERDICT$}{name}{engine}: {first}{more}", shown(run.verdict).0)));
-    }
-    let overridden = overridden(results);
+        Ok(printable(&format!("{:VERDICT$}{name}{engine}: {first}{more}", shown(run.verdict).0)) + "\n")
+    });
+    let mut end = String::new();
+    let overridden = overridden(runs);
     if !overridden.is_empty() {
-        line(&mut text, &overridden);
+        line(&mut end, &overridden);
     }
-    line(&mut text, &summary(results, Style::default()));
-    text
+    line(&mut end, &summary(runs, Style::default()));
+    rows.chain(once(Ok(end)))
 }
 
-/// Whether there are metrics that mean something.
-fn has_metrics(run: &RunResult) -> bool {
-    run.verdict.is_whole() && !run.metrics.is_empty()
-}
-
-/// Name of a run: of two files with the same name, the file.
-fn told_apart(run: &RunResult, runs: &[RunResult]) -> String {
-    let is_like = |other: &RunResult| other.name == run.name && other.file != run.file;
-    let name = match &run.file {
-        Some(file) if runs.iter().any(is_like) => file.strip_suffix(".toml").unwrap_or(file),
-        _ => &run.name,
+/// Names of runs: of two files with the same name, the files.
+fn told_apart(heads: &[RunHead<'_>]) -> Vec<String> {
+    let mut first = HashMap::new();
+    let mut shared = HashSet::new();
+    for head in heads {
+        if *first.entry(head.name).or_insert(head.file) != head.file {
+            shared.insert(head.name);
+        }
+    }
+    let name = |head: &RunHead<'_>| {
+        let file = head.file.filter(|_| shared.contains(head.name));
+        let name = file.map_or(head.name, |file| file.strip_suffix(".toml").unwrap_or(file));
+        printable(name).trim().to_owned()
     };
-    printable(name).trim().to_owned()
+    heads.iter().map(name).collect()
 }
 
 /// How wide names and engines are.
@@ -128,11 +148,10 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(runs: &[RunResult], style: Style) -> Self {
-        let engine = widest(runs.iter().map(|run| run.engine.as_str())).max("ENGINE".len());
+    fn of(heads: &[RunHead<'_>], names: &[String], style: Style) -> Self {
+        let engine = widest(heads.iter().map(|head| head.engine)).max("ENGINE".len());
         let fixed = INDENT + 2 + engine + 1 + COLUMNS.len() * (NUMBER + 1);
         let room = style.width.saturating_sub(fixed).max(SHORTEST_NAME);
-        let names: Vec<String> = runs.iter().map(|run| told_apart(run, runs)).collect();
         let name = widest(names.iter().map(String::as_str)).max("SCENARIO".len()).min(room);
         Self { name, engine }
     }
@@ -143,23 +162,24 @@ impl Columns {
         format!("{:VERDICT$}  {:name$}  {:engine$} {titles}", "VERDICT", "SCENARIO", "ENGINE")
     }
 
-    /// The row of `run`; a name that does not fit stands in full above its numbers.
-    fn row(&self, table: &mut String, run: &RunResult, runs: &[RunResult], style: Style) {
+    /// The row of `run`, whose name is `full`; if that does not fit it stands above the numbers.
+    fn row(&self, run: &RunResult, full: &str, style: Style) -> String {
         let (word, ink) = shown(run.verdict);
         let verdict = style.paint(ink, &format!("{word:VERDICT$}"));
-        let full = told_apart(run, runs);
         let numbers = self.numbers(run, style);
+        let mut row = String::new();
         if full.chars().count() <= self.name {
             let name = self.name;
-            line(table, format!("{verdict}  {full:name$}  {numbers}").trim_end());
-            return;
+            line(&mut row, format!("{verdict}  {full:name$}  {numbers}").trim_end());
+            return row;
         }
         let characters: Vec<char> = full.chars().collect();
         for (k, part) in characters.chunks(style.width.saturating_sub(INDENT).max(SHORTEST_NAME)).enumerate() {
             let start = if k == 0 { format!("{verdict}  ") } else { format!("{:INDENT$}", "") };
-            line(table, &format!("{start}{}", part.iter().collect::<String>()));
+            line(&mut row, &format!("{start}{}", part.iter().collect::<String>()));
         }
-        line(table, format!("{:INDENT$}{:name$}  {numbers}", "", "", name = self.name).trim_end());
+        line(&mut row, format!("{:INDENT$}{:name$}  {numbers}", "", "", name = self.name).trim_end());
+        row
     }
 
     /// Engine and numbers.
@@ -178,16 +198,16 @@ impl Columns {
     }
 }
 
-fn summary(results: &Results, style: Style) -> String {
-    let runs = results.scenarios.len();
-    let parts = ORDER.into_iter().map(|outcome| (outcome, results.count_of(outcome))).filter(|(_, count)| *count > 0);
+fn summary(runs: &dyn Runs, style: Style) -> String {
+    let parts = ORDER.into_iter().map(|outcome| (outcome, runs.count_of(outcome))).filter(|(_, count)| *count > 0);
     let mut parts: Vec<_> =
         parts.map(|(outcome, count)| style.paint(shown(outcome).1, &format!("{count} {}", outcome.word()))).collect();
-    let unfinished = results.unfinished.len();
+    let unfinished = runs.unfinished().count();
     if unfinished > 0 {
         parts.push(style.paint(shown(Outcome::Error).1, &format!("{unfinished} more did not end")));
     }
-    format!("{runs} run{}: {}", if runs == 1 { "" } else { "s" }, parts.join(", "))
+    let count = runs.heads().count();
+    format!("{count} run{}: {}", if count == 1 { "" } else { "s" }, parts.join(", "))
 }
 
 fn line(table: &mut String, text: &str) {
@@ -199,11 +219,20 @@ fn line(table: &mut String, text: &str) {
 mod tests {
     use super::*;
     use crate::style::shown;
-    use servobench_results::samples;
+    use servobench_results::{Results, samples};
+
+    /// The whole table, every part of it.
+    fn table_of(results: &Results, style: Style) -> String {
+        verdict_table(results, style, false).collect::<Result<_, _>>().unwrap()
+    }
+
+    fn brief_of(results: &Results) -> String {
+        brief(results).collect::<Result<_, _>>().unwrap()
+    }
 
     #[test]
     fn at_eighty_columns() {
-        let table = verdict_table(&samples::results(), Style::default(), false);
+        let table = table_of(&samples::results(), Style::default());
         insta::assert_snapshot!(table, @r#"
         VERDICT    SCENARIO              ENGINE       MOVE  SETTLING  PEAK ERR  VIBR P-P
         passed     kept                  exact      1.00 s         –         –         –
@@ -249,11 +278,11 @@ mod tests {
     fn names_are_complete_at_any_width() {
         let name = "feed-axis-reversal-at-low-speed-with-stick-slip";
         for width in [40, 80, 120] {
-            let table = verdict_table(&samples::results(), Style { width, colour: false }, false);
+            let table = table_of(&samples::results(), Style { width, colour: false });
             let whole: String = table.split_whitespace().collect();
             assert!(whole.contains(name), "{table}");
         }
-        let table = verdict_table(&samples::results(), Style { width: 120, colour: false }, false);
+        let table = table_of(&samples::results(), Style { width: 120, colour: false });
         assert!(table.lines().any(|line| line.contains(name) && line.contains("45.1 µm")), "one row: {table}");
     }
 
@@ -263,7 +292,7 @@ mod tests {
         let mut run = samples::short();
         run.name = "x\u{1b}[2J\n::error file=a.rs,line=1::all is fine".into();
         let results = Results::new(vec![run]);
-        for text in [verdict_table(&results, Style::default(), false), brief(&results)] {
+        for text in [table_of(&results, Style::default()), brief_of(&results)] {
             assert!(text.contains("x\u{fffd}[2J ::error file=a.rs,line=1::all is fine"), "{text}");
             assert!(
                 !text.contains('\u{1b}') && text.lines().all(|line| !line.trim_start().starts_with("::")),
@@ -274,7 +303,7 @@ mod tests {
 
     #[test]
     fn in_brief_each_run_that_did_not_pass_has_a_line() {
-        insta::assert_snapshot!(brief(&samples::results()), @r#"
+        insta::assert_snapshot!(brief_of(&samples::results()), @r#"
         FAILED   feed-axis-reversal-at-low-speed-with-stick-slip on mujoco: settling_time 35.2 ms, limit 20.0 ms (and 2 more)
         FAILED   pick on exact: arrives: the load ended 200 mm short of 200 mm (window ±5 µm); effort limit bound for 1.99 s (and 2 more)
         ERROR    two-mass on rapier: the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms
@@ -285,8 +314,8 @@ mod tests {
 
     #[test]
     fn colours_only_when_asked_for() {
-        let plain = verdict_table(&samples::results(), Style::default(), false);
-        let coloured = shown(&verdict_table(&samples::results(), Style { width: 80, colour: true }, false), true);
+        let plain = table_of(&samples::results(), Style::default());
+        let coloured = shown(&table_of(&samples::results(), Style { width: 80, colour: true }), true);
         assert!(!plain.contains('\x1b') && coloured.contains("\x1b[1;31mFAILED"), "{coloured}");
         let mut bare = coloured;
         for code in ["\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[33m", "\x1b[1;31m"] {

@@ -1,5 +1,7 @@
 //! Why results cannot be read.
+use crate::journal::JournalError;
 use servobench_files::{named, with_short_quotes};
+use std::io;
 use thiserror::Error;
 
 /// Why results cannot be read, or written.
@@ -25,4 +27,13 @@ pub enum ResultsError {
         /// Schema of the file.
         found: String,
     },
+    /// What the journal holds of a run cannot be read.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The operating system does not let them be written.
+    #[error("the results cannot be written: {0}")]
+    Write(#[source] io::Error),
+    /// The operating system does not let them be read.
+    #[error("the results cannot be read: {0}")]
+    Read(#[source] io::Error),
 }

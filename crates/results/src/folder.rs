@@ -1,6 +1,8 @@
 //! The folder that a suite writes into: one suite at a time, nothing left of those before.
-use crate::journal;
-use crate::results::{Results, read_results};
+use crate::error::ResultsError;
+use crate::journal::{self, JournalError};
+use crate::results::files_of_results;
+use crate::runs::Runs;
 use servobench_trace::unfinished_by;
 use std::collections::HashSet;
 use std::ffi::OsStr;
@@ -44,6 +46,17 @@ pub enum FolderError {
         .0.display()
     )]
     InUse(PathBuf),
+    /// What is in the place of results is something else.
+    #[error(
+        "`{}` is no list of results that this program wrote ({why}) and would be lost: name another folder with `--out`, or \
+         remove it", path.display()
+    )]
+    NotOurs {
+        /// The file.
+        path: PathBuf,
+        /// Why it is none.
+        why: ResultsError,
+    },
     /// It cannot be locked.
     #[error(
         "cannot lock the folder `{}`: {source}; name one on a file system with locks (flock) with `--out`", path.display()
@@ -56,15 +69,13 @@ pub enum FolderError {
     },
 }
 
-/// What was left in a folder by those before, and is removed.
+/// What was left in a folder by those before.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Former {
-    /// Recordings, diagrams and drawings that were removed.
-    pub removed: usize,
-    /// Runs that had ended, of a suite that was ended before its time.
-    pub of_unfinished: Option<usize>,
-    /// Why what the list names stays, in words: it is none of ours.
-    pub stays: Option<String>,
+    /// Recordings, diagrams and drawings.
+    names: HashSet<String>,
+    /// Lists of them.
+    lists: Vec<&'static str>,
 }
 
 impl Folder {
@@ -98,52 +109,65 @@ impl Folder {
         self.path.join(JOURNAL)
     }
 
-    /// Removes what those before left here: exactly the files that `list` names and the list, with [`RESULTS`] also what a journal
-    /// names and what was half written when its suite was ended. What the list of another command beside it names stays.
-    #[must_use]
-    pub fn remove_former(&self, list: &str) -> Former {
-        let mut former = Former::default();
+    /// What those before left here: exactly the files that `list` names and the list, with [`RESULTS`] also what a journal
+    /// names and what was half written when its suite was ended. What the list of another command beside it names is not of it.
+    ///
+    /// # Errors
+    /// [`FolderError::NotOurs`], when a file of that name is something else.
+    pub fn former(&self, list: &'static str) -> Result<Former, FolderError> {
         let mut names = HashSet::new();
-        if let Ok(text) = read_results(&self.path.join(list)) {
-            match Results::from_json(&text) {
-                Ok(results) => names.extend(results.files().filter(|name| is_left_by_a_run(name)).map(str::to_owned)),
-                Err(error) => {
-                    former.stays = Some(format!("`{}`: {error}", self.path.join(list).display()));
-                    return former;
-                }
+        let path = self.path.join(list);
+        match files_of_results(&path) {
+            Ok(files) => names.extend(files.into_iter().filter(|name| is_left_by_a_run(name))),
+            // Most often there is none.
+            Err(ResultsError::Read(_)) => {}
+            Err(why) => return Err(FolderError::NotOurs { path, why }),
+        }
+        let mut former = Former { lists: vec![list], ..Former::default() };
+        if list == RESULTS {
+            former.lists.push(JOURNAL);
+            if let Ok(file) = servobench_files::open(&self.journal(), u64::MAX)
+                && let Ok(suite) = journal::read(file, &self.journal(), |one, _| {
+                    names.extend(one.result.files.into_iter().filter(|name| is_left_by_a_run(name)));
+                })
+            {
+                names.extend(left_by(&suite.stems));
             }
         }
-        if list == RESULTS
-            && let Ok(file) = servobench_files::open(&self.journal(), u64::MAX)
-            && let Ok((suite, finished)) = journal::read(file, &self.journal())
-        {
-            former.of_unfinished = Some(finished.len());
-            names.extend(left_by(&suite.stems));
-            names.extend(
-                finished.iter().flat_map(|one| one.result.files.iter()).filter(|name| is_left_by_a_run(name)).cloned(),
-            );
-        }
         let other = if list == RESULTS { COMPARISON } else { RESULTS };
-        let other = read_results(&self.path.join(other)).ok().and_then(|text| Results::from_json(&text).ok());
-        let kept: HashSet<&str> = other.iter().flat_map(Results::files).collect();
-        let names = names.iter().filter(|name| !kept.contains(name.as_str()));
-        former.removed = names.filter(|name| fs::remove_file(self.path.join(name)).is_ok()).count();
-        // They name nothing any more; what takes their place is written by the suite that begins.
-        fs::remove_file(self.path.join(list)).ok();
-        if list == RESULTS {
-            fs::remove_file(self.journal()).ok();
+        for kept in files_of_results(&self.path.join(other)).unwrap_or_default() {
+            names.remove(&kept);
         }
-        former
+        former.names = names;
+        Ok(former)
     }
 
-    /// Removes what runs with these `stems` left that `results` do not name: they were ended after they wrote it and before that
-    /// was noted.
-    pub fn remove_unnamed(&self, stems: &[String], results: &Results) {
-        let named: HashSet<&str> = results.files().collect();
-        for name in left_by(stems).filter(|name| !named.contains(name.as_str())) {
+    /// Removes that; says how many recordings, diagrams and drawings there were.
+    #[expect(clippy::must_use_candidate, reason = "to remove them is what it is for")]
+    pub fn remove(&self, former: &Former) -> usize {
+        let removed = former.names.iter().filter(|name| fs::remove_file(self.path.join(name)).is_ok()).count();
+        // They name nothing any more; what takes their place is written by those who come now.
+        for list in &former.lists {
+            fs::remove_file(self.path.join(list)).ok();
+        }
+        removed
+    }
+
+    /// Removes what runs with these `stems` left that the results of `runs` do not name: they were ended after they wrote it and before
+    /// that was noted.
+    ///
+    /// # Errors
+    /// [`JournalError`], when a result cannot be read: everything stays then.
+    pub fn remove_unnamed(&self, stems: &[String], runs: &dyn Runs) -> Result<(), JournalError> {
+        let mut named = HashSet::new();
+        for run in runs.each() {
+            named.extend(run?.into_owned().files);
+        }
+        for name in left_by(stems).filter(|name| !named.contains(name)) {
             // Most were never there.
             fs::remove_file(self.path.join(name)).ok();
         }
+        Ok(())
     }
 }
 
@@ -175,6 +199,7 @@ mod tests {
     use super::*;
     use crate::digest::Digest;
     use crate::journal::{Finished, Journal, Suite};
+    use crate::results::Results;
     use crate::samples;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -208,7 +233,8 @@ mod tests {
         for name in ["a.parquet", "a.timing.svg", "notes.txt", "b.parquet"] {
             fs::write(there.path().join(name), "").unwrap();
         }
-        assert_eq!(folder.remove_former(RESULTS), Former { removed: 2, ..Former::default() });
+        let former = folder.former(RESULTS).unwrap();
+        assert_eq!(folder.remove(&former), 2);
         assert_eq!(names(there.path()), ["b.parquet", "notes.txt"]);
     }
 
@@ -224,8 +250,8 @@ mod tests {
         for name in ["a.exact.parquet", "a.exact.rrd", "other.parquet"] {
             fs::write(there.path().join(name), "").unwrap();
         }
-        let former = folder.remove_former(RESULTS);
-        assert_eq!((former.removed, former.of_unfinished, former.stays), (2, Some(1), None));
+        let former = folder.former(RESULTS).unwrap();
+        assert_eq!(folder.remove(&former), 2);
         assert_eq!(names(there.path()), ["other.parquet"]);
     }
 
@@ -234,7 +260,9 @@ mod tests {
         let there = tempfile::tempdir().unwrap();
         let folder = Folder::open(there.path()).unwrap();
         fs::write(there.path().join(RESULTS), "{}").unwrap();
-        assert!(folder.remove_former(RESULTS).stays.is_some_and(|why| why.contains(RESULTS)));
+        let refusal = folder.former(RESULTS).unwrap_err().to_string();
+        assert!(refusal.contains("results.json` is no list of results") && refusal.contains("--out"), "{refusal}");
+        assert!(folder.former(COMPARISON).is_ok());
         assert_eq!(names(there.path()), [RESULTS]);
     }
 

@@ -14,7 +14,6 @@
 use crate::digest::Digest;
 use crate::run::RunResult;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -115,6 +114,21 @@ pub enum JournalError {
         /// Its version.
         found: u32,
     },
+    /// A record that was written is another one now.
+    #[error("the record of a run in the journal `{}` has changed since it was written: is the disk in order?", .0.display())]
+    Changed(PathBuf),
+    /// A result that nobody noted.
+    #[error("there is no result of run {0}")]
+    NoSuchRun(usize),
+}
+
+/// Where a record is in the journal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Bytes before its line.
+    start: u64,
+    /// Bytes of its line.
+    length: u64,
 }
 
 /// The journal of a suite that is under way.
@@ -136,7 +150,7 @@ impl Journal {
     pub fn create(path: PathBuf, suite: &Suite) -> Result<Self, JournalError> {
         // What is there may be a link that somebody planted: it goes, and nothing is written to where it leads.
         std::fs::remove_file(&path).or_else(not_found).map_err(failed("begin", &path))?;
-        let file = File::options().create_new(true).write(true).open(&path);
+        let file = File::options().create_new(true).read(true).write(true).open(&path);
         let file = file.map_err(failed("begin", &path))?;
         let mut journal = Self { file, path, synced: Instant::now(), is_torn: false };
         journal.write(&Written::Suite(suite))?;
@@ -144,28 +158,46 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Goes on with the journal at `path`: what suite it is of, and the runs that have ended, each at most once, the last record
-    /// of it.
+    /// Goes on with the journal at `path`: what suite it is of. `each` is told the runs that have ended and where their records are;
+    /// of several records of one run the last one counts.
     ///
     /// # Errors
     /// [`JournalError`]
-    pub fn resume(path: PathBuf) -> Result<(Self, Suite, Vec<Finished>), JournalError> {
+    pub fn resume(path: PathBuf, each: impl FnMut(Finished, Place)) -> Result<(Self, Suite), JournalError> {
         // A FIFO under its name would keep its reader waiting.
         servobench_files::metadata(&path, u64::MAX).map_err(failed("read", &path))?;
         let mut file = File::options().read(true).write(true).open(&path).map_err(failed("read", &path))?;
-        let (suite, finished) = read(&file, &path)?;
-        let end = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;
+        let suite = read(&file, &path, each)?;
+        let length = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;
         // An empty line is no record: it does not matter if the last line was whole.
-        Ok((Self { file, path, synced: Instant::now(), is_torn: end > 0 }, suite, finished))
+        Ok((Self { file, path, synced: Instant::now(), is_torn: length > 0 }, suite))
     }
 
-    /// Writes down that a run has ended.
+    /// Writes down that a run has ended, and says where.
     ///
     /// # Errors
     /// [`JournalError::Io`], [`JournalError::Json`]: the record is then not there, all others are.
-    pub fn append(&mut self, finished: &Finished) -> Result<(), JournalError> {
-        self.write(&Written::Finished(finished))?;
-        if self.synced.elapsed() >= PERIOD { self.sync() } else { Ok(()) }
+    pub fn append(&mut self, finished: &Finished) -> Result<Place, JournalError> {
+        let place = self.write(&Written::Finished(finished))?;
+        if self.synced.elapsed() >= PERIOD {
+            self.sync()?;
+        }
+        Ok(place)
+    }
+
+    /// The record at `place`.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`], [`JournalError::Changed`]
+    pub fn at(&self, place: Place) -> Result<Finished, JournalError> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(place.start)).map_err(failed("read", &self.path))?;
+        let mut line = Vec::new();
+        file.take(place.length).read_to_end(&mut line).map_err(failed("read", &self.path))?;
+        match record(&line) {
+            Some(Record::Finished(finished)) => Ok(*finished),
+            Some(Record::Suite(_)) | None => Err(JournalError::Changed(self.path.clone())),
+        }
     }
 
     /// Makes sure that what was written is on the disk.
@@ -178,56 +210,63 @@ impl Journal {
         Ok(())
     }
 
-    fn write(&mut self, record: &Written<'_>) -> Result<(), JournalError> {
+    /// The same journal whose file is another one from now on.
+    #[cfg(test)]
+    pub(crate) fn on(mut self, path: &str) -> Self {
+        self.file = File::options().read(true).write(true).open(path).unwrap();
+        self
+    }
+
+    fn write(&mut self, record: &Written<'_>) -> Result<Place, JournalError> {
         let json = serde_json::to_string(record)?;
         let start = if self.is_torn { "\n" } else { "" };
         let line = format!("{start}{:016x} {json}\n", digest(&json));
         self.is_torn = true;
+        // Reading moved away from the end, and what was torn may have left some of itself.
+        let end = self.file.seek(SeekFrom::End(0)).map_err(failed("write", &self.path))?;
         self.file.write_all(line.as_bytes()).map_err(failed("write", &self.path))?;
         self.is_torn = false;
-        Ok(())
+        let start = start.len() as u64;
+        Ok(Place { start: end + start, length: line.len() as u64 - start })
     }
 }
 
-/// What the journal `file` holds, `path` for messages: what suite it is of, and the runs that have ended, as [`Journal::resume`]
-/// has it.
+/// What suite the journal `file` is of, `path` for messages. `each` is told what [`Journal::resume`] tells it.
 ///
 /// # Errors
 /// [`JournalError`]
-pub fn read(file: impl Read, path: &Path) -> Result<(Suite, Vec<Finished>), JournalError> {
-    let mut lines = Lines { source: BufReader::new(file), path };
-    let Some(Line::Whole(Record::Suite(suite))) = lines.next()? else {
+pub fn read(file: impl Read, path: &Path, mut each: impl FnMut(Finished, Place)) -> Result<Suite, JournalError> {
+    let mut lines = Lines { source: BufReader::new(file), path, read: 0 };
+    let Some((Some(Record::Suite(suite)), _)) = lines.next()? else {
         return Err(JournalError::NoSuite(path.to_owned()));
     };
     if suite.version > VERSION {
         return Err(JournalError::Newer { path: path.to_owned(), found: suite.version });
     }
-    let mut all = BTreeMap::new();
-    while let Some(line) = lines.next()? {
-        if let Line::Whole(Record::Finished(finished)) = line {
-            all.insert(finished.index, *finished);
+    while let Some((line, place)) = lines.next()? {
+        if let Some(Record::Finished(finished)) = line {
+            each(*finished, place);
         }
     }
-    Ok((suite, all.into_values().collect()))
-}
-
-enum Line {
-    Whole(Record),
-    Damaged,
+    Ok(suite)
 }
 
 struct Lines<'a, R> {
     source: BufReader<R>,
     path: &'a Path,
+    /// Bytes before the next line.
+    read: u64,
 }
 
 impl<R: Read> Lines<'_, R> {
-    /// The next line, if there is one.
-    fn next(&mut self) -> Result<Option<Line>, JournalError> {
+    /// The record in the next line, if that is whole, and where it is; `None` at the end.
+    fn next(&mut self) -> Result<Option<(Option<Record>, Place)>, JournalError> {
         let mut line = Vec::new();
         let mut limited = (&mut self.source).take(LONGEST);
         limited.read_until(b'\n', &mut line).map_err(failed("read", self.path))?;
-        Ok((!line.is_empty()).then(|| record(&line).map_or(Line::Damaged, Line::Whole)))
+        let place = Place { start: self.read, length: line.len() as u64 };
+        self.read += place.length;
+        Ok((!line.is_empty()).then(|| (record(&line), place)))
     }
 }
 
@@ -273,6 +312,13 @@ mod tests {
         runs.map(|(index, result)| Finished { index, seconds: 0.25, result }).collect()
     }
 
+    /// The journal at `path`, and every record in it.
+    fn resumed(path: &Path) -> Result<(Journal, Suite, Vec<Finished>), JournalError> {
+        let mut all = Vec::new();
+        let (journal, suite) = Journal::resume(path.to_owned(), |one, _| all.push(one))?;
+        Ok((journal, suite, all))
+    }
+
     /// A journal of three runs, and its bytes.
     fn written(path: &Path) -> Vec<u8> {
         let mut journal = Journal::create(path.to_owned(), &suite()).unwrap();
@@ -287,13 +333,38 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.journal");
         written(&path);
-        let (mut journal, read_suite, before) = Journal::resume(path.clone()).unwrap();
-        assert_eq!((read_suite, before), (suite(), finished()));
-        // The last record of a run is the one that counts.
+        let (mut journal, read_suite, before) = resumed(&path).unwrap();
+        assert_eq!((read_suite, &before), (suite(), &finished()));
         let again = Finished { index: 1, seconds: 3.0, result: samples::kept() };
-        journal.append(&again).unwrap();
-        let (_, _, after) = Journal::resume(path).unwrap();
-        assert_eq!(after, [finished().remove(0), again, finished().remove(2)]);
+        let place = journal.append(&again).unwrap();
+        assert_eq!(journal.at(place).unwrap(), again);
+        assert_eq!(resumed(&path).unwrap().2, [before, vec![again]].concat());
+    }
+
+    /// A record is read from where it is, and what is written afterwards stands at the end all the same.
+    #[test]
+    fn a_record_is_read_from_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        written(&path);
+        let mut places = Vec::new();
+        let (mut journal, _) = Journal::resume(path.clone(), |one, place| places.push((one, place))).unwrap();
+        for round in 0..2 {
+            for (one, place) in places.iter().rev() {
+                assert_eq!(&journal.at(*place).unwrap(), one, "{round}");
+            }
+            let next = Finished { index: 3 + round, ..finished().remove(0) };
+            places.push((next.clone(), journal.append(&next).unwrap()));
+        }
+        assert_eq!(resumed(&path).unwrap().2.len(), 5);
+        // A bit of it turns over on the disk.
+        let mut bytes = fs::read(&path).unwrap();
+        let end = bytes.len() - 20;
+        bytes[end] ^= 1;
+        fs::write(&path, bytes).unwrap();
+        let why = journal.at(places[4].1).unwrap_err().to_string();
+        assert!(why.contains("has changed since it was written"), "{why}");
+        journal.at(places[3].1).unwrap();
     }
 
     #[cfg(unix)]
@@ -321,13 +392,13 @@ mod tests {
         {
             let records = ends.iter().filter(|end| **end <= length).count();
             fs::write(&path, &whole[..length]).unwrap();
-            let Ok((mut journal, _, before)) = Journal::resume(path.clone()) else {
+            let Ok((mut journal, _, before)) = resumed(&path) else {
                 assert_eq!(records, 0, "{length}");
                 continue;
             };
             assert_eq!(before, finished()[..records - 1], "{length}");
             journal.append(&finished()[2]).unwrap();
-            assert_eq!(Journal::resume(path.clone()).unwrap().2.last(), finished().last(), "{length}");
+            assert_eq!(resumed(&path).unwrap().2.last(), finished().last(), "{length}");
         }
     }
 
@@ -339,11 +410,12 @@ mod tests {
         for at in (0..whole.len()).step_by(5) {
             let mut damaged = whole.clone();
             damaged[at] ^= 4;
-            let records = read(&damaged[..], Path::new("x"));
+            let mut records = Vec::new();
+            let suite = read(&damaged[..], Path::new("x"), |one, _| records.push(one));
             if at <= first {
-                assert!(matches!(records, Err(JournalError::NoSuite(_))), "{at}");
+                assert!(matches!(suite, Err(JournalError::NoSuite(_))), "{at}");
             } else {
-                let (_, records) = records.unwrap();
+                suite.unwrap();
                 assert!(!records.is_empty() && records.len() < 3, "{at}: {}", records.len());
                 assert!(records.iter().all(|record| finished().contains(record)), "{at}");
             }
@@ -355,7 +427,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.journal");
         Journal::create(path.clone(), &Suite { version: 2, ..suite() }).unwrap();
-        let refusal = Journal::resume(path).unwrap_err().to_string();
+        let refusal = resumed(&path).unwrap_err().to_string();
         assert!(refusal.ends_with("has version 2, newer than this build, which reads version 1"), "{refusal}");
     }
 }

@@ -5,6 +5,8 @@
 //! | what came of one run | [`RunResult`] |
 //! | `results.json`, what came of all of them | [`Results`] |
 //! | `results.journal`, which grows while they run | [`Journal`] |
+//! | the results of a suite that is under way: in the journal, as long as that can be written | [`Kept`] |
+//! | results one after the other, wherever they are kept | [`Runs`] |
 //! | the folder that holds both, for one suite at a time | [`Folder`] |
 //!
 //! Nothing here knows how a run is made. No clock and no host are part of a result, so that equal suites give equal bytes;
@@ -15,9 +17,11 @@ mod entry;
 mod error;
 mod folder;
 mod journal;
+mod kept;
 mod printable;
 mod results;
 mod run;
+mod runs;
 #[cfg(any(test, feature = "samples"))]
 pub mod samples;
 
@@ -25,7 +29,9 @@ pub use digest::{Digest, Digester};
 pub use entry::{ExpectedResult, MetricResult, MoveResult};
 pub use error::ResultsError;
 pub use folder::{COMPARISON, Folder, FolderError, Former, JOURNAL, RESULTS};
-pub use journal::{Finished, Journal, JournalError, Suite, read as read_journal};
+pub use journal::{Finished, Journal, JournalError, Place, Suite, read as read_journal};
+pub use kept::Kept;
 pub use printable::{printable, printable_json, printable_lines};
-pub use results::{Outcome, Results, Status, Unfinished, read_results};
+pub use results::{Outcome, Results, Status, Unfinished, files_of_results, read_results, write_results};
 pub use run::{LimitPlace, RunIdentity, RunResult};
+pub use runs::{RunHead, Runs};

@@ -1,11 +1,15 @@
 //! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
 use crate::digest::Digest;
 use crate::error::ResultsError;
+use crate::journal::JournalError;
 use crate::run::RunResult;
+use crate::runs::Runs;
 use serde::de::IgnoredAny;
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeSeq as _;
+use serde::{Deserialize, Serialize, Serializer};
 use servobench_files::with_short_quotes;
-use std::io::{self, BufReader};
+use std::cell::RefCell;
+use std::io::{self, BufReader, Write};
 use std::path::Path;
 
 /// Name of the schema, before its version.
@@ -13,9 +17,10 @@ const SCHEMA: &str = "servobench-results/";
 /// Version of the schema.
 const VERSION: u32 = 3;
 
-/// The results of several runs.
+/// The results of several runs. `R` is how those are held that ended, `U` those that did not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Results {
+#[serde(bound(deserialize = "R: Deserialize<'de>, U: Deserialize<'de>"))]
+pub struct Results<R = Vec<RunResult>, U = Unfinished> {
     /// Name and version of the schema.
     pub schema: String,
     /// Program and version that wrote them.
@@ -28,10 +33,10 @@ pub struct Results {
     #[serde(default)]
     pub suite: Digest,
     /// The runs that ended, in the order in which they were asked for.
-    pub scenarios: Vec<RunResult>,
+    pub scenarios: R,
     /// The runs that did not end, in that order; left out where all did.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub unfinished: Vec<Unfinished>,
+    pub unfinished: Vec<U>,
 }
 
 /// Whether every run came to its end.
@@ -46,7 +51,7 @@ pub enum Status {
 }
 
 /// A run that was asked for and has no result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Unfinished {
     /// Name of the scenario.
     pub name: String,
@@ -121,19 +126,61 @@ pub fn read_results(path: &Path) -> io::Result<String> {
     servobench_files::read_text(path, MOST_BYTES)
 }
 
+impl<R, U> Results<R, U> {
+    /// The results of a suite, of which some runs may not have ended.
+    #[must_use]
+    pub fn of_suite(suite: Digest, scenarios: R, unfinished: Vec<U>) -> Self {
+        let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
+        let status = if unfinished.is_empty() { Status::Complete } else { Status::Incomplete };
+        Self { schema: format!("{SCHEMA}{VERSION}"), generator, status, suite, scenarios, unfinished }
+    }
+}
+
+/// The results of runs that are read while they are written.
+struct OneByOne<'a> {
+    runs: &'a dyn Runs,
+    /// Why a run could not be read.
+    refusal: RefCell<Option<JournalError>>,
+}
+
+impl Serialize for &OneByOne<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut all = serializer.serialize_seq(None)?;
+        for run in self.runs.each() {
+            match run {
+                Ok(run) => all.serialize_element(&*run)?,
+                Err(error) => {
+                    let words = error.to_string();
+                    self.refusal.replace(Some(error));
+                    return Err(serde::ser::Error::custom(words));
+                }
+            }
+        }
+        all.end()
+    }
+}
+
+/// Writes what came of `runs`, those of `suite`, as [`Results::to_json`] does it.
+///
+/// # Errors
+/// [`ResultsError::Journal`] when a run cannot be read, [`ResultsError::Write`].
+pub fn write_results(suite: &Digest, runs: &dyn Runs, out: &mut dyn Write) -> Result<(), ResultsError> {
+    let each = OneByOne { runs, refusal: RefCell::new(None) };
+    let written =
+        serde_json::to_writer_pretty(&mut *out, &Results::of_suite(*suite, &each, runs.unfinished().collect()));
+    match (written, each.refusal.into_inner()) {
+        (_, Some(refusal)) => Err(refusal.into()),
+        (Err(error), None) if error.is_io() => Err(ResultsError::Write(error.into())),
+        (Err(error), None) => Err(error.into()),
+        (Ok(()), None) => out.write_all(b"\n").map_err(ResultsError::Write),
+    }
+}
+
 impl Results {
     /// The results of these runs, all of which have ended.
     #[must_use]
     pub fn new(scenarios: Vec<RunResult>) -> Self {
         Self::of_suite(Digest::default(), scenarios, Vec::new())
-    }
-
-    /// The results of a suite, of which some runs may not have ended.
-    #[must_use]
-    pub fn of_suite(suite: Digest, scenarios: Vec<RunResult>, unfinished: Vec<Unfinished>) -> Self {
-        let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
-        let status = if unfinished.is_empty() { Status::Complete } else { Status::Incomplete };
-        Self { schema: format!("{SCHEMA}{VERSION}"), generator, status, suite, scenarios, unfinished }
     }
 
     /// As JSON, numbers in the shortest form that reads back to the same bits.
@@ -150,42 +197,63 @@ impl Results {
     /// # Errors
     /// [`ResultsError::Json`], [`ResultsError::Newer`], [`ResultsError::Schema`].
     pub fn from_json(text: &str) -> Result<Self, ResultsError> {
-        #[derive(Deserialize)]
-        struct Head {
-            schema: String,
-            status: Option<Status>,
-        }
-        let Head { schema, status } = serde_json::from_str(text)?;
-        let version = schema.strip_prefix(SCHEMA).and_then(|version| version.parse::<u32>().ok());
-        match version {
-            // What does not say that it is complete is not.
-            Some(VERSION) if status.is_none() => {
-                return Err(ResultsError::Json(serde::de::Error::missing_field("status")));
-            }
-            Some(1..=VERSION) => {}
-            Some(version) if version > VERSION => return Err(ResultsError::Newer { found: schema, known: VERSION }),
-            _ => return Err(ResultsError::Schema { found: schema }),
-        }
+        let version = serde_json::from_str::<Head>(text)?.version()?;
         let mut results: Self = serde_json::from_str(text)?;
         results.schema = format!("{SCHEMA}{VERSION}");
-        if version == Some(1) {
+        if version == 1 {
             for run in &mut results.scenarios {
                 run.files = run.recording.iter().cloned().collect();
             }
         }
         Ok(results)
     }
+}
 
-    /// Every file that the runs left beside the results, by name.
-    pub fn files(&self) -> impl Iterator<Item = &str> {
-        self.scenarios.iter().flat_map(|run| run.files.iter().map(String::as_str))
-    }
+/// What a file of results says of itself.
+#[derive(Deserialize)]
+struct Head {
+    schema: String,
+    status: Option<Status>,
+}
 
-    /// Number of runs with this outcome.
-    #[must_use]
-    pub fn count_of(&self, outcome: Outcome) -> usize {
-        self.scenarios.iter().filter(|run| run.verdict == outcome).count()
+impl Head {
+    /// Its version, if this build reads that.
+    fn version(self) -> Result<u32, ResultsError> {
+        let Self { schema, status } = self;
+        match schema.strip_prefix(SCHEMA).and_then(|version| version.parse().ok()) {
+            // What does not say that it is complete is not.
+            Some(VERSION) if status.is_none() => Err(ResultsError::Json(serde::de::Error::missing_field("status"))),
+            Some(version @ 1..=VERSION) => Ok(version),
+            Some(version) if version > VERSION => Err(ResultsError::Newer { found: schema, known: VERSION }),
+            _ => Err(ResultsError::Schema { found: schema }),
+        }
     }
+}
+
+/// Every file that the runs left whose results the file at `path` holds, by name. What else they are is not kept in memory.
+///
+/// # Errors
+/// As [`Results::from_json`]; [`ResultsError::Read`].
+pub fn files_of_results(path: &Path) -> Result<Vec<String>, ResultsError> {
+    #[derive(Deserialize)]
+    struct Left {
+        recording: Option<String>,
+        /// Version 1 had none.
+        files: Option<Vec<String>>,
+    }
+    #[derive(Deserialize)]
+    struct All {
+        schema: String,
+        status: Option<Status>,
+        scenarios: Vec<Left>,
+    }
+    let file = servobench_files::open(path, MOST_BYTES).map_err(ResultsError::Read)?;
+    let All { schema, status, scenarios } = serde_json::from_reader(BufReader::new(file))?;
+    Head { schema, status }.version()?;
+    let files = scenarios
+        .into_iter()
+        .flat_map(|Left { recording, files }| files.unwrap_or_else(|| recording.into_iter().collect()));
+    Ok(files.collect())
 }
 
 #[cfg(test)]
@@ -304,6 +372,20 @@ mod tests {
         assert!(validator().is_valid(&right));
     }
 
+    /// Whoever writes results one by one writes the same bytes.
+    #[test]
+    fn written_one_by_one_they_are_the_same() {
+        let mut results = samples::results();
+        results.unfinished = vec![Unfinished { name: "last".into(), file: None, engine: "exact".into() }];
+        results.status = Status::Incomplete;
+        results.suite = Digest::of(b"suite");
+        let mut written = Vec::new();
+        write_results(&results.suite, &results, &mut written).unwrap();
+        assert_eq!(String::from_utf8(written).unwrap(), results.to_json().unwrap());
+        let nowhere = write_results(&results.suite, &results, &mut &mut [0; 100][..]);
+        assert!(matches!(nowhere, Err(ResultsError::Write(_))), "{nowhere:?}");
+    }
+
     #[test]
     fn a_judged_run_holds_every_limit() {
         let run = judged();
@@ -403,7 +485,7 @@ mod tests {
         }
         let read = Results::from_json(&old.to_string()).unwrap();
         assert_eq!(read.scenarios[0].files, ["lambrechts-jerk.exact.parquet"]);
-        assert_eq!(read.count_of(Outcome::Invalid), 1);
+        assert_eq!((&read as &dyn Runs).count_of(Outcome::Invalid), 1);
         assert_eq!(read.schema, "servobench-results/3");
     }
 

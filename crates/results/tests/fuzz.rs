@@ -1,7 +1,8 @@
 //! Fuzz targets: whatever is in a `results.json` or a journal, it is refused, or it is written again as it was read.
 //! `docs/testing.md` says how to run more of them.
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_results::{Journal, Results, read_journal};
+use servobench_results::{Journal, Kept, Results, Runs as _, Unfinished, files_of_results, read_journal};
+use std::fs;
 use std::path::Path;
 use twox_hash::XxHash64;
 
@@ -54,8 +55,14 @@ const WORDS: &[&str] = &[
 
 #[test]
 fn results_files() {
-    fuzz(check!(), 2_000, Splice::text(&FILES, WORDS), |text| match Results::from_json(text) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("results.json");
+    fuzz(check!(), 2_000, Splice::text(&FILES, WORDS), |text: &String| match Results::from_json(text) {
         Ok(results) => {
+            // Who asks for the files alone is told the same ones.
+            fs::write(&path, text).unwrap();
+            let files: Vec<String> = results.scenarios.iter().flat_map(|run| run.files.clone()).collect();
+            assert_eq!(files_of_results(&path).unwrap(), files);
             let written = results.to_json().unwrap();
             let again = Results::from_json(&written).unwrap();
             assert_eq!(again, results);
@@ -67,7 +74,7 @@ fn results_files() {
 
 /// Records of a journal without their digests.
 const RECORDS: [&str; 1] = [
-    r#"{"suite":{"version":1,"suite":"ab","command":["run","a.toml"],"folder":"here","stems":["a.exact"]}}
+    r#"{"suite":{"version":1,"suite":"ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad","command":["run","a.toml"],"folder":"here","stems":["a.exact"]}}
 {"finished":{"index":0,"seconds":0.25,"result":{"name":"a","file":"a.toml","engine":"exact","verdict":"passed","duration":1.8,"reasons":[],"metrics":{"settling_time":{"value":0.06,"unit":"s","limit":0.07,"pass":true}},"absent":{},"moves":[],"events":[],"recording":"a.exact.parquet"}}}
 {"finished":{"index":1,"seconds":0.5,"result":{"name":"b","file":null,"engine":"mujoco","verdict":"error","duration":0.0,"reasons":["diverged"],"metrics":{},"absent":{},"moves":[],"events":[],"recording":null}}}"#,
 ];
@@ -82,17 +89,30 @@ fn with_digests(text: &str) -> String {
 fn journals() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("results.journal");
-    assert_eq!(read_journal(with_digests(RECORDS[0]).as_bytes(), &path).unwrap().1.len(), 2);
+    let all_in = |text: &str| {
+        let mut all = Vec::new();
+        read_journal(text.as_bytes(), Path::new("x"), |one, _| all.push(one)).map(|suite| (suite, all))
+    };
+    assert_eq!(all_in(&with_digests(RECORDS[0])).unwrap().1.len(), 2);
     fuzz(check!(), 500, Splice::text(&RECORDS, WORDS), |text: &String| {
         // Without digests no line is whole.
-        assert!(read_journal(text.as_bytes(), Path::new("x")).is_err());
-        match read_journal(with_digests(text).as_bytes(), Path::new("x")) {
+        assert!(all_in(text).is_err());
+        match all_in(&with_digests(text)) {
             Ok((suite, finished)) => {
-                assert!(finished.windows(2).all(|pair| pair[0].index < pair[1].index));
                 let mut journal = Journal::create(path.clone(), &suite).unwrap();
-                finished.iter().try_for_each(|one| journal.append(one)).unwrap();
-                let (_, again, runs) = Journal::resume(path.clone()).unwrap();
-                assert_eq!((again, runs), (suite, finished));
+                let places: Vec<_> = finished.iter().map(|one| journal.append(one).unwrap()).collect();
+                for (one, place) in finished.iter().zip(places) {
+                    assert_eq!(&journal.at(place).unwrap(), one);
+                }
+                assert_eq!(all_in(&fs::read_to_string(&path).unwrap()).unwrap(), (suite.clone(), finished.clone()));
+                // The last record of a run is the one that counts.
+                let (mut kept, again) = Kept::resume(path.clone(), |_| true).unwrap();
+                assert_eq!(again, suite);
+                kept.plan(vec![Unfinished { name: String::new(), file: None, engine: String::new() }; 2]);
+                for head in kept.heads() {
+                    let last = finished.iter().rfind(|one| one.index == head.index).unwrap();
+                    assert_eq!(*kept.result(head.index).unwrap(), last.result);
+                }
             }
             Err(error) => assert!(!error.to_string().is_empty()),
         }

@@ -23,6 +23,13 @@ pub struct Job {
 const TAIL: f64 = 0.5;
 
 impl Job {
+    /// The scenario of `source` on `engine`, called `id`.
+    #[must_use]
+    pub fn new(id: String, source: Source, engine: EngineName) -> Self {
+        let Source { scenario, text } = source;
+        Self { id, scenario, text, engine, durations: Vec::new() }
+    }
+
     /// Slows the moves to `durations` (s), one for each move.
     pub fn slow_to(&mut self, durations: Vec<f64>) {
         slow_to(&mut self.scenario, &durations);
@@ -101,19 +108,31 @@ pub struct Source {
 /// Jobs for every scenario on every engine that it names, or on `engines` when that is not empty.
 #[must_use]
 pub fn jobs(sources: Vec<Source>, engines: &[EngineName]) -> Vec<Job> {
-    let mut taken: HashMap<String, u32> = HashMap::new();
+    let mut ids = JobIds::default();
     let mut jobs = Vec::new();
-    for Source { scenario, text } in sources {
-        let wanted = if engines.is_empty() { scenario.engines.clone() } else { engines.to_vec() };
+    for source in sources {
+        let wanted = if engines.is_empty() { source.scenario.engines.clone() } else { engines.to_vec() };
         for engine in wanted {
-            let id = format!("{}.{engine}", file_name(&scenario.name));
-            let count = taken.entry(id.clone()).or_default();
-            *count += 1;
-            let id = if *count == 1 { id } else { format!("{id}.{count}") };
-            jobs.push(Job { id, scenario: scenario.clone(), text: text.clone(), engine, durations: Vec::new() });
+            jobs.push(Job::new(ids.next(&source.scenario.name, engine), source.clone(), engine));
         }
     }
     jobs
+}
+
+/// Hands out names of runs, as [`Job::id`] has them: no two are the same.
+#[derive(Debug, Default)]
+pub struct JobIds {
+    taken: HashMap<String, u32>,
+}
+
+impl JobIds {
+    /// The name of the next run of this scenario on this engine.
+    pub fn next(&mut self, scenario: &str, engine: EngineName) -> String {
+        let id = format!("{}.{engine}", file_name(scenario));
+        let count = self.taken.entry(id.clone()).or_default();
+        *count += 1;
+        if *count == 1 { id } else { format!("{id}.{count}") }
+    }
 }
 
 /// Bytes of a name of a file that comes from a scenario, at most. File systems take 255; engine, number and kind follow it, and while

@@ -18,7 +18,7 @@ pub use compare::{CompareError, comparable, limits_agree, only_setpoints_differ,
 pub use engines::{EngineMissing, Engines};
 pub use error::RunError;
 pub use execute::{Broken, Run, execute};
-pub use job::{Job, Source, file_name, jobs};
+pub use job::{Job, JobIds, Source, file_name, jobs};
 pub use limits::channel_limits;
 pub use panicked::Panicked;
 pub use pool::{AtATime, map_in_parallel};

@@ -20,13 +20,13 @@ struct Desk<R> {
     done: Vec<(usize, Result<R, Panicked>)>,
 }
 
-/// Does `work` for every item, as many at once as `limit` allows when each needs the memory that `memory_of` says
-/// (bytes). Which thread does what, and when, has no influence on the results. A panic is the result of its item only.
-pub fn map_in_parallel<T, R>(
+/// Makes every item ready, which says what memory it needs (bytes), and does `work` with it, as many at once as `limit` allows. Which
+/// thread does what, and when, has no influence on the results. A panic is the result of its item only.
+pub fn map_in_parallel<T, P, R>(
     items: &[T],
     limit: AtATime,
-    memory_of: impl Fn(&T) -> u64 + Sync,
-    work: impl Fn(&T) -> R + Sync,
+    prepare: impl Fn(&T) -> (P, u64) + Sync,
+    work: impl Fn(&T, P) -> R + Sync,
 ) -> Vec<Result<R, Panicked>>
 where
     T: Sync,
@@ -36,8 +36,15 @@ where
     let returned = Condvar::new();
     thread::scope(|scope| {
         let working = || {
-            while let Some((index, item, memory)) = taken(items, &desk, &returned, limit.memory, &memory_of) {
-                let result = caught(|| work(item));
+            while let Some((index, item)) = next(items, &desk) {
+                let prepared = caught(|| prepare(item));
+                let (result, memory) = match prepared {
+                    Ok((prepared, memory)) => {
+                        let memory = granted(memory, &desk, &returned, limit.memory);
+                        (caught(|| work(item, prepared)), memory)
+                    }
+                    Err(panic) => (Err(panic), 0),
+                };
                 let mut desk = locked(&desk);
                 desk.done.push((index, result));
                 desk.memory -= memory;
@@ -55,27 +62,22 @@ where
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// The next item and its memory (bytes), as soon as that is free.
-fn taken<'a, T, R>(
-    items: &'a [T],
-    desk: &Mutex<Desk<R>>,
-    returned: &Condvar,
-    limit: u64,
-    memory_of: &impl Fn(&T) -> u64,
-) -> Option<(usize, &'a T, u64)> {
-    let index = {
-        let mut desk = locked(desk);
-        desk.next += 1;
-        desk.next - 1
-    };
-    let item = items.get(index)?;
-    // What needs more than there is for all has to do with that, alone.
-    let memory = caught(|| memory_of(item)).unwrap_or(limit).min(limit);
+/// The next item and its place.
+fn next<'a, T, R>(items: &'a [T], desk: &Mutex<Desk<R>>) -> Option<(usize, &'a T)> {
+    let mut desk = locked(desk);
+    let index = desk.next;
+    desk.next += 1;
+    Some((index, items.get(index)?))
+}
+
+/// Waits until `memory` is free (bytes), and takes as much of it as there is for all: what needs more than that has to do with it, alone.
+fn granted<R>(memory: u64, desk: &Mutex<Desk<R>>, returned: &Condvar, limit: u64) -> u64 {
+    let memory = memory.min(limit);
     let mut desk = returned
         .wait_while(locked(desk), |desk| desk.memory.saturating_add(memory) > limit)
         .unwrap_or_else(PoisonError::into_inner);
     desk.memory += memory;
-    Some((index, item, memory))
+    memory
 }
 
 /// The lock is never held while foreign code runs: nothing can be left half done.
@@ -98,9 +100,13 @@ mod tests {
         let items: Vec<u32> = (0..100).collect();
         let squares: Vec<_> = items.iter().map(|item| Ok(item * item)).collect();
         for workers in [0, 1, 2, 7, 200] {
-            assert_eq!(map_in_parallel(&items, at_a_time(workers), |_| 1, |item| item * item), squares, "{workers}");
+            assert_eq!(
+                map_in_parallel(&items, at_a_time(workers), |_| ((), 1), |item, ()| item * item),
+                squares,
+                "{workers}"
+            );
         }
-        assert!(map_in_parallel(&[] as &[u32], at_a_time(3), |_| 1, |item| *item).is_empty());
+        assert!(map_in_parallel(&[] as &[u32], at_a_time(3), |_| ((), 1), |item, ()| *item).is_empty());
     }
 
     #[test]
@@ -109,8 +115,8 @@ mod tests {
         let halves = map_in_parallel(
             &items,
             at_a_time(3),
-            |_| 1,
-            |item| {
+            |item| (*item, 1),
+            |_, item| {
                 assert!(item % 5 != 0, "no half of {item}");
                 item / 2
             },
@@ -122,6 +128,13 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_cannot_be_made_ready_is_not_worked_on() {
+        let ready = |item: &u32| if *item == 1 { panic!("not ready") } else { (*item, 100) };
+        let done = map_in_parallel(&[0, 1, 2], at_a_time(2), ready, |_, item| item);
+        assert_eq!(done, [Ok(0), Err(Panicked { words: "not ready".into() }), Ok(2)]);
+    }
+
     /// Items of 30, 60 and 250 bytes of 100: never more than 100 are granted at a time, and all get their turn.
     #[test]
     fn the_jobs_under_way_share_the_memory() {
@@ -130,8 +143,8 @@ mod tests {
         let done = map_in_parallel(
             &items,
             at_a_time(8),
-            |item| *item,
-            |item| {
+            |item| ((), *item),
+            |item, ()| {
                 let granted = (*item).min(100);
                 let now = in_use.fetch_add(granted, Ordering::SeqCst) + granted;
                 most.fetch_max(now, Ordering::SeqCst);
@@ -147,7 +160,7 @@ mod tests {
     #[test]
     fn what_fits_runs_at_once() {
         let both = Barrier::new(2);
-        let done = map_in_parallel(&[50, 50], at_a_time(2), |item| *item, |_| both.wait().is_leader());
+        let done = map_in_parallel(&[50, 50], at_a_time(2), |item| ((), *item), |_, ()| both.wait().is_leader());
         assert_eq!(done.iter().filter(|leads| **leads == Ok(true)).count(), 1);
     }
 }

@@ -27,7 +27,7 @@ pub use recorder::{Mark, Recorder, SignalId};
 pub use recording::{About, BoundLimit, Call, CallFate, Event, LimitReversals, Move, Recording, Signal};
 pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;
-pub use whole_file::{stream_whole, unfinished_by, write_durably, write_whole};
+pub use whole_file::{stream_durably, stream_whole, unfinished_by, write_whole};
 
 /// Column of a recording file that holds the instants (s).
 const TIME: &str = "time";

@@ -15,22 +15,6 @@ pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Resul
     stream_whole(path, |file| file.write_all(bytes.as_ref()))
 }
 
-/// The same, and makes sure that the bytes are on the disk before they take the place of what was there, and that their name is
-/// before it returns: the end of the machine leaves the one or the other.
-///
-/// # Errors
-/// As [`write_whole`].
-pub fn write_durably(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
-    let path = path.as_ref();
-    let mut unfinished = Unfinished::create(path)?;
-    unfinished.file.write_all(bytes.as_ref())?;
-    unfinished.file.sync_all()?;
-    unfinished.finish()?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    // A folder that cannot be opened or made sure of holds the file all the same.
-    File::open(folder).and_then(|folder| folder.sync_all()).or(Ok(()))
-}
-
 /// Writes what `write` gives out, whole or not at all, as [`write_whole`] does it: for files larger than memory.
 ///
 /// # Errors
@@ -39,12 +23,38 @@ pub fn stream_whole<E: From<io::Error>>(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
 ) -> Result<(), E> {
-    let unfinished = Unfinished::create(path.as_ref())?;
+    Ok(streamed(path.as_ref(), write)?.finish()?)
+}
+
+/// The same, and makes sure that the bytes are on the disk before they take the place of what was there, and that their name is
+/// before it returns: the end of the machine leaves the one or the other.
+///
+/// # Errors
+/// As [`stream_whole`].
+pub fn stream_durably<E: From<io::Error>>(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+) -> Result<(), E> {
+    let path = path.as_ref();
+    let unfinished = streamed(path, write)?;
+    unfinished.file.sync_all()?;
+    unfinished.finish()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    // A folder that cannot be opened or made sure of holds the file all the same.
+    File::open(folder).and_then(|folder| folder.sync_all()).ok();
+    Ok(())
+}
+
+fn streamed<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+) -> Result<Unfinished, E> {
+    let unfinished = Unfinished::create(path)?;
     let mut buffered = BufWriter::new(&unfinished.file);
     write(&mut buffered)?;
     buffered.flush()?;
     drop(buffered);
-    Ok(unfinished.finish()?)
+    Ok(unfinished)
 }
 
 /// A file that gets its name when it is finished. Dropped before that, it is gone.
@@ -191,9 +201,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (link, victim) = (folder.path().join("results.json"), folder.path().join("victim"));
         fs::write(&victim, "victim").unwrap();
-        for write in
-            [|path: &Path| write_whole(path, "new").unwrap(), |path: &Path| write_durably(path, "new").unwrap()]
-        {
+        for write in [
+            |path: &Path| write_whole(path, "new").unwrap(),
+            |path: &Path| stream_durably(path, |file| file.write_all(b"new")).unwrap(),
+        ] {
             std::os::unix::fs::symlink(&victim, &link).unwrap();
             write(&link);
             assert!(!link.is_symlink());

@@ -4,7 +4,7 @@ use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, drill, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 10] = [
+const COMMANDS: [(&str, &str); 11] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
@@ -14,6 +14,7 @@ const COMMANDS: [(&str, &str); 10] = [
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
+    ("drill many", "run suites of up to 20 000 runs (SERVOBENCH_SWEEP: how many), and say what each costs"),
     ("dist", "pack binary, library, models and scenarios into one archive"),
 ];
 
@@ -43,6 +44,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
             Ok(())
         }
         ["drill", "inputs"] => drill::inputs(&Workspace::find()?),
+        ["drill", "many"] => drill::many(&Workspace::find()?),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
     }

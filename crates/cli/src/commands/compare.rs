@@ -1,6 +1,6 @@
 //! `servobench compare`: runs side by side, what differs in them and in what they give.
 use crate::args::{CompareArgs, Equal};
-use crate::console::{print, program, say, style};
+use crate::console::{print, program, style};
 use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::exit::{Exit, of_outcome};
@@ -41,12 +41,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let labels = labels(&names.iter().map(String::as_str).collect::<Vec<_>>());
     let (out, name) = outputs(args, &labels)?;
     let folder = Folder::open(out.path())?;
+    let former = folder.former(COMPARISON)?;
     interrupt::watch(&args.out)?;
     let runs = carried_out(args, &jobs)?;
 
-    if let Some(why) = folder.remove_former(COMPARISON).stays {
-        say(&format!("what the comparison before left stays: {why}\n"));
-    }
+    folder.remove(&former);
     let recording = write_recording(&out, name, &jobs, &labels, &runs)?;
     let written = Written { recording: Some(recording.clone()), files: vec![recording.clone()], ..Written::default() };
     let results: Vec<RunResult> = jobs
@@ -77,7 +76,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
 /// The folder, and the name of the recording in it.
 fn outputs(args: &CompareArgs, labels: &[String]) -> Result<(OutputFolder, String), CliError> {
     let name = format!("{}.rrd", file_name(&labels.join("-against-")));
-    let out = Outputs::default().folder("--out", &args.out, [name.clone(), COMPARISON.to_owned()])?;
+    let out = Outputs::default().folder("--out", &args.out, |one| one == name || one == COMPARISON)?;
     Ok((out, name))
 }
 
@@ -96,7 +95,8 @@ fn carried_out(args: &CompareArgs, jobs: &[Job]) -> Result<Vec<Run>, CliError> {
     let limits = workers::limits(args.time_limit, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&args.out, args.worker_timeout, limits)?);
     let progress = Progress::new(jobs.len(), false);
-    let ended = map_in_parallel(jobs, workers::at_a_time(None, limits), Job::memory, |job| {
+    let ready = |job: &Job| ((), job.memory());
+    let ended = map_in_parallel(jobs, workers::at_a_time(None, limits), ready, |job, ()| {
         let ended = execute(job, &engines, &workers, &mut progress.of_run(&job.id, workers.slow(job)))
             .map_err(|broken| broken.error);
         progress.ended(&job.id, if ended.is_ok() { "done" } else { Outcome::Error.word() });

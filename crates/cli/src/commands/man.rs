@@ -17,7 +17,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<Exit, CliError> {
     };
     let (mut names, mut pages) = (Vec::new(), Vec::new());
     render(&program, &mut names, &mut pages)?;
-    let output = Outputs::default().folder("--out", folder, names.clone())?;
+    let output = Outputs::default().folder("--out", folder, |name| names.iter().any(|page| page == name))?;
     make_folder(folder)?;
     for (name, page) in names.iter().zip(pages) {
         output.file(name)?.write(page)?;

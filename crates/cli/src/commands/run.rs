@@ -4,7 +4,7 @@ mod resume;
 mod wanted;
 
 use crate::args::{self, Keep, RunArgs};
-use crate::console::{print, program, say, style};
+use crate::console::{print, print_parts, program, say, style};
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::{Exit, of_outcome, of_run_error};
@@ -14,15 +14,18 @@ use crate::outputs::{Output, OutputFolder, Outputs};
 use crate::progress::Progress;
 use crate::sources;
 use crate::workers;
-use ledger::{Closed, Ledger};
+use ledger::{Closed, Ledger, write_junit};
 use resume::{Begun, Found};
-use servobench_report::{brief, junit, verdict_table};
-use servobench_results::{Folder, Former, JOURNAL, Outcome, RESULTS, Results, RunIdentity, RunResult, Suite};
+use servobench_report::{brief, verdict_table};
+use servobench_results::{
+    Finished, Folder, JOURNAL, Kept, Outcome, RESULTS, RunIdentity, RunResult, Runs, Suite, Unfinished,
+};
 use servobench_suite::{Broken, Engines, Job, Run, Workers, execute, map_in_parallel};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-use wanted::Wanted;
+use std::time::Instant;
+use wanted::{PlannedRun, Wanted};
 
 /// Where results go unless somebody says so; those of the demo go below it, so that they take nobody else's place.
 const OUT: &str = "servobench-out";
@@ -40,15 +43,15 @@ struct Files {
 impl Files {
     fn named(args: &RunArgs, out: &Path, wanted: &Wanted) -> Result<Self, CliError> {
         let mut outputs = Outputs::default();
-        let names = wanted.jobs.iter().flat_map(output::names_of).chain([RESULTS, JOURNAL].map(str::to_owned));
-        let out = outputs.folder("--out", out, names)?;
+        let ids: HashSet<&str> = wanted.runs().map(|(_, run)| run.id()).collect();
+        let is_ours = move |name: &str| {
+            [RESULTS, JOURNAL].contains(&name) || output::run_of(name).is_some_and(|id| ids.contains(id))
+        };
+        let out = outputs.folder("--out", out, is_ours)?;
         let junit = args.junit.as_deref().map(|path| outputs.anywhere(JUNIT, path)).transpose()?;
         Ok(Self { out, junit })
     }
 }
-
-/// What a run came to, and how long that took by the clock.
-type Timed = (RunResult, Duration);
 
 /// Runs the scenarios, judges them and writes what came of them; or what is left of a suite that was ended before its time.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
@@ -57,7 +60,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         Some(folder) => match resume::suite_in(folder, args)? {
             Found::Begun(suite) => resumed(*suite),
             Found::Complete(results) => {
-                print(&text_of(&results, args, folder, &Former::default()))?;
+                say_what_came(&results, args, folder, 0)?;
                 Ok(exit_of(&results))
             }
         },
@@ -70,8 +73,8 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     if args.rrd && args.keep == Keep::None {
         return Err(CliError::NothingForTheViewer);
     }
-    let wanted = Wanted::of(args, &engines)?;
-    if wanted.jobs.is_empty() {
+    let mut wanted = Wanted::of(args, &engines)?;
+    if wanted.runs().next().is_none() {
         return nothing_to_run(args, wanted);
     }
     let out = args.out.clone().unwrap_or_else(|| {
@@ -86,27 +89,28 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
         }
     }
     let folder = Folder::open(&out)?;
-    let former = folder.remove_former(RESULTS);
+    let removed = folder.remove(&folder.former(RESULTS)?);
     let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
     let suite = Suite::new(wanted.digest(args), args::command_line(), here, sources::stdin(), wanted.stems());
-    let ledger = Ledger::begin(folder, files, wanted.planned(), &suite)?;
-    carried_out(args, &wanted, &engines, ledger, &former)
+    let ledger = Ledger::begin(folder, files, wanted.take_planned(), &suite)?;
+    carried_out(args, &wanted, &engines, ledger, removed)
 }
 
 /// The rest of a suite: the same runs, of which those that ended are not run again.
 fn resumed(begun: Begun) -> Result<Exit, CliError> {
-    let Begun { folder, journal, suite, finished, args } = begun;
+    let Begun { folder, suite, mut kept, args } = begun;
     let engines = engines::installed();
-    let wanted = Wanted::of(&args, &engines)?;
+    let mut wanted = Wanted::of(&args, &engines)?;
     if wanted.digest(&args) != suite.suite {
         return Err(CliError::OtherSuite(folder.path().to_owned()));
     }
     let files = Files::named(&args, folder.path(), &wanted)?;
     if !args.quiet {
-        say(&format!("{} of {} runs had ended; running the others\n", finished.len(), wanted.planned().len()));
+        say(&format!("{} of {} runs had ended; running the others\n", kept.ended(), wanted.len()));
     }
-    let ledger = Ledger::resume(folder, files, wanted.planned(), (journal, &suite), finished);
-    carried_out(&args, &wanted, &engines, ledger, &Former::default())
+    kept.plan(wanted.take_planned());
+    let ledger = Ledger::resume(folder, files, kept, &suite);
+    carried_out(&args, &wanted, &engines, ledger, 0)
 }
 
 /// Runs what has not ended yet, and says what came of all.
@@ -115,30 +119,32 @@ fn carried_out(
     wanted: &Wanted,
     engines: &Engines,
     ledger: Ledger,
-    former: &Former,
+    removed: usize,
 ) -> Result<Exit, CliError> {
     let ledger = Arc::new(ledger);
     let for_signals = Arc::clone(&ledger);
     interrupt::watch_suite(ledger.folder().path(), move || {
-        if let Some(Closed { results, troubles }) = for_signals.close() {
-            say(&brief(&results));
+        if let Some(Closed { kept, troubles }) = for_signals.close() {
+            // What cannot be read is among the troubles.
+            brief(&kept).map_while(Result::ok).for_each(|part| say(&part));
             say_all(&troubles);
         }
     })?;
     wanted.note_unusable(&ledger);
     run_all(args, wanted, engines, &ledger)?;
     interrupt::end_if_ending();
-    let Some(Closed { results, troubles }) = ledger.close() else { return Ok(Exit::Interrupted) };
-    let exit = troubles.iter().fold(exit_of(&results), |worst, trouble| worst.worse(trouble.exit()));
+    let Some(Closed { kept, troubles }) = ledger.close() else { return Ok(Exit::Interrupted) };
+    let exit = troubles.iter().fold(exit_of(&kept), |worst, trouble| worst.worse(trouble.exit()));
     // What could not be written does not keep the verdicts from being said.
-    print(&text_of(&results, args, ledger.folder().path(), former))?;
+    let said = say_what_came(&kept, args, ledger.folder().path(), removed);
     say_all(&troubles);
+    said?;
     Ok(if interrupt::is_stopping() { Exit::Interrupted } else { exit })
 }
 
 /// What a suite ends with.
-fn exit_of(results: &Results) -> Exit {
-    results.scenarios.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)))
+fn exit_of(runs: &dyn Runs) -> Exit {
+    runs.heads().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)))
 }
 
 fn say_all(troubles: &[CliError]) {
@@ -148,49 +154,57 @@ fn say_all(troubles: &[CliError]) {
 }
 
 /// Every file is wrong: the mistakes are what is said, and nothing of earlier runs is touched.
-fn nothing_to_run(args: &RunArgs, wanted: Wanted) -> Result<Exit, CliError> {
-    let runs = wanted.invalid();
-    let times = vec![Duration::ZERO; runs.len()];
-    let results = Results::new(runs);
+fn nothing_to_run(args: &RunArgs, mut wanted: Wanted) -> Result<Exit, CliError> {
+    let mut kept = Kept::new(None, wanted.take_planned());
+    wanted.invalid().try_for_each(|one| kept.note(one))?;
     if let Some(path) = &args.junit {
         let output = Outputs::default().anywhere(JUNIT, path)?;
-        let text = junit(&results, &times).map_err(CliError::from);
-        if let Err(error) = text.and_then(|text| output.write(text)) {
+        if let Err(error) = write_junit(&kept, &output) {
             say(&format!("servobench: {error}\n"));
         }
     }
     if !args.quiet {
         return Err(CliError::Scenarios(wanted.into_unusable()));
     }
-    print(&brief(&results))?;
+    print_parts(brief(&kept))?;
     Ok(Exit::Input)
 }
 
-/// Runs all jobs that have not ended. Once the suite is to stop, none begins.
+/// Runs all that have not ended. Once the suite is to stop, none begins.
 fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) -> Result<(), CliError> {
     let folder = ledger.folder().path();
     let limits = workers::limits(args.time_limit, args.memory.memory_limit);
     let workers = workers::of(folder, args.worker_timeout, limits)?;
-    let pending: Vec<(usize, &Job)> = wanted.places().filter(|(index, _)| !ledger.has(*index)).collect();
+    let pending: Vec<(usize, &PlannedRun)> = wanted.runs().filter(|(index, _)| !ledger.has(*index)).collect();
     let progress = Progress::new(pending.len(), args.quiet);
+    // Of a run without a job nothing is known but what it is called.
+    let without_a_job = |index, run: &PlannedRun, why: String| {
+        progress.ended(run.id(), Outcome::Error.word());
+        let Unfinished { name, file, engine } = ledger.planned(index).unwrap_or_default();
+        let identity = RunIdentity { name, file, engine, inputs: run.inputs(), ..RunIdentity::default() };
+        ledger.note(Finished { index, seconds: 0.0, result: RunResult::error(identity, None, vec![why]) });
+    };
     let ended = map_in_parallel(
         &pending,
         workers::at_a_time(args.jobs, limits),
-        |(_, job)| job.memory(),
-        |(index, job)| {
-            if interrupt::is_stopping() {
-                return;
+        |(_, run)| {
+            let job = if interrupt::is_stopping() { None } else { Some(run.job(args)) };
+            let memory = job.as_ref().and_then(|job| job.as_ref().ok()).map_or(0, Job::memory);
+            (job, memory)
+        },
+        |(index, run), job| match job.filter(|_| !interrupt::is_stopping()) {
+            None => {}
+            Some(Err(changed)) => without_a_job(*index, run, changed.to_string()),
+            Some(Ok(job)) => {
+                let start = Instant::now();
+                let result = one(&job, engines, &workers, args, ledger.out(), &progress);
+                ledger.note(Finished { index: *index, seconds: start.elapsed().as_secs_f64(), result });
             }
-            let start = Instant::now();
-            let result = one(job, engines, &workers, args, ledger.out(), &progress);
-            ledger.note(*index, result, start.elapsed());
         },
     );
-    for ((index, job), ended) in pending.iter().zip(ended) {
+    for ((index, run), ended) in pending.iter().zip(ended) {
         if let Err(panic) = ended {
-            progress.ended(&job.id, Outcome::Error.word());
-            let run = output::identity(job, Written::default());
-            ledger.note(*index, RunResult::error(run, None, vec![panic.to_string()]), Duration::ZERO);
+            without_a_job(*index, run, panic.to_string());
         }
     }
     progress.finish();
@@ -247,38 +261,41 @@ fn one(
     result
 }
 
-fn text_of(results: &Results, args: &RunArgs, out: &Path, former: &Former) -> String {
+/// Says what came of `runs`, and where it is.
+fn say_what_came(runs: &dyn Runs, args: &RunArgs, out: &Path, removed: usize) -> Result<(), CliError> {
     if args.quiet {
-        return brief(results);
+        return print_parts(brief(runs));
     }
-    let older = match output::older_recordings(out, results) {
+    let older = match output::older_recordings(out, runs) {
         0 => String::new(),
         1 => ", with a recording that they do not name".into(),
         count => format!(", with {count} recordings that they do not name"),
     };
-    let removed = match former {
-        Former { stays: Some(why), .. } => format!("; what the run before left stays: {why}"),
-        Former { removed: 0, .. } => String::new(),
-        Former { removed: 1, .. } => "; removed 1 file of the run before".into(),
-        Former { removed, .. } => format!("; removed {removed} files of the run before"),
+    let removed = match removed {
+        0 => String::new(),
+        1 => "; removed 1 file of the run before".into(),
+        removed => format!("; removed {removed} files of the run before"),
     };
     let out = out.display();
-    let kept = results.scenarios.iter().filter(|run| run.recording.is_some()).count();
+    let kept = runs.heads().filter(|run| run.has_recording).count();
     let what = match (args.keep, kept) {
         (Keep::All, _) => "results and recordings".to_owned(),
         (_, 0) => "results, no recordings".to_owned(),
         (_, 1) => "results and 1 recording".to_owned(),
         (_, kept) => format!("results and {kept} recordings"),
     };
-    let mut parts = vec![verdict_table(results, style(), args.verbose), format!("{what}: {out}{older}{removed}\n")];
-    if !results.unfinished.is_empty() {
-        let (count, of) = (results.unfinished.len(), results.unfinished.len() + results.scenarios.len());
-        let trust = if args.fmus.allow_unisolated_fmus { " --allow-unisolated-fmus" } else { "" };
-        parts.push(format!(
-            "{count} of {of} runs have no result yet; to run them: {} run --resume {out}{trust}\n",
-            program()
-        ));
+    print_parts(verdict_table(runs, style(), args.verbose))?;
+    let mut parts = vec![format!("{what}: {out}{older}{removed}\n")];
+    let trust = if args.fmus.allow_unisolated_fmus { " --allow-unisolated-fmus" } else { "" };
+    let resume = format!("{} run --resume {out}{trust}\n", program());
+    let (unfinished, errors) = (runs.unfinished().count(), runs.count_of(Outcome::Error));
+    if unfinished > 0 {
+        let of = unfinished + runs.heads().count();
+        parts.push(format!("{unfinished} of {of} runs have no result yet; to run them: {resume}"));
+    } else if errors > 0 {
+        let runs = if errors == 1 { "the run that ended" } else { "the runs that ended" };
+        parts.push(format!("to try {runs} with an error again: {resume}"));
     }
     parts.extend((args.rrd && kept > 0).then(|| format!("look at them: {} view {out}\n", program())));
-    parts.concat()
+    print(&parts.concat())
 }

@@ -60,9 +60,10 @@ impl Place {
         FileId::of(path).map_or_else(|_| Self::of(path), |folder| Self { folder: Some(folder), name: PathBuf::new() })
     }
 
-    /// The file `name` in this folder.
-    pub(super) fn file(&self, name: &str) -> Self {
-        Self { folder: self.folder, name: self.name.join(name) }
+    /// The name of this file, when it is one in `folder` itself.
+    pub(super) fn name_in(&self, folder: &Self) -> Option<&str> {
+        let is_there = self.folder == folder.folder && self.name.parent() == Some(&folder.name);
+        self.name.file_name().filter(|_| is_there)?.to_str()
     }
 }
 
@@ -163,7 +164,9 @@ mod tests {
         assert_ne!(Place::of(&path("folder/new")), Place::of(&path("new")));
         assert_eq!(Place::of(Path::new("/")), Place::of_folder(Path::new("/")));
         for folder in ["folder", "to-folder", "folder/..", "x/y/..", "none", "none/"] {
-            assert_eq!(Place::of_folder(&path(folder)).file("new"), Place::of(&path(folder).join("new")), "{folder}");
+            let (inside, folder) = (Place::of(&path(folder).join("new")), Place::of_folder(&path(folder)));
+            assert_eq!(inside.name_in(&folder), Some("new"), "{folder:?}");
+            assert_eq!(Place::of(&path("other/new")).name_in(&folder), None, "{folder:?}");
         }
     }
 

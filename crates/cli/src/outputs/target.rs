@@ -2,6 +2,7 @@
 use crate::console;
 use crate::error::CliError;
 use crate::outputs::place::Kind;
+use servobench_trace::{stream_durably, stream_whole};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -77,25 +78,31 @@ impl Output {
         }
     }
 
-    /// The same, and makes sure that it is on the disk before it takes the place of what was there.
-    pub(crate) fn write_durably(&self, bytes: impl AsRef<[u8]>) -> Result<(), CliError> {
-        match &self.to {
-            To::File(path) | To::FileAnywhere(path) => {
-                servobench_trace::write_durably(path, bytes).map_err(|error| self.failed(error))
-            }
-            To::Stream(..) | To::StandardOutput => self.write(bytes),
-        }
-    }
-
     /// Writes what `write` gives out, the whole file or nothing: for what is larger than memory.
     pub(crate) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+        self.streamed(write, false)
+    }
+
+    /// The same, and makes sure that it is on the disk before it takes the place of what was there.
+    pub(crate) fn stream_durably(
+        &self,
+        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        self.streamed(write, true)
+    }
+
+    fn streamed(
+        &self,
+        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+        is_durable: bool,
+    ) -> Result<(), CliError> {
         match &self.to {
-            To::File(path) => self.whole(path, write),
+            To::File(path) => self.whole(path, write, is_durable),
             To::FileAnywhere(path) => {
                 if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                     super::make_folder(folder)?;
                 }
-                self.whole(path, write)
+                self.whole(path, write, is_durable)
             }
             To::Stream(path, kind) => {
                 let mut out = BufWriter::new(Read(opened(path, *kind).map_err(|error| self.failed(error))?));
@@ -110,15 +117,21 @@ impl Output {
         }
     }
 
-    fn whole(&self, path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+    fn whole(
+        &self,
+        path: &Path,
+        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+        is_durable: bool,
+    ) -> Result<(), CliError> {
         // What the system says of the file and what `write` says have one way out.
         let mut said = None;
-        let done = servobench_trace::stream_whole(path, |file| {
+        let write = |file: &mut BufWriter<&File>| {
             write(file).map_err(|error| {
                 said = Some(error);
                 io::Error::other("not written")
             })
-        });
+        };
+        let done = if is_durable { stream_durably(path, write) } else { stream_whole(path, write) };
         match (done, said) {
             (_, Some(error)) => Err(error),
             (done, None) => done.map_err(|error| self.failed(error)),

@@ -97,7 +97,12 @@ fn an_engine_that_panics_costs_its_run_only() {
     let jobs = slide(&[EngineName::Exact, EngineName::Rapier, EngineName::Exact]);
     let limit = AtATime { jobs: 2, memory: u64::MAX };
     let workers = Workers::none();
-    let reports = map_in_parallel(&jobs, limit, Job::memory, |job| execute(job, &ENGINES, &workers, &mut |_| {}));
+    let reports = map_in_parallel(
+        &jobs,
+        limit,
+        |job| ((), job.memory()),
+        |job, ()| execute(job, &ENGINES, &workers, &mut |_| {}),
+    );
     for k in [0, 2] {
         let run = reports[k].as_ref().unwrap().as_ref().unwrap();
         assert!(run.verdict.passed() && run.recording.len() == 101);

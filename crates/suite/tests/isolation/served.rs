@@ -137,7 +137,7 @@ fn workers_that_serve_again_give_the_same() {
         .collect();
     let (_folder, workers) = workers_that("nothing", GENEROUS);
     let limit = AtATime { jobs: 3, memory: u64::MAX };
-    let together = map_in_parallel(&all, limit, Job::memory, |job| run_in(&workers, job).recording);
+    let together = map_in_parallel(&all, limit, |job| ((), job.memory()), |job, ()| run_in(&workers, job).recording);
     for (job, together) in all.iter().zip(together).step_by(4) {
         let (_folder, alone) = workers_that("nothing", GENEROUS);
         assert!(run_in(&alone, job).recording == together.unwrap());

@@ -2,10 +2,10 @@
 //!
 //! Whatever is in a file, the program ends with one of its own exit codes, and says no within a second of a processor and 200 MB of
 //! memory. Time by the clock says nothing on a machine that others use too.
+use super::built;
 use super::measured::{Measured, measured};
 use super::mutants::{Digest, Mutator};
 use crate::failure::Failure;
-use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -51,14 +51,7 @@ struct Outcome {
 /// [`Failure::Findings`] with each file that the program did not bear; they are kept.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let files = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok()).unwrap_or(FILES);
-    let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
-    match wheel::MUJOCO.ensure(workspace) {
-        Ok(_) => {
-            build.args(["--features", "mujoco"]);
-        }
-        Err(failure) => println!("{failure}; MJCF files go to the embedded engines only"),
-    }
-    run_command(&mut build, 0)?;
+    built(workspace)?;
     let room = tempfile::tempdir().map_err(Failure::file("make a folder in", std::env::temp_dir()))?;
     let room_path = room.path().canonicalize().map_err(Failure::file("find", room.path()))?;
     let kinds = kinds(workspace, &room_path)?;

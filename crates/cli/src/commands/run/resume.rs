@@ -3,7 +3,7 @@ use crate::args::{self, Command, RunArgs};
 use crate::error::CliError;
 use crate::sources;
 use servobench_results::{
-    Finished, Folder, Journal, JournalError, Outcome, RESULTS, Results, Status, Suite, read_results,
+    Finished, Folder, JournalError, Kept, Outcome, RESULTS, Results, Status, Suite, read_results,
 };
 use servobench_trace::verified_seal_of;
 use std::io::ErrorKind;
@@ -12,10 +12,9 @@ use std::path::Path;
 /// A suite that can go on.
 pub(super) struct Begun {
     pub(super) folder: Folder,
-    pub(super) journal: Journal,
     pub(super) suite: Suite,
     /// The runs whose results and files are there.
-    pub(super) finished: Vec<Finished>,
+    pub(super) kept: Kept,
     /// What it was started with; how much runs at a time and what is printed are what is asked for now.
     pub(super) args: RunArgs,
 }
@@ -34,7 +33,8 @@ pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> 
     }
     let absolute = std::path::absolute(folder).map_err(|error| CliError::Read { path: folder.to_owned(), error })?;
     let there = Folder::open(&absolute)?;
-    let (journal, suite, finished) = match Journal::resume(there.journal()) {
+    let counts = |one: &Finished| is_settled(one) && is_there(there.path(), one);
+    let (kept, suite) = match Kept::resume(there.journal(), counts) {
         Ok(found) => found,
         Err(JournalError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
             return complete(folder).map(Found::Complete);
@@ -46,8 +46,7 @@ pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> 
     if let Some(text) = &suite.standard_input {
         sources::give_stdin(text.clone());
     }
-    let finished = finished.into_iter().filter(|one| is_settled(one) && is_there(there.path(), one)).collect();
-    Ok(Found::Begun(Box::new(Begun { folder: there, journal, suite, finished, args })))
+    Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, args })))
 }
 
 /// Results of a suite that has ended.

@@ -1,64 +1,133 @@
-//! What is to be run: jobs, and files that cannot be used, in the order of the files.
+//! What is to be run: runs, and files that cannot be used, in the order of the files.
 use super::ledger::Ledger;
 use crate::args::RunArgs;
 use crate::error::CliError;
-use crate::output::{self, Written};
+use crate::output;
 use crate::sources::{self, Unusable};
-use servobench_results::{Digest, Digester, RunIdentity, RunResult, Unfinished};
-use servobench_suite::{Engines, Job, jobs};
+use servobench_plant::EngineName;
+use servobench_results::{Digest, Digester, Finished, RunIdentity, RunResult, Unfinished};
+use servobench_suite::{Engines, Job, JobIds, Source};
 use std::path::Path;
-use std::time::Duration;
+use std::sync::Arc;
+use thiserror::Error;
 
-/// What is to be run.
+/// What is to be run. Every file was read, and is read again when its turn has come: how many there are makes next to no difference to
+/// memory.
 pub(super) struct Wanted {
-    /// The jobs.
-    pub(super) jobs: Vec<Job>,
-    files: Vec<File>,
+    /// By their places in the suite.
+    entries: Vec<Entry>,
+    /// What they are called.
+    planned: Vec<Unfinished>,
     /// Values that are not those of the files.
     overrides: Vec<String>,
 }
 
-/// What became of a file.
-enum File {
-    /// So many jobs.
-    Jobs(usize),
+enum Entry {
+    Run(PlannedRun),
+    /// A file that cannot be used.
     Unusable(Unusable),
+}
+
+/// A run that is to be made.
+pub(super) struct PlannedRun {
+    id: String,
+    origin: Origin,
+    engine: EngineName,
+    /// What it is made of.
+    inputs: Digest,
+}
+
+/// Where a scenario comes from.
+#[derive(Clone)]
+enum Origin {
+    File(Arc<Path>),
+    Demo(Arc<Source>),
+}
+
+/// Why a run cannot be made any more.
+#[derive(Debug, Error)]
+#[error("the scenario, or a file that it names, has changed since the suite began: run the suite again")]
+pub(super) struct Changed;
+
+impl PlannedRun {
+    /// Name of the run.
+    pub(super) fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// What it is made of.
+    pub(super) const fn inputs(&self) -> Digest {
+        self.inputs
+    }
+
+    /// The run, as it was when the suite began.
+    pub(super) fn job(&self, args: &RunArgs) -> Result<Job, Changed> {
+        let source = match &self.origin {
+            Origin::File(path) => sources::again(path, &args.with).map_err(|_| Changed)?,
+            Origin::Demo(source) => source.as_ref().clone(),
+        };
+        let job = Job::new(self.id.clone(), source, self.engine);
+        if output::inputs_of(&job) == self.inputs { Ok(job) } else { Err(Changed) }
+    }
 }
 
 impl Wanted {
     /// The scenarios that are named, or the demo.
     pub(super) fn of(args: &RunArgs, engines: &Engines) -> Result<Self, CliError> {
         let overrides = args.with.overrides.iter().map(ToString::to_string).collect();
+        let mut wanted = Self { entries: Vec::new(), planned: Vec::new(), overrides };
+        let mut ids = JobIds::default();
         if args.scenarios.is_empty() {
-            let demo = sources::demo(&args.with)?;
             // The demo names engines that this build may lack; an FMU it has none of.
-            let mut there = engines.names();
-            there.retain(|engine| demo.iter().any(|source| source.scenario.engines.contains(engine)));
-            let jobs = jobs(demo, if args.engine.is_empty() { &there } else { &args.engine });
-            return Ok(Self { files: vec![File::Jobs(jobs.len())], jobs, overrides });
+            let there = engines.names();
+            for source in sources::demo(&args.with)? {
+                let own = source.scenario.engines.iter().copied().filter(|engine| there.contains(engine)).collect();
+                let engines: Vec<_> = if args.engine.is_empty() { own } else { args.engine.clone() };
+                let origin = Origin::Demo(Arc::new(source.clone()));
+                wanted.add(source, &origin, &engines, &mut ids);
+            }
+            return Ok(wanted);
         }
-        let (mut usable, mut files) = (Vec::new(), Vec::new());
         for found in sources::each(&args.scenarios, &args.with)? {
-            match found {
+            match found? {
                 Ok(source) => {
-                    let engines = if args.engine.is_empty() { &source.scenario.engines } else { &args.engine };
-                    files.push(File::Jobs(engines.len()));
-                    usable.push(source);
+                    let engines =
+                        if args.engine.is_empty() { source.scenario.engines.clone() } else { args.engine.clone() };
+                    let path = source.scenario.path.clone().unwrap_or_default();
+                    wanted.add(source, &Origin::File(path.into()), &engines, &mut ids);
                 }
-                Err(unusable) => files.push(File::Unusable(unusable)),
+                Err(unusable) => {
+                    let RunIdentity { name, file, engine, .. } = identity_of(&unusable, &wanted.overrides);
+                    wanted.planned.push(Unfinished { name, file, engine });
+                    wanted.entries.push(Entry::Unusable(unusable));
+                }
             }
         }
-        Ok(Self { jobs: jobs(usable, &args.engine), files, overrides })
+        Ok(wanted)
+    }
+
+    /// Adds a scenario on these engines.
+    fn add(&mut self, source: Source, origin: &Origin, engines: &[EngineName], ids: &mut JobIds) {
+        let mut job = Job::new(String::new(), source, EngineName::default());
+        for engine in engines {
+            job.engine = *engine;
+            let id = ids.next(&job.scenario.name, *engine);
+            let inputs = output::inputs_of(&job);
+            self.planned.push(output::unfinished(&job));
+            self.entries.push(Entry::Run(PlannedRun { id, origin: origin.clone(), engine: *engine, inputs }));
+        }
     }
 
     fn unusable(&self) -> impl Iterator<Item = &Unusable> {
-        self.files.iter().filter_map(|file| if let File::Unusable(unusable) = file { Some(unusable) } else { None })
+        self.entries
+            .iter()
+            .filter_map(|entry| if let Entry::Unusable(unusable) = entry { Some(unusable) } else { None })
     }
 
     /// The files that cannot be used.
     pub(super) fn into_unusable(self) -> Vec<Unusable> {
-        let files = self.files.into_iter();
-        files.filter_map(|file| if let File::Unusable(unusable) = file { Some(unusable) } else { None }).collect()
+        let entries = self.entries.into_iter();
+        entries.filter_map(|entry| if let Entry::Unusable(unusable) = entry { Some(unusable) } else { None }).collect()
     }
 
     /// What is wrong with them.
@@ -74,74 +143,54 @@ impl Wanted {
 
     /// What runs when nobody names a file.
     pub(super) fn demo(&self, out: &Path) -> String {
-        let ids: Vec<&str> = self.jobs.iter().map(|job| job.id.as_str()).collect();
+        let ids: Vec<&str> = self.runs().map(|(_, run)| run.id()).collect();
         format!("no file is named: running the demo that is built in ({}) into {}\n", ids.join(", "), out.display())
     }
 
-    /// Each job with its place in the suite: that of its file, what is invalid counted.
-    pub(super) fn places(&self) -> impl Iterator<Item = (usize, &Job)> {
-        let mut jobs = self.jobs.iter();
-        self.in_order().enumerate().filter_map(move |(index, unusable)| match unusable {
-            None => Some((index, jobs.next()?)),
-            Some(_) => None,
-        })
+    /// Each run with its place in the suite: that of its file, what is invalid counted.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (usize, &PlannedRun)> {
+        let entries = self.entries.iter().enumerate();
+        entries.filter_map(|(index, entry)| if let Entry::Run(run) = entry { Some((index, run)) } else { None })
     }
 
-    /// What is at each place of the suite: a file that cannot be used, or `None` for a job.
-    fn in_order(&self) -> impl Iterator<Item = Option<&Unusable>> {
-        self.files.iter().flat_map(|file| match file {
-            File::Jobs(count) => std::iter::repeat_n(None, *count),
-            File::Unusable(unusable) => std::iter::repeat_n(Some(unusable), 1),
-        })
+    /// How many runs and files that cannot be used there are.
+    pub(super) const fn len(&self) -> usize {
+        self.entries.len()
     }
 
-    /// The runs of the suite, in its order.
-    pub(super) fn planned(&self) -> Vec<Unfinished> {
-        let mut jobs = self.jobs.iter();
-        let run =
-            |identity: RunIdentity| Unfinished { name: identity.name, file: identity.file, engine: identity.engine };
-        self.in_order()
-            .filter_map(|unusable| match unusable {
-                Some(unusable) => Some(run(identity_of(unusable, &self.overrides))),
-                None => jobs.next().map(|job| run(output::identity(job, Written::default()))),
-            })
-            .collect()
+    /// The runs of the suite, in its order, for those who keep them from now on.
+    pub(super) fn take_planned(&mut self) -> Vec<Unfinished> {
+        std::mem::take(&mut self.planned)
     }
 
-    /// Stems of the files that the jobs leave.
+    /// Stems of the files that the runs leave.
     pub(super) fn stems(&self) -> Vec<String> {
-        self.jobs.iter().map(|job| job.id.clone()).collect()
+        self.runs().map(|(_, run)| run.id.clone()).collect()
     }
 
     /// Digest of the runs in their order, and of what they are to leave.
     pub(super) fn digest(&self, args: &RunArgs) -> Digest {
-        let mut jobs = self.jobs.iter();
         let start = Digester::default().with(format!("{:?} {}", args.keep, args.rrd));
-        let all = self.in_order().fold(start, |digester, unusable| {
-            let part = unusable.map(|unusable| unusable.reasons().join("\n"));
-            let part = part.or_else(|| jobs.next().map(|job| output::inputs_of(job).to_string()));
-            digester.with(part.unwrap_or_default())
+        let all = self.entries.iter().fold(start, |digester, entry| match entry {
+            Entry::Run(run) => digester.with(run.inputs.to_string()),
+            Entry::Unusable(unusable) => digester.with(unusable.reasons().join("\n")),
         });
         all.finish()
     }
 
-    /// What of the suite is invalid.
-    pub(super) fn invalid(&self) -> Vec<RunResult> {
-        self.unusable().map(|unusable| invalid(unusable, &self.overrides)).collect()
-    }
-
     /// Files that cannot be used have come to their end at once.
-    pub(super) fn note_unusable(&self, ledger: &Ledger) {
-        for (index, unusable) in self.in_order().enumerate() {
-            if let Some(unusable) = unusable.filter(|_| !ledger.has(index)) {
-                ledger.note(index, invalid(unusable, &self.overrides), Duration::ZERO);
-            }
-        }
+    pub(super) fn invalid(&self) -> impl Iterator<Item = Finished> {
+        self.entries.iter().enumerate().filter_map(|(index, entry)| {
+            let Entry::Unusable(unusable) = entry else { return None };
+            let result = RunResult::invalid(identity_of(unusable, &self.overrides), unusable.reasons());
+            Some(Finished { index, seconds: 0.0, result })
+        })
     }
-}
 
-fn invalid(unusable: &Unusable, overrides: &[String]) -> RunResult {
-    RunResult::invalid(identity_of(unusable, overrides), unusable.reasons())
+    /// Notes the same, unless that was done.
+    pub(super) fn note_unusable(&self, ledger: &Ledger) {
+        self.invalid().filter(|one| !ledger.has(one.index)).for_each(|one| ledger.note(one));
+    }
 }
 
 fn identity_of(unusable: &Unusable, overrides: &[String]) -> RunIdentity {

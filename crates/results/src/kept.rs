@@ -1,0 +1,227 @@
+//! The results of a suite as they come.
+use crate::journal::{Finished, Journal, JournalError, Place, Suite};
+use crate::results::{Outcome, Unfinished};
+use crate::run::RunResult;
+use crate::runs::{RunHead, Runs};
+use indexmap::IndexSet;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// The results of a suite as they come: the journal holds them, memory only what could not be written there.
+#[derive(Debug)]
+pub struct Kept {
+    journal: Option<Journal>,
+    planned: Vec<Unfinished>,
+    /// By the place of the run in the suite.
+    ended: BTreeMap<usize, Ended>,
+    overrides: IndexSet<String>,
+}
+
+/// What is known of a run that ended.
+#[derive(Debug)]
+struct Ended {
+    verdict: Outcome,
+    took: Duration,
+    has_recording: bool,
+    result: Where,
+}
+
+#[derive(Debug)]
+enum Where {
+    Journal(Place),
+    Memory(Box<RunResult>),
+}
+
+impl Ended {
+    /// As it is kept at `place` of the journal, otherwise in memory.
+    fn new(finished: Finished, place: Option<Place>) -> Self {
+        let Finished { seconds, result, .. } = finished;
+        Self {
+            verdict: result.verdict,
+            took: Duration::try_from_secs_f64(seconds).unwrap_or_default(),
+            has_recording: result.recording.is_some(),
+            result: place.map_or_else(|| Where::Memory(Box::new(result)), Where::Journal),
+        }
+    }
+}
+
+impl Kept {
+    /// Those of the runs `planned`, none of which has ended. Without a journal they are in memory.
+    #[must_use]
+    pub fn new(journal: Option<Journal>, planned: Vec<Unfinished>) -> Self {
+        Self { journal, planned, ended: BTreeMap::new(), overrides: IndexSet::new() }
+    }
+
+    /// Those that the journal at `path` holds, and what suite it is of. Only runs that `counts` have ended; which runs there are is still
+    /// to be said, by [`Kept::plan`].
+    ///
+    /// # Errors
+    /// [`JournalError`]
+    pub fn resume(path: PathBuf, counts: impl Fn(&Finished) -> bool) -> Result<(Self, Suite), JournalError> {
+        let (mut ended, mut overrides) = (BTreeMap::new(), IndexSet::new());
+        let (journal, suite) = Journal::resume(path, |finished, place| {
+            if counts(&finished) {
+                overrides.extend(finished.result.overrides.iter().cloned());
+                ended.insert(finished.index, Ended::new(finished, Some(place)));
+            } else {
+                ended.remove(&finished.index);
+            }
+        })?;
+        Ok((Self { journal: Some(journal), planned: Vec::new(), ended, overrides }, suite))
+    }
+
+    /// The runs are these.
+    pub fn plan(&mut self, planned: Vec<Unfinished>) {
+        self.ended.retain(|index, _| *index < planned.len());
+        self.planned = planned;
+    }
+
+    /// The runs, ended or not.
+    #[must_use]
+    pub fn planned(&self) -> &[Unfinished] {
+        &self.planned
+    }
+
+    /// How many have ended.
+    #[must_use]
+    pub fn ended(&self) -> usize {
+        self.ended.len()
+    }
+
+    /// Whether the run at `index` has ended.
+    #[must_use]
+    pub fn has(&self, index: usize) -> bool {
+        self.ended.contains_key(&index)
+    }
+
+    /// A run has ended.
+    ///
+    /// # Errors
+    /// [`JournalError`], when the journal does not hold it: it is kept in memory then.
+    pub fn note(&mut self, finished: Finished) -> Result<(), JournalError> {
+        let noted = self.journal.as_mut().map(|journal| journal.append(&finished)).transpose();
+        for one in &finished.result.overrides {
+            if !self.overrides.contains(one) {
+                self.overrides.insert(one.clone());
+            }
+        }
+        let (place, refusal) = noted.map_or_else(|error| (None, Some(error)), |place| (place, None));
+        self.ended.insert(finished.index, Ended::new(finished, place));
+        refusal.map_or(Ok(()), Err)
+    }
+
+    /// Makes sure that the journal is on the disk.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`]
+    pub fn sync(&mut self) -> Result<(), JournalError> {
+        self.journal.as_mut().map_or(Ok(()), Journal::sync)
+    }
+}
+
+impl Runs for Kept {
+    fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_> {
+        let heads = self.ended.iter().filter_map(|(index, ended)| {
+            let Unfinished { name, file, engine } = self.planned.get(*index)?;
+            let &Ended { verdict, took, has_recording, .. } = ended;
+            let file = file.as_deref();
+            Some(RunHead { index: *index, name, file, engine, verdict, took: Some(took), has_recording })
+        });
+        Box::new(heads)
+    }
+
+    fn result(&self, index: usize) -> Result<Cow<'_, RunResult>, JournalError> {
+        match (self.ended.get(&index).map(|ended| &ended.result), &self.journal) {
+            (Some(Where::Memory(result)), _) => Ok(Cow::Borrowed(result)),
+            (Some(Where::Journal(place)), Some(journal)) => Ok(Cow::Owned(journal.at(*place)?.result)),
+            (Some(Where::Journal(_)) | None, _) => Err(JournalError::NoSuchRun(index)),
+        }
+    }
+
+    fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_> {
+        let planned = self.planned.iter().enumerate();
+        Box::new(planned.filter(|(index, _)| !self.has(*index)).map(|(_, planned)| planned))
+    }
+
+    fn overrides(&self) -> Vec<&str> {
+        self.overrides.iter().map(String::as_str).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::digest::Digest;
+    use crate::samples;
+
+    fn planned() -> Vec<Unfinished> {
+        let all = [samples::jerk(), samples::missed(), samples::broken(), samples::snap()];
+        let all = all.map(|RunResult { name, file, engine, .. }| Unfinished { name, file, engine });
+        all.to_vec()
+    }
+
+    fn suite() -> Suite {
+        Suite::new(Digest::default(), vec![], "/".into(), None, vec![])
+    }
+
+    fn finished(index: usize, result: RunResult) -> Finished {
+        Finished { index, seconds: 0.25, result }
+    }
+
+    /// Whether a result is in memory or in the journal, it is the same one.
+    #[test]
+    fn results_come_back_from_wherever_they_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        let journal = Journal::create(path.clone(), &suite()).unwrap();
+        for mut kept in [Kept::new(None, planned()), Kept::new(Some(journal), planned())] {
+            for (index, run) in [(2, samples::broken()), (0, samples::jerk()), (1, samples::missed())] {
+                kept.note(finished(index, run)).unwrap();
+            }
+            let runs: &dyn Runs = &kept;
+            let each: Vec<RunResult> = runs.each().map(|one| one.unwrap().into_owned()).collect();
+            assert_eq!(each, [samples::jerk(), samples::missed(), samples::broken()]);
+            assert_eq!(runs.unfinished().collect::<Vec<_>>(), [&planned()[3]]);
+            let heads: Vec<_> = runs.heads().collect();
+            assert!(heads.iter().all(|head| head.took == Some(Duration::from_millis(250))));
+            assert_eq!(
+                heads.iter().map(|head| head.verdict).collect::<Vec<_>>(),
+                each.iter().map(|run| run.verdict).collect::<Vec<_>>()
+            );
+            assert!(matches!(runs.result(3), Err(JournalError::NoSuchRun(3))));
+        }
+        // What is no more than noted again counts as it was noted last; what does not count any more has not ended.
+        let (mut kept, _) = Kept::resume(path, |one| one.index != 1).unwrap();
+        kept.plan(planned());
+        assert_eq!((kept.ended(), kept.has(1), kept.planned().len()), (2, false, 4));
+        kept.note(finished(0, samples::snap())).unwrap();
+        assert_eq!(kept.result(0).unwrap().into_owned(), samples::snap());
+    }
+
+    /// A journal may name places that no suite has.
+    #[test]
+    fn places_beyond_the_suite_are_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        let mut journal = Journal::create(path.clone(), &suite()).unwrap();
+        journal.append(&finished(usize::MAX, samples::jerk())).unwrap();
+        journal.append(&finished(3, samples::snap())).unwrap();
+        let (mut kept, _) = Kept::resume(path, |_| true).unwrap();
+        kept.plan(planned());
+        assert_eq!((kept.ended(), kept.heads().count()), (1, 1));
+    }
+
+    /// On a full disk the results of a suite are still there when it ends.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_the_journal_does_not_hold_is_in_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        let journal = Journal::create(folder.path().join("results.journal"), &suite()).unwrap();
+        let mut kept = Kept::new(Some(journal.on("/dev/full")), planned());
+        assert!(matches!(kept.note(finished(1, samples::missed())), Err(JournalError::Io { .. })));
+        assert_eq!(kept.result(1).unwrap().into_owned(), samples::missed());
+        assert_eq!(kept.heads().count(), 1);
+    }
+}

@@ -1,0 +1,88 @@
+//! The runs of a suite one after the other, wherever their results are kept.
+use crate::journal::JournalError;
+use crate::results::{Outcome, Results, Unfinished};
+use crate::run::RunResult;
+use std::borrow::Cow;
+use std::time::Duration;
+
+/// The results of a suite, of which one at a time is read: how many there are makes no difference to memory.
+pub trait Runs {
+    /// The runs that ended, in the order in which they were asked for.
+    fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_>;
+
+    /// The result of the run with this [`RunHead::index`].
+    ///
+    /// # Errors
+    /// [`JournalError`], when what was written is not what is read.
+    fn result(&self, index: usize) -> Result<Cow<'_, RunResult>, JournalError>;
+
+    /// The runs that did not end, in that order.
+    fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_>;
+
+    /// Keys with another value than the files give them, each once: `setpoint.jerk=200 m/s3`.
+    fn overrides(&self) -> Vec<&str>;
+}
+
+/// What is known of a run before its result is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunHead<'a> {
+    /// Its place, by which the result is read.
+    pub index: usize,
+    /// Name of the scenario.
+    pub name: &'a str,
+    /// File of the scenario.
+    pub file: Option<&'a str>,
+    /// Engine.
+    pub engine: &'a str,
+    /// What came of it.
+    pub verdict: Outcome,
+    /// How long it took by the clock, where that is known.
+    pub took: Option<Duration>,
+    /// Whether it left a recording.
+    pub has_recording: bool,
+}
+
+impl dyn Runs + '_ {
+    /// How many runs came to this.
+    pub fn count_of(&self, outcome: Outcome) -> usize {
+        self.heads().filter(|head| head.verdict == outcome).count()
+    }
+
+    /// Every result, one after the other.
+    pub fn each(&self) -> impl Iterator<Item = Result<Cow<'_, RunResult>, JournalError>> {
+        self.heads().map(|head| self.result(head.index))
+    }
+}
+
+impl Runs for Results {
+    fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_> {
+        let heads = self.scenarios.iter().enumerate().map(|(index, run)| RunHead {
+            index,
+            name: &run.name,
+            file: run.file.as_deref(),
+            engine: &run.engine,
+            verdict: run.verdict,
+            took: None,
+            has_recording: run.recording.is_some(),
+        });
+        Box::new(heads)
+    }
+
+    fn result(&self, index: usize) -> Result<Cow<'_, RunResult>, JournalError> {
+        self.scenarios.get(index).map(Cow::Borrowed).ok_or(JournalError::NoSuchRun(index))
+    }
+
+    fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_> {
+        Box::new(self.unfinished.iter())
+    }
+
+    fn overrides(&self) -> Vec<&str> {
+        let mut all: Vec<&str> = Vec::new();
+        for one in self.scenarios.iter().flat_map(|run| &run.overrides) {
+            if !all.contains(&one.as_str()) {
+                all.push(one);
+            }
+        }
+        all
+    }
+}
