@@ -192,6 +192,27 @@ fn a_suite_whose_scenarios_have_changed_does_not_go_on() {
     assert!(fs::read(suite.out("changed").join("results.journal")).unwrap() == before);
 }
 
+/// A scenario is read again when its turn comes: what it is then must be what the suite was begun with.
+#[test]
+fn a_scenario_that_changes_while_the_suite_runs_is_no_run_of_it() {
+    let suite = Suite::new();
+    let file = suite.work.path().join("c.toml");
+    for (out, changed) in [("changed", Some(SLIDE.replace("20 kg", "21 kg"))), ("gone", None)] {
+        let mut child = suite.under_way(out);
+        match changed {
+            Some(text) => fs::write(&file, text).unwrap(),
+            None => fs::remove_file(&file).unwrap(),
+        }
+        assert_eq!(exit_of(&mut child), Some(2));
+        fs::write(&file, SLIDE).unwrap();
+        let run = &suite.results(out)["scenarios"][2];
+        assert_eq!((run["name"].as_str(), run["verdict"].as_str()), (Some("c"), Some("error")));
+        let reason = run["reasons"][0].as_str().unwrap();
+        assert!(reason.contains("has changed since the suite began"), "{reason}");
+        suite.goes_on(out);
+    }
+}
+
 #[test]
 fn a_complete_suite_is_reported_again() {
     let suite = Suite::new();
