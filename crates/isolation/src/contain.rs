@@ -112,12 +112,17 @@ fn end_with(parent: Option<Pid>) -> Result<(), ContainError> {
     Ok(())
 }
 
+/// The share of its memory that may be data. Stack and libraries take some of the rest: a process that asks for too much is refused, and
+/// is not ended first for what it has beside its data.
+const DATA: (u64, u64) = (31, 32);
+
 /// Binds this process to its memory.
 fn limit(limits: Limits, note: &'static Note) -> Result<(), ContainError> {
     let cannot = |action| move |errno: Errno| ContainError::System { action, source: errno.into() };
     // A signal to its own group is for what it has started, and not for the keeper.
     setpgid(None, None).map_err(cannot("make a process group"))?;
-    let most = getrlimit(Resource::Data).maximum.map_or(limits.memory, |most| most.min(limits.memory));
+    let data = limits.memory / DATA.1 * DATA.0;
+    let most = getrlimit(Resource::Data).maximum.map_or(data, |most| most.min(data));
     setrlimit(Resource::Data, Rlimit { current: Some(most), maximum: Some(most) }).map_err(cannot("bound memory"))?;
     // In a namespace of its own, `/proc` alone knows the id that all others see.
     let own = std::fs::read_link("/proc/self").ok().and_then(|link| link.to_str()?.parse().ok());
