@@ -42,6 +42,35 @@ pub struct Rotation {
     pub cos: f64,
 }
 
+/// An electrical angle with its rotation, for others who need that of the very same angle: a sine costs more than a look.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct KnownRotation {
+    angle: ElectricalAngle,
+    rotation: Rotation,
+}
+
+impl KnownRotation {
+    /// That of `angle`.
+    #[must_use]
+    pub fn of(angle: ElectricalAngle) -> Self {
+        Self { angle, rotation: angle.rotation() }
+    }
+
+    /// It.
+    #[inline]
+    #[must_use]
+    pub const fn rotation(self) -> Rotation {
+        self.rotation
+    }
+
+    /// The rotation at `angle`, whatever that is.
+    #[inline]
+    #[must_use]
+    pub fn at(self, angle: ElectricalAngle) -> Rotation {
+        if angle.0.to_bits() == self.angle.0.to_bits() { self.rotation } else { angle.rotation() }
+    }
+}
+
 impl Default for Rotation {
     fn default() -> Self {
         Self { sin: 0.0, cos: 1.0 }
@@ -114,6 +143,20 @@ mod tests {
         let quarter = ElectricalAngle(core::f64::consts::FRAC_PI_2).rotation();
         let dq = AlphaBeta { alpha: 3.0, beta: 2.0 }.to_dq(quarter);
         assert!((dq.d - 2.0).abs() < 1e-15 * 4.0 && (dq.q + 3.0).abs() < 1e-15 * 4.0, "{dq:?}");
+    }
+
+    /// To the bit, −0 and what is no number included.
+    #[test]
+    fn a_known_rotation_is_that_of_its_angle_alone() {
+        for known in [0.0, -0.0, 0.3, 1e5, f64::NAN].map(ElectricalAngle) {
+            for asked in [0.0, -0.0, 0.3, 0.300_000_000_000_000_04, 1e5, f64::NAN].map(ElectricalAngle) {
+                let (found, expected) = (KnownRotation::of(known).at(asked), asked.rotation());
+                assert_eq!(
+                    (found.sin.to_bits(), found.cos.to_bits()),
+                    (expected.sin.to_bits(), expected.cos.to_bits())
+                );
+            }
+        }
     }
 
     #[test]

@@ -12,10 +12,11 @@ mod setpoint;
 mod severity;
 mod step_end;
 mod time;
+mod wide_registers;
 
 pub use coordinate::Coordinate;
 pub use ending::Ending;
-pub use frames::{AlphaBeta, Dq, ElectricalAngle, Rotation};
+pub use frames::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, Rotation};
 pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use power_command::PowerCommand;
 pub use setpoint::Setpoint;

@@ -9,6 +9,7 @@
 //! ramp is followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
 //!
 //! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::{AlphaBeta, Dq, Rotation, limit};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{
@@ -227,7 +228,7 @@ pub fn voltage_limit(dc_link: f64) -> f64 {
 }
 
 /// Returns the voltage for tick k, then advances `x` by `h` (s) to tick k+1.
-#[inline]
+#[inline(always)]
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let i = u.current.to_dq(u.rotor);
     let e = Dq { d: u.reference.d - i.d, q: u.reference.q - i.q };
@@ -250,6 +251,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
 }
 
 /// Cuts `v` to the circle of radius `max`; d keeps what it asks for as long as the circle allows.
+#[inline(always)]
 fn limit_d_first(v: Dq, max: f64) -> Dq {
     if v.d * v.d + v.q * v.q <= max * max {
         return v;

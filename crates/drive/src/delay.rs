@@ -3,6 +3,7 @@
 //! The feedforward effort takes a while to reach the motor; the reference of the loops waits as long, or the position
 //! controller works against the feedforward. Between two samples the set-point is the polynomial of the earlier one
 //! ([`Setpoint::after`]): exact as long as snap switches at sample instants, as a sampled plan does.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::Setpoint;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::TIME;
@@ -89,6 +90,7 @@ impl Values {
 }
 
 /// Takes the value of this task tick and returns the one that is as old as `p` says.
+#[inline(always)]
 pub fn step_value(p: &Params, x: &mut Values, now: f64) -> f64 {
     let size = x.kept.len();
     x.newest = if x.newest + 1 == size { 0 } else { x.newest + 1 };
@@ -99,6 +101,7 @@ pub fn step_value(p: &Params, x: &mut Values, now: f64) -> f64 {
 }
 
 /// Takes the set-point of this task tick and returns the one that is as old as `p` says.
+#[inline(always)]
 pub fn step(p: &Params, x: &mut State, now: Setpoint) -> Setpoint {
     let size = x.kept.len();
     x.newest = if x.newest + 1 == size { 0 } else { x.newest + 1 };

@@ -6,11 +6,12 @@
 //! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{Demand, EffortLimits};
 use crate::{current, delay, velocity};
-use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, PowerCommand, Setpoint};
+use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
 
 /// Which encoder closes the position loop.
@@ -34,6 +35,8 @@ pub struct Sensors {
     pub feedback: Feedback,
     /// Stator current (A, peak).
     pub current: AlphaBeta,
+    /// A rotation that somebody has worked out: where it is that of the angle that the firmware reads, it is taken from here.
+    pub known_rotation: KnownRotation,
 }
 
 impl Sensors {
@@ -145,7 +148,7 @@ impl State {
     /// The references at the present tick: between two cycles of the position loop the held set-point goes on along its
     /// own polynomial. This is what following errors are measured against; a reference that stands still while the
     /// axis moves on would add an error of velocity × period.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn references(&self, p: &Params) -> (Setpoint, MotorReference) {
         let since = self.position_turn.since(p.position_every);
@@ -159,6 +162,7 @@ impl State {
 
 /// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
 /// at the cycles of the position loop, the limits at those of the velocity loop.
+#[inline(always)]
 pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, sensors: &Sensors) -> PowerCommand {
     if x.position_turn.is_due(p.position_every) {
         take(p, x, demand, sensors);
@@ -183,6 +187,7 @@ pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, se
     }
 }
 
+#[inline(always)]
 fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
     match *demand {
         Demand::Position { setpoint, velocity_offset, effort_offset } => {
@@ -237,6 +242,7 @@ impl State {
     }
 }
 
+#[inline(always)]
 fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) {
     let reference = delay::step(&p.reference_delay, &mut x.delay, setpoint);
     let motor_reference = p.feedforward.motor_reference(reference);
@@ -250,6 +256,7 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
     x.held.feedforward = p.transmission * p.feedforward.effort(setpoint);
 }
 
+#[inline(always)]
 fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
     let mut followed = x.held.velocity_reference;
@@ -285,6 +292,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     };
 }
 
+#[inline(always)]
 fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
     let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
@@ -292,7 +300,9 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     let input = current::Input {
         reference: Dq { d: p.d_reference, q: x.held.current_reference },
         current: sensors.current,
-        rotor: ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio).rotation(),
+        rotor: sensors
+            .known_rotation
+            .at(ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio)),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
     x.held.current = current::step(p, &mut x.current, input, h);

@@ -7,6 +7,7 @@
 //! τ_avail is what the loop below can give; knowing it here, and the limits of both directions that come from the bus, keeps the
 //! integrator from winding up against them.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::EffortLimits;
 use servobench_base::limit;
 use servobench_config::Kind::{Motor, Plain};
@@ -89,6 +90,7 @@ impl Params {
 }
 
 /// Returns the effort reference for tick k, then advances `x` by `h` (s) to tick k+1.
+#[inline(always)]
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let e = u.reference - u.velocity;
     let v = u.feedforward + p.k_p * e + x.integral;

@@ -16,14 +16,16 @@ const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
-    let peak = |squares: &Vec<f64>| largest(squares.iter().copied(), PART).map(f64::sqrt);
     let current = vector_squared(recording, Signal::CurrentD, Signal::CurrentQ, rows);
-    // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
-    let rms = |squares: &Vec<f64>| root_mean(squares.iter().map(|square| square / 2.0), PART);
-    set.note(Name::CurrentPeak, PEAK_CURRENT, current.as_ref().map_err(Clone::clone).and_then(peak));
-    set.note(Name::CurrentRms, RMS_CURRENT, current.as_ref().map_err(Clone::clone).and_then(rms));
     let voltage = vector_squared(recording, Signal::VoltageD, Signal::VoltageQ, rows);
-    set.note(Name::VoltagePeak, "V", voltage.as_ref().map_err(Clone::clone).and_then(peak));
+    set.note(Name::CurrentPeak, PEAK_CURRENT, current.clone().and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
+    // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
+    set.note(
+        Name::CurrentRms,
+        RMS_CURRENT,
+        current.and_then(|squares| root_mean(squares.map(|square| square / 2.0), PART)),
+    );
+    set.note(Name::VoltagePeak, "V", voltage.and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
     for (name, share) in [
         (Name::CurrentSaturationTime, Signal::SaturationCurrent),
         (Name::VoltageSaturationTime, Signal::SaturationVoltage),
@@ -43,9 +45,15 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
 
 const PART: &str = "of motor and inverter";
 
-fn vector_squared(recording: &Checked<'_>, d: Signal, q: Signal, rows: &Range<usize>) -> Result<Vec<f64>, Absence> {
+/// Squared lengths of a vector.
+fn vector_squared<'a>(
+    recording: &'a Checked<'_>,
+    d: Signal,
+    q: Signal,
+    rows: &Range<usize>,
+) -> Result<impl Iterator<Item = f64> + Clone + use<'a>, Absence> {
     let (d, q) = (channel(recording, d)?, channel(recording, q)?);
-    Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q).collect())
+    Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q))
 }
 
 /// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.

@@ -4,6 +4,7 @@ use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::span::{Checked, Phase, phases};
 use crate::vibration::Residual;
 use crate::{compliance, effort, rounding, settling, tracking};
+use servobench_signals::Signal;
 use servobench_trace::Recording;
 
 /// What a measurement needs to know besides the recording.
@@ -16,6 +17,33 @@ pub struct Question {
     /// Natural frequency of the mode that is asked for (Hz). Without it, the mode with the most energy is reported.
     pub mode: Option<f64>,
 }
+
+/// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
+pub const MEASURED_FROM: [Signal; 23] = [
+    Signal::SetpointPosition,
+    Signal::SetpointAcceleration,
+    Signal::MotorPosition,
+    Signal::MotorVelocity,
+    Signal::LoadPosition,
+    Signal::VelocityReference,
+    Signal::FollowingErrorMotor,
+    Signal::FollowingErrorLoad,
+    Signal::EffortReference,
+    Signal::EffortMotor,
+    Signal::CurrentD,
+    Signal::CurrentQ,
+    Signal::VoltageD,
+    Signal::VoltageQ,
+    Signal::PowerElectrical,
+    Signal::PowerCopper,
+    Signal::PowerShaft,
+    Signal::SaturationVoltage,
+    Signal::SaturationCurrent,
+    Signal::SaturationEffort,
+    Signal::DisturbanceMotor,
+    Signal::DisturbanceLoad,
+    Signal::EffortEndStop,
+];
 
 /// Measures everything that the recording allows; what it does not allow is absent with the reason.
 /// The definitions are in `docs/metrics.md`.

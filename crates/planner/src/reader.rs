@@ -48,6 +48,11 @@ impl Reader {
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         let first = self.first.at(t);
+        if self.later.is_empty() { first } else { self.with_later(first, t) }
+    }
+
+    /// The same with the later parts.
+    fn with_later(&self, first: Setpoint, t: f64) -> Setpoint {
         // Differences from the first part: at rest all are the same bit for bit.
         self.later.iter().fold(first, |sum, (part, delay, piece)| {
             let Setpoint { x, v, a, j, s } = piece.at(t - delay);

@@ -12,17 +12,21 @@
 //! A prescribed base adds the states (h·v, h²·a, h³·j, h⁴·s) of its own motion, so that its polynomial is integrated
 //! exactly too. A stuck body has its velocity row and column struck out: one pair (Φ, Γ) for each set of stuck bodies.
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3; Van Loan, IEEE TAC 23(3), 1978.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::chain::Chain;
 use crate::engine::{Engine, EngineName};
 use crate::friction::Grip;
 use crate::mechanics::{Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
 use nalgebra::DMatrix;
+use servobench_base::wide_registers;
 use std::sync::Arc;
 
 const NAME: EngineName = EngineName::Exact;
 const MAX_BODIES: usize = Chain::MAX_BODIES;
 /// Most rows: stretches and velocities of the chain, derivatives of a prescribed base, travel.
 const ROWS: usize = 2 * MAX_BODIES - 1 + 4 + 1;
+/// Most columns: the same but travel, then the efforts.
+const COLUMNS: usize = ROWS - 1 + MAX_BODIES;
 
 /// Number of states: stretches and velocities, and the four derivatives of a prescribed base.
 fn states(chain: &Chain, prescribed: bool) -> usize {
@@ -63,16 +67,29 @@ struct ExactChain<const W: usize> {
     prescribed: bool,
     /// Tick length (s).
     step: f64,
+    /// Rows that are states.
+    states: usize,
     /// One entry for each set of stuck bodies, body i being bit i; only those that dry friction can reach are there.
     holds: Arc<[Option<Hold<W>>]>,
-    y: [f64; W],
+    /// What the columns are multiplied by: y, and behind it the efforts of the tick under way.
+    factors: [f64; COLUMNS],
     bodies: Vec<BodyState>,
-    /// Own coordinate per axis coordinate, of each body; and velocity per travel in a tick.
-    per_axis: [f64; MAX_BODIES],
-    per_travel: [f64; MAX_BODIES],
+    terms: [Terms; MAX_BODIES],
     any_dry: bool,
-    /// `y` and `bodies` at the mark.
-    marked: Option<([f64; W], Vec<BodyState>)>,
+    /// y and `bodies` at the mark.
+    marked: Option<([f64; COLUMNS], Vec<BodyState>)>,
+}
+
+/// What a tick needs of a body.
+#[derive(Clone, Copy, Default)]
+struct Terms {
+    bias: f64,
+    /// Axis coordinate per own coordinate.
+    transmission: f64,
+    /// Own coordinate per axis coordinate.
+    per_axis: f64,
+    /// Own velocity per travel in a tick.
+    per_travel: f64,
 }
 
 impl<const W: usize> ExactChain<W> {
@@ -86,48 +103,113 @@ impl<const W: usize> ExactChain<W> {
             .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
             .collect();
         let bodies: Vec<BodyState> = (0..n).map(|i| setup.initial.get(i).copied().unwrap_or_default()).collect();
-        let (mut per_axis, mut per_travel) = ([0.0; MAX_BODIES], [0.0; MAX_BODIES]);
-        for (i, body) in chain.bodies().iter().enumerate() {
-            per_axis[i] = 1.0 / body.transmission;
-            per_travel[i] = 1.0 / (setup.step * body.transmission);
+        let mut terms = [Terms::default(); MAX_BODIES];
+        for (terms, body) in terms.iter_mut().zip(chain.bodies()) {
+            let transmission = body.transmission;
+            let (per_axis, per_travel) = (1.0 / transmission, 1.0 / (setup.step * transmission));
+            *terms = Terms { bias: body.bias, transmission, per_axis, per_travel };
         }
-        let mut y = [0.0; W];
+        let mut factors = [0.0; COLUMNS];
         let axis_position = |i: usize| chain.bodies()[i].transmission * bodies[i].position;
         for i in 1..n {
-            y[i - 1] = axis_position(i - 1) - axis_position(i);
+            factors[i - 1] = axis_position(i - 1) - axis_position(i);
         }
         for i in 0..n {
-            y[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
+            factors[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
-        let chain = Arc::new(chain);
-        Self {
-            chain,
-            prescribed,
-            step: setup.step,
-            holds,
-            y,
-            bodies,
-            per_axis,
-            per_travel,
-            any_dry: can_stick != 0,
-            marked: None,
-        }
+        let (states, any_dry) = (states(&chain, prescribed), can_stick != 0);
+        let (chain, marked) = (Arc::new(chain), None);
+        Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, any_dry, marked }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
+    #[inline(always)]
     fn efforts(&self, input: &Input) -> [f64; MAX_BODIES] {
-        let mut u = [0.0; MAX_BODIES];
-        for (u, body) in u.iter_mut().zip(self.chain.bodies()) {
-            *u = -body.bias;
-        }
+        let mut u = self.terms.map(|terms| -terms.bias);
         if let Actuation::Effort(effort) = input.actuation {
             u[0] += effort;
         }
         u[0] += input.motor_disturbance;
         // In the axis coordinate: on a single rotary body behind a screw it acts through the transmission.
-        let last = self.bodies.len() - 1;
-        u[last] += self.chain.bodies()[last].transmission * input.load_disturbance;
+        let last = (self.bodies.len() - 1).min(MAX_BODIES - 1);
+        u[last] += self.terms[last].transmission * input.load_disturbance;
         u
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn advanced_in_wide_registers(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        self.advanced(input)
+    }
+
+    #[inline(always)]
+    fn advanced(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        let n = self.bodies.len().min(MAX_BODIES);
+        let mut base_position = None;
+        match (input.actuation, self.prescribed) {
+            (Actuation::Effort(_), false) => {}
+            (Actuation::Motion(now), true) => {
+                let h = self.step;
+                let derivatives = [h * now.v, h * h * now.a, h * h * h * now.j, h * h * h * h * now.s];
+                self.factors[2 * n - 1..2 * n + 3].copy_from_slice(&derivatives);
+                self.factors[n - 1] = derivatives[0];
+                base_position = Some(now.after(h).x);
+            }
+            (Actuation::Effort(_), true) | (Actuation::Motion(_), false) => {
+                return Err(MechanicsError::wrong_actuation(NAME));
+            }
+        }
+        let mut u = self.efforts(input);
+        let stuck = if self.any_dry { self.grip(&mut u) } else { 0 };
+        let Some(hold) = &self.holds[stuck] else {
+            return Err(MechanicsError::Native {
+                engine: NAME,
+                message: format!("no transition for stuck set {stuck}"),
+            });
+        };
+
+        // All that there may be: those that no body has are not multiplied.
+        for (factor, effort) in self.factors[self.states..].iter_mut().zip(&u) {
+            *factor = *effort;
+        }
+        let mut next = [0.0; W];
+        for (column, factor) in hold.iter().zip(&self.factors) {
+            for (next, entry) in next.iter_mut().zip(column) {
+                *next += entry * factor;
+            }
+        }
+        let travel = std::mem::take(&mut next[self.states]);
+
+        let mut axis_position = base_position.unwrap_or(self.terms[0].transmission * self.bodies[0].position + travel);
+        let (stretches, velocities) = next.split_at_mut(n - 1);
+        for (i, ((body, velocity_row), terms)) in
+            self.bodies.iter_mut().zip(&mut *velocities).zip(&self.terms).enumerate()
+        {
+            if i > 0 {
+                axis_position -= stretches[i - 1];
+            }
+            if stuck & (1 << i) != 0 {
+                body.velocity = 0.0;
+                *velocity_row = 0.0;
+                continue;
+            }
+            let mut velocity = *velocity_row * terms.per_travel;
+            if self.any_dry
+                && !(self.prescribed && i == 0)
+                && self.chain.bodies()[i].friction.settle(body.velocity, velocity)
+            {
+                velocity = 0.0;
+                *velocity_row = 0.0;
+            }
+            *body = BodyState { position: axis_position * terms.per_axis, velocity };
+        }
+        self.factors[..W].copy_from_slice(&next);
+        let total: f64 = self.bodies.iter().map(|body| body.position + body.velocity).sum();
+        if total.is_finite() {
+            Ok(())
+        } else {
+            Err(MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() })
+        }
     }
 
     /// Adds dry friction to `u` and returns the set of bodies that are held.
@@ -151,65 +233,7 @@ impl<const W: usize> Mechanics for ExactChain<W> {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        let n = self.bodies.len();
-        let mut base_position = None;
-        match (input.actuation, self.prescribed) {
-            (Actuation::Effort(_), false) => {}
-            (Actuation::Motion(now), true) => {
-                let h = self.step;
-                let derivatives = [h * now.v, h * h * now.a, h * h * h * now.j, h * h * h * h * now.s];
-                self.y[2 * n - 1..2 * n + 3].copy_from_slice(&derivatives);
-                self.y[n - 1] = derivatives[0];
-                base_position = Some(now.after(h).x);
-            }
-            (Actuation::Effort(_), true) | (Actuation::Motion(_), false) => {
-                return Err(MechanicsError::wrong_actuation(NAME));
-            }
-        }
-        let mut u = self.efforts(input);
-        let stuck = if self.any_dry { self.grip(&mut u) } else { 0 };
-        let Some(hold) = &self.holds[stuck] else {
-            return Err(MechanicsError::Native {
-                engine: NAME,
-                message: format!("no transition for stuck set {stuck}"),
-            });
-        };
-
-        let states = states(&self.chain, self.prescribed);
-        let mut next = [0.0; W];
-        for (column, factor) in hold.iter().zip(self.y[..states].iter().chain(&u)) {
-            for (next, entry) in next.iter_mut().zip(column) {
-                *next += entry * factor;
-            }
-        }
-        let travel = std::mem::take(&mut next[states]);
-
-        let mut axis_position =
-            base_position.unwrap_or(self.chain.bodies()[0].transmission * self.bodies[0].position + travel);
-        for i in 0..n {
-            let body = &self.chain.bodies()[i];
-            if i > 0 {
-                axis_position -= next[i - 1];
-            }
-            if stuck & (1 << i) != 0 {
-                self.bodies[i].velocity = 0.0;
-                next[n - 1 + i] = 0.0;
-                continue;
-            }
-            let mut velocity = next[n - 1 + i] * self.per_travel[i];
-            if !(self.prescribed && i == 0) && body.friction.settle(self.bodies[i].velocity, velocity) {
-                velocity = 0.0;
-                next[n - 1 + i] = 0.0;
-            }
-            self.bodies[i] = BodyState { position: axis_position * self.per_axis[i], velocity };
-        }
-        self.y = next;
-        let total: f64 = self.bodies.iter().map(|body| body.position + body.velocity).sum();
-        if total.is_finite() {
-            Ok(())
-        } else {
-            Err(MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() })
-        }
+        wide_registers!(self.advanced(input), Self::advanced_in_wide_registers, self, input)
     }
 
     fn copy(&self) -> Option<Box<dyn Mechanics>> {
@@ -221,15 +245,15 @@ impl<const W: usize> Mechanics for ExactChain<W> {
     }
 
     fn mark(&mut self) -> Result<(), MechanicsError> {
-        let (y, bodies) = self.marked.get_or_insert_with(|| (self.y, Vec::new()));
-        *y = self.y;
+        let (factors, bodies) = self.marked.get_or_insert_with(|| (self.factors, Vec::new()));
+        *factors = self.factors;
         bodies.clone_from(&self.bodies);
         Ok(())
     }
 
     fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some((y, bodies)) = &self.marked else { return Err(MechanicsError::NoWayBack) };
-        self.y = *y;
+        let Some((factors, bodies)) = &self.marked else { return Err(MechanicsError::NoWayBack) };
+        self.factors = *factors;
         self.bodies.clone_from(bodies);
         Ok(())
     }

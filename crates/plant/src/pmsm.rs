@@ -18,11 +18,12 @@
 //! P_stored     = 3/2·(L_d·Δ(i_d²) + L_q·Δ(i_q²))/2h
 //! P_electrical = P_copper + P_stored + P_air-gap
 //! ```
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 mod maps;
 mod table;
 
 use maps::{Forms, Maps};
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
@@ -176,19 +177,42 @@ impl Ticks {
     /// Advances the currents to tick k+1 and returns the mean torque over the tick (N·m).
     #[inline]
     pub fn step(&self, x: &mut State, u: &Input) -> f64 {
+        wide_registers!(self.solved_without_power(x, u), Self::in_wide_registers_without_power, self, x, u)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn in_wide_registers_without_power(&self, x: &mut State, u: &Input) -> f64 {
+        self.solved_without_power(x, u)
+    }
+
+    #[inline(always)]
+    fn solved_without_power(&self, x: &mut State, u: &Input) -> f64 {
         let solution = self.solve::<false>(x.current, u);
         x.current = moved(x.current, solution.change);
         self.params.torque_factor() * solution.means.torque
     }
 
     /// The same with the powers.
+    #[inline]
     pub fn step_with_power(&self, x: &mut State, u: &Input) -> Output {
+        wide_registers!(self.solved_with_power(x, u), Self::in_wide_registers, self, x, u)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn in_wide_registers(&self, x: &mut State, u: &Input) -> Output {
+        self.solved_with_power(x, u)
+    }
+
+    #[inline(always)]
+    fn solved_with_power(&self, x: &mut State, u: &Input) -> Output {
         let (solution, before) = (self.solve::<true>(x.current, u), x.current);
         x.current = moved(before, solution.change);
         self.params.output(&solution, before, x.current, u.omega_e, self.h)
     }
 
-    #[inline]
+    #[inline(always)]
     fn solve<const POWER: bool>(&self, i: Dq, u: &Input) -> Solution {
         let in_table = self.tables.solve::<POWER>(u.omega_e * self.h, i, u);
         in_table.unwrap_or_else(|| solve(&self.params, i, u, self.h))

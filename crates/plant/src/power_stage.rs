@@ -1,8 +1,9 @@
 //! Power stage: from the drive's command to the effort on the motor body.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::mechanics::BodyState;
 use crate::source::IdealSource;
 use crate::{inverter, pmsm};
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, PowerCommand, Rotation};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError, PowerCommand};
 use std::sync::Arc;
 
 /// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
@@ -20,7 +21,7 @@ enum Stage {
         /// Motor speed a tick ago (rad/s), to tell the mean over the coming tick.
         last_speed: f64,
         /// Rotor at this tick.
-        rotor: Rotation,
+        rotor: KnownRotation,
         /// Whether the inverter gives less voltage than it is asked for.
         shortens: bool,
         /// What the inverter gives over the coming tick, as the rotor meets it in the middle of the tick (V, peak).
@@ -56,7 +57,7 @@ impl PowerStage {
             state: pmsm::State::default(),
             u_dc: dc_link,
             last_speed: speed,
-            rotor: Rotation::default(),
+            rotor: KnownRotation::default(),
             shortens: false,
             voltage: Dq::default(),
             power: Some(pmsm::Power::default()),
@@ -64,15 +65,25 @@ impl PowerStage {
     }
 
     /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
-    #[inline]
+    #[inline(always)]
     pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         match &mut self.0 {
             Stage::Pmsm { motor: synchronous, state, rotor, .. } => {
                 let ratio = synchronous.params().electrical_ratio;
-                *rotor = ElectricalAngle::from_mechanical(motor.position, ratio).rotation();
-                state.current.to_alpha_beta(*rotor)
+                *rotor = KnownRotation::of(ElectricalAngle::from_mechanical(motor.position, ratio));
+                state.current.to_alpha_beta(rotor.rotation())
             }
             Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
+        }
+    }
+
+    /// The rotation of the rotor when the current was measured last.
+    #[inline(always)]
+    #[must_use]
+    pub fn rotation(&self) -> KnownRotation {
+        match &self.0 {
+            Stage::Pmsm { rotor, .. } => *rotor,
+            Stage::Ideal { .. } | Stage::Off => KnownRotation::default(),
         }
     }
 
@@ -82,13 +93,13 @@ impl PowerStage {
     pub fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
         self.measured_current(motor);
         match &mut self.0 {
-            Stage::Pmsm { rotor, .. } => voltage.to_alpha_beta(*rotor),
+            Stage::Pmsm { rotor, .. } => voltage.to_alpha_beta(rotor.rotation()),
             Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
         }
     }
 
     /// Stator current in the rotor frame (A, peak).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn current(&self) -> Dq {
         match &self.0 {
@@ -98,7 +109,7 @@ impl PowerStage {
     }
 
     /// Output of an ideal source after its limit; 0 for others.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn output(&self, command: PowerCommand) -> f64 {
         match (&self.0, command) {
@@ -108,14 +119,14 @@ impl PowerStage {
     }
 
     /// Whether the inverter gave less voltage than it was asked for at the last tick.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn shortens_voltage(&self) -> bool {
         matches!(self.0, Stage::Pmsm { shortens: true, .. })
     }
 
     /// What the inverter gives over the last tick that was advanced, as the rotor meets it in the middle of that tick (V).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn voltage(&self) -> Dq {
         match &self.0 {
@@ -125,7 +136,7 @@ impl PowerStage {
     }
 
     /// Mean powers of the motor over that tick (W); zero where nobody wants them.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn power(&self) -> pmsm::Power {
         match &self.0 {
@@ -143,7 +154,7 @@ impl PowerStage {
     }
 
     /// Goes from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
-    #[inline]
+    #[inline(always)]
     pub fn advance(&mut self, command: PowerCommand, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
         match (&mut self.0, command) {
@@ -158,7 +169,7 @@ impl PowerStage {
                 *shortens = is_shorter(given, wanted);
                 let input = pmsm::Input {
                     voltage: given,
-                    rotor: *rotor,
+                    rotor: rotor.rotation(),
                     omega_e: ticks.params().electrical_ratio * mean_speed,
                 };
                 *voltage = input.voltage_at_middle(h);
@@ -195,6 +206,7 @@ fn is_shorter(given: AlphaBeta, wanted: AlphaBeta) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_base::Rotation;
 
     /// Saarakkala/Hinkkanen, 2.2 kW.
     const MOTOR: pmsm::Params = pmsm::Params {

@@ -2,7 +2,7 @@
 use crate::equipment::{Equipment, Presence, Rates, Writer};
 use crate::instant::Instant;
 use crate::unit::Unit;
-use servobench_trace::ChannelSpec;
+use servobench_trace::{BLOCK, ChannelSpec, Column, Row};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -61,6 +61,17 @@ macro_rules! signals {
                 let $now = now;
                 $value
             },)+]
+        }
+
+        /// The same at place `at` of their columns.
+        #[inline]
+        fn put(now: &Instant, columns: &mut [Column; COUNT], at: usize) {
+            // Once for all of them.
+            assert!(at < BLOCK, "a block has no row {at}");
+            $(columns[Signal::$signal as usize][at] = {
+                let $now = now;
+                $value
+            };)+
         }
     };
 }
@@ -182,9 +193,9 @@ impl Signal {
 /// # Panics
 /// When the row is that of another recorder.
 #[inline]
-pub fn write_row(now: &Instant, to: &mut [f64]) {
-    let to: &mut [f64; COUNT] = to.try_into().expect("a row has room for each signal");
-    *to = row(now);
+pub fn write_row(now: &Instant, to: Row<'_>) {
+    let (columns, at) = to.of_columns();
+    put(now, columns, at);
 }
 
 /// A name that no signal has.

@@ -1,4 +1,5 @@
 //! One axis: its closed loop, what acts on it from outside, and what is recorded of it.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::external::External;
 use crate::joint_watch::JointWatch;
@@ -64,15 +65,17 @@ impl Axis {
 
     /// Tick `k`, which is at `time` (s), but for the mechanics: the loop, then its row. What is recorded together belongs to the same
     /// instant.
+    #[inline(always)]
     pub(crate) fn observe(&mut self, k: u64, time: f64) {
         self.closed_loop.tick(k, &self.external, &mut self.recorder, &mut self.now);
         self.record(time);
     }
 
+    #[inline(always)]
     fn record(&mut self, time: f64) {
         let now = &mut self.now;
         let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
-        self.limits.tick(time, now.binds, cut, &mut self.recorder);
+        self.limits.tick(time, &now.binds, cut, &mut self.recorder);
         self.joints.tick(time, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
@@ -86,6 +89,7 @@ impl Axis {
     ///
     /// # Errors
     /// [`Reason`] why the loop cannot go on.
+    #[inline(always)]
     pub(crate) fn integrate(&mut self) -> Result<(), Reason> {
         self.closed_loop.integrate(&self.external, &self.now)
     }

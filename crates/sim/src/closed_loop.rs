@@ -1,4 +1,5 @@
 //! The closed loop, in execution order.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
 use crate::network::{Measurement, Network, Request};
@@ -88,6 +89,7 @@ impl ClosedLoop {
     /// over the tick drives the mechanics; disturbances and the push of an end stop are held over the tick.
     ///
     /// `now` is that of the tick before; what nobody writes in this loop stays as it was.
+    #[inline(always)]
     pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder, now: &mut Instant) {
         if external.start && self.state.begun.is_none() {
             self.state.begun = Some(k);
@@ -118,6 +120,7 @@ impl ClosedLoop {
     }
 
     /// sample(k): the bodies in the axis coordinate come to `now`; the motor in its own is returned.
+    #[inline(always)]
     pub(crate) fn sample(&self, external: &External, now: &mut Instant) -> BodyState {
         let measured = external.measured.as_ref().map(<[BodyState; 2]>::as_slice);
         let bodies = measured.unwrap_or_else(|| self.mechanics.bodies());
@@ -130,11 +133,13 @@ impl ClosedLoop {
     }
 
     /// A body of the mechanics as a motor, or an encoder, sees it that is mounted on it.
+    #[inline(always)]
     fn as_mounted(&self, BodyState { position, velocity }: BodyState) -> BodyState {
         BodyState { position: self.direction * position, velocity: self.direction * velocity }
     }
 
     /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
+    #[inline(always)]
     fn account(&self, position: f64, now: &mut Instant) {
         let Shaft { effort, position: before } = self.state.shaft;
         now.power = self.state.power.power();
@@ -143,6 +148,7 @@ impl ClosedLoop {
 
     /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
     /// coordinate, as it is mounted.
+    #[inline(always)]
     fn control(
         &mut self,
         k: u64,
@@ -172,6 +178,7 @@ impl ClosedLoop {
                 Some(encoder) => Feedback::Load(encoder.read(load.position, load.velocity).position),
             },
             current: self.state.power.measured_current(motor),
+            known_rotation: self.state.power.rotation(),
         };
         let Control { params, state, .. } = control;
         let command = match &mut self.state.source {
@@ -235,6 +242,7 @@ impl ClosedLoop {
     ///
     /// # Errors
     /// [`Reason`] why the loop cannot go on.
+    #[inline(always)]
     pub(crate) fn integrate(&mut self, external: &External, now: &Instant) -> Result<(), Reason> {
         self.check()?;
         if external.measured.is_some() {
@@ -257,6 +265,7 @@ impl ClosedLoop {
     ///
     /// # Errors
     /// [`Reason::Program`] why it gave up.
+    #[inline(always)]
     fn check(&mut self) -> Result<(), Reason> {
         match &mut self.state.source {
             Source::Network(network, _) => network.failure().map_or(Ok(()), |reason| Err(Reason::Program(reason))),

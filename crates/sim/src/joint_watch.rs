@@ -1,4 +1,5 @@
 //! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
 use servobench_plant::JointLimit;
 use servobench_trace::{Event, Recorder};
@@ -16,7 +17,7 @@ pub(crate) struct JointWatch {
 
 impl JointWatch {
     /// Takes which ends bind at tick `t` (s).
-    #[inline]
+    #[inline(always)]
     pub(crate) fn tick(&mut self, t: f64, limits: &[JointLimit], recorder: &mut Recorder) {
         let bound = limits.iter().any(|limit| limit.binds);
         if bound || self.bound {

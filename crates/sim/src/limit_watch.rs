@@ -1,4 +1,5 @@
 //! Watches the limits that bind: nothing is cut in silence, and what goes from limit to limit is noted.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_signals::PerLimit;
 use servobench_trace::{Event, LimitReversals, Recorder};
 
@@ -34,13 +35,17 @@ const EFFORT: Limit = ("velocity loop", PerLimit::NAMES.effort);
 
 impl LimitWatch {
     /// Takes which limits bind at tick `t` (s), and what each of them cuts, of which the sign counts.
-    #[inline]
-    pub(crate) fn tick(&mut self, t: f64, binds: PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
+    #[inline(always)]
+    #[expect(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "a copy waits until all of it that was just written is in the cache"
+    )]
+    pub(crate) fn tick(&mut self, t: f64, binds: &PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
         self.ticks += 1;
-        let bound = binds.voltage || binds.current || binds.effort;
+        let bound = binds.voltage | binds.current | binds.effort;
         if bound || self.bound {
             self.bound = bound;
-            self.note(t, binds, cut, recorder);
+            self.note(t, *binds, cut, recorder);
         }
     }
 
@@ -131,7 +136,7 @@ mod tests {
     fn events(binds: impl IntoIterator<Item = PerLimit<bool>>) -> Vec<Event> {
         let (mut recorder, mut watch, mut t) = (recorder(), LimitWatch::default(), 0.0);
         for binds in binds {
-            watch.tick(t, binds, POSITIVE, &mut recorder);
+            watch.tick(t, &binds, POSITIVE, &mut recorder);
             t += 1.0;
         }
         watch.finish(t - 1.0, &mut recorder);
@@ -146,7 +151,7 @@ mod tests {
         let (mut recorder, mut watch) = (recorder(), LimitWatch::default());
         for (t, effort) in [(0.0, 1.0), (1.0, 2.0), (2.0, 0.0), (3.0, -1.0), (4.0, 0.0), (5.0, -3.0), (6.0, 0.5)] {
             let cut = PerLimit { effort, ..PerLimit::default() };
-            watch.tick(t, binding(false, false, effort != 0.0), cut, &mut recorder);
+            watch.tick(t, &binding(false, false, effort != 0.0), cut, &mut recorder);
         }
         watch.finish(7.0, &mut recorder);
         let found = recorder.finish().limit_reversals;
@@ -175,10 +180,10 @@ mod tests {
         for (voltage, current, effort) in
             [(true, false, false), (true, true, false), (false, true, false), (true, false, true)]
         {
-            watch.tick(0.0, binding(voltage, current, effort), POSITIVE, &mut recorder);
+            watch.tick(0.0, &binding(voltage, current, effort), POSITIVE, &mut recorder);
         }
         assert_eq!(watch.shares(), PerLimit { voltage: 0.75, current: 0.5, effort: 0.25 });
-        watch.tick(0.0, binding(true, false, false), POSITIVE, &mut recorder);
+        watch.tick(0.0, &binding(true, false, false), POSITIVE, &mut recorder);
         assert_eq!(watch.shares(), PerLimit { voltage: 1.0, current: 0.0, effort: 0.0 });
     }
 

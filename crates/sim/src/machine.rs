@@ -1,7 +1,8 @@
 //! Axes at one time, and the one tick that moves them.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::axis::Axis;
 use crate::run::{AxisFailure, Failure, Reason};
-use servobench_base::{Rate, Tick};
+use servobench_base::{Rate, Tick, wide_registers};
 use std::ops::ControlFlow;
 
 /// Ticks, or exchanges, after which log lines of FMUs are fetched. Each line has its own time; fetching costs system calls.
@@ -31,12 +32,14 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
     ///
     /// # Errors
     /// [`AxisFailure`] says which axis cannot go on, and why.
+    #[inline(always)]
     pub(crate) fn tick(&mut self) -> Result<(), AxisFailure> {
         self.observe();
         self.integrate()
     }
 
     /// Tick k but for the mechanics: all of the last tick of a run.
+    #[inline(always)]
     pub(crate) fn observe(&mut self) {
         let (k, time) = (self.tick, self.time());
         for axis in self.axes.as_mut() {
@@ -44,6 +47,7 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         }
     }
 
+    #[inline(always)]
     fn integrate(&mut self) -> Result<(), AxisFailure> {
         let time = self.time();
         for (index, axis) in self.axes.as_mut().iter_mut().enumerate() {
@@ -67,6 +71,21 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         ticks: u64,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(), AxisFailure> {
+        wide_registers!(self.all_ticks(ticks, progress), Self::all_ticks_in_wide_registers, self, ticks, progress)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn all_ticks_in_wide_registers(
+        &mut self,
+        ticks: u64,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<(), AxisFailure> {
+        self.all_ticks(ticks, progress)
+    }
+
+    #[inline(always)]
+    fn all_ticks(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), AxisFailure> {
         let mut done = Ok(());
         while done.is_ok() && self.tick + 1 < ticks {
             if self.tick.is_multiple_of(PROGRESS_EVERY) && progress(self.tick as f64 / ticks as f64).is_break() {

@@ -2,6 +2,7 @@
 use crate::axis::Axis;
 use crate::bench::{Bench, Loop};
 use crate::machine::Machine;
+use servobench_metrics::MEASURED_FROM;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
 use std::ops::ControlFlow;
@@ -61,6 +62,17 @@ impl From<AxisFailure> for Failure {
 }
 
 impl Bench {
+    /// The same, but only signals that metrics are made of are recorded: for a run of which nothing else is wanted. With FMUs attached
+    /// everything is.
+    #[must_use]
+    pub fn only_to_measure(mut self) -> Self {
+        if let Loop::Alone(machine) = &mut self.closed_loop {
+            let [axis] = &mut machine.axes;
+            axis.recorder.retain(|spec| MEASURED_FROM.iter().any(|signal| signal.name() == spec.name));
+        }
+        self
+    }
+
     /// Runs to the end; `progress` is told the share that is done, from 0 to 1.
     #[must_use]
     pub fn run(self, progress: &mut dyn FnMut(f64)) -> Outcome {

@@ -107,7 +107,7 @@ fn recorded(
         return workers.run(job, progress);
     }
     let limit = TimeLimit::of(job, workers.limits());
-    let built_by = Loop { engine, fmu_opener: engines.fmu_opener };
+    let built_by = Loop { engine, fmu_opener: engines.fmu_opener, records_all: job.records_all() };
     let (recording, failure) = run_here(&job.scenario, built_by, limit.map(|limit| limit.time), progress)?;
     let interruption = failure.map(|failure| match (limit, &failure.reason) {
         (Some(limit), Reason::Stopped) => Interruption::Broken(limit.exceeded(failure.time)),
@@ -146,17 +146,21 @@ impl<'a> TimeLimit<'a> {
 pub(crate) struct Loop<'a> {
     pub(crate) engine: &'a dyn Engine,
     pub(crate) fmu_opener: &'a dyn FmuOpener,
+    /// Whether all signals are recorded that the scenario asks for.
+    pub(crate) records_all: bool,
 }
 
 /// Runs in this process, for `time_limit` at most.
 pub(crate) fn run_here(
     scenario: &Scenario,
-    Loop { engine, fmu_opener }: Loop<'_>,
+    Loop { engine, fmu_opener, records_all }: Loop<'_>,
     time_limit: Option<Duration>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Recording, Option<Failure>), RunError> {
     let watch = Stopwatch::start();
-    let outcome = Bench::with_fmus(scenario, engine, fmu_opener)?.run_while(&mut |share| {
+    let bench = Bench::with_fmus(scenario, engine, fmu_opener)?;
+    let bench = if records_all { bench } else { bench.only_to_measure() };
+    let outcome = bench.run_while(&mut |share| {
         progress(share);
         let is_late = time_limit.is_some_and(|limit| watch.elapsed() > limit);
         if is_late { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

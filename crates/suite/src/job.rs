@@ -17,6 +17,8 @@ pub struct Job {
     pub engine: EngineName,
     /// What [`Job::slow_to`] was told. A worker process is told it beside the text.
     durations: Vec<f64>,
+    /// Whether somebody wants the recording, and not only what is measured of it.
+    keeps_recording: bool,
 }
 
 /// How long a run goes on after its program when the scenario does not say (s), as [`Scenario::duration`] has it.
@@ -27,13 +29,24 @@ impl Job {
     #[must_use]
     pub fn new(id: String, source: Source, engine: EngineName) -> Self {
         let Source { scenario, text } = source;
-        Self { id, scenario, text, engine, durations: Vec::new() }
+        Self { id, scenario, text, engine, durations: Vec::new(), keeps_recording: true }
     }
 
     /// Slows the moves to `durations` (s), one for each move.
     pub fn slow_to(&mut self, durations: Vec<f64>) {
         slow_to(&mut self.scenario, &durations);
         self.durations = durations;
+    }
+
+    /// From now on nobody wants the recording: what it has, unless the scenario names channels, are the signals that metrics are made
+    /// of. Metrics and verdict are the same.
+    pub const fn leave_recording_out(&mut self) {
+        self.keeps_recording = false;
+    }
+
+    /// Whether all signals are recorded that the scenario asks for.
+    pub(crate) fn records_all(&self) -> bool {
+        self.keeps_recording || !self.scenario.record.channels.is_empty()
     }
 
     /// Durations that the moves are slowed to (s), one for each move; empty: as the scenario says.

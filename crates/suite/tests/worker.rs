@@ -44,7 +44,7 @@ fn order(text: &str) -> Order {
         overrides: vec![],
         engine: "exact".into(),
         durations: vec![],
-        task: Task::Run { time_limit: None },
+        task: Task::Run { time_limit: None, records_all: true },
     }
 }
 
@@ -88,7 +88,7 @@ fn a_reason_does_not_depend_on_where_the_run_happened() {
 #[test]
 fn a_run_that_reaches_its_limit_of_time_says_how_far_it_came() {
     let endless = WILD.replace("2 MHz", "20 Hz").replace("2 s", "1e6 s") + "[record]\nrate = \"1 Hz\"\n";
-    let task = Task::Run { time_limit: Some(Duration::from_millis(100)) };
+    let task = Task::Run { time_limit: Some(Duration::from_millis(100)), records_all: true };
     let End::Stopped(time) = served(&Order { task, ..order(&endless) }) else { panic!("it is stopped") };
     assert!(time < 1e6, "{time}");
 }

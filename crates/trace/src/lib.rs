@@ -23,7 +23,7 @@ pub use channel::{Channel, ChannelSpec};
 pub use envelope::envelope;
 pub use error::TraceError;
 pub use log::LogEntry;
-pub use recorder::{Mark, Recorder, SignalId};
+pub use recorder::{BLOCK, Column, Mark, Recorder, Row, SignalId};
 pub use recording::{About, BoundLimit, Call, CallFate, Event, LimitReversals, Move, Recording, Signal};
 pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;

@@ -4,8 +4,31 @@ use crate::log::Log;
 use crate::recording::{About, Call, Event, LimitReversals, Move, Recording, Signal};
 use servobench_base::{Rate, Severity};
 
-/// Rows that are collected before they go to the columns: a block stays in the first cache.
-const BLOCK: usize = 64;
+/// Rows that are collected before they go to the channels: a block stays in the first cache, in which columns of 9 lines
+/// share no place, as columns of 8 would.
+pub const BLOCK: usize = 72;
+
+/// Values of one column in the rows of a block.
+pub type Column = [f64; BLOCK];
+
+/// A row that is to be filled in.
+#[derive(Debug)]
+pub struct Row<'a> {
+    columns: &'a mut [Column],
+    at: usize,
+}
+
+impl<'a> Row<'a> {
+    /// The columns of the block, and the place of this row in each of them.
+    ///
+    /// # Panics
+    /// When there are not `N` columns: whoever writes the row is wrong.
+    #[inline]
+    #[must_use]
+    pub fn of_columns<const N: usize>(self) -> (&'a mut [Column; N], usize) {
+        (self.columns.try_into().expect("the row of this recorder has another width"), self.at)
+    }
+}
 
 /// A signal of a recorder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,11 +47,10 @@ pub struct Mark {
 #[derive(Debug)]
 pub struct Recorder {
     recording: Recording,
-    /// Room for [`BLOCK`] rows, one after the other, of which the first `rows` are there.
-    block: Vec<f64>,
+    /// Columns of a block, of which the first `rows` rows are there.
+    block: Vec<Column>,
     rows: usize,
-    /// Values in a row, and where that of each channel stands.
-    width: usize,
+    /// The column of each channel.
     columns: Vec<usize>,
     log: Log,
     is_silent: bool,
@@ -38,11 +60,10 @@ impl Recorder {
     /// A recorder with room for `rows` rows; more rows work, but allocate.
     #[must_use]
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
-        let (width, columns) = (channels.len(), (0..channels.len()).collect());
+        let (block, columns) = (vec![[0.0; BLOCK]; channels.len()], (0..channels.len()).collect());
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
         let recording = Recording { channels, ..Recording::new(about, rate) };
-        let block = vec![0.0; BLOCK * width];
-        Self { recording, block, rows: 0, width, columns, log: Log::default(), is_silent: false }
+        Self { recording, block, rows: 0, columns, log: Log::default(), is_silent: false }
     }
 
     /// The same recorder for rows of `width` values, of which it keeps the one at `columns[i]` in channel i.
@@ -53,7 +74,18 @@ impl Recorder {
     pub fn with_rows(self, width: usize, columns: Vec<usize>) -> Self {
         assert_eq!(columns.len(), self.recording.channels.len(), "a row has one value for each channel");
         assert!(columns.iter().all(|column| *column < width), "a row has one value for each channel");
-        Self { block: vec![0.0; BLOCK * width], width, columns, ..self }
+        Self { block: vec![[0.0; BLOCK]; width], columns, ..self }
+    }
+
+    /// Leaves out the channels that are not `wanted`, before the first row.
+    pub fn retain(&mut self, wanted: impl Fn(&ChannelSpec) -> bool) {
+        let mut columns = self.columns.iter();
+        let of_channels = self.recording.channels.iter().filter_map(|channel| {
+            let column = columns.next();
+            column.filter(|_| wanted(&channel.spec)).copied()
+        });
+        self.columns = of_channels.collect();
+        self.recording.channels.retain(|channel| wanted(&channel.spec));
     }
 
     /// A recorder that keeps nothing, for a loop that nobody records and that may go on for ever.
@@ -67,27 +99,31 @@ impl Recorder {
     /// # Panics
     /// When `row` is not as long as the recorder's rows: the loop that writes it is wrong.
     pub fn push(&mut self, row: &[f64]) {
-        self.push_with(|slot| slot.copy_from_slice(row));
+        self.push_with(|Row { columns, at }| {
+            assert_eq!(columns.len(), row.len(), "the row of this recorder has another width");
+            for (column, value) in columns.iter_mut().zip(row) {
+                column[at] = *value;
+            }
+        });
     }
 
     /// Appends the row that `write` fills in where it is kept.
     #[inline]
-    pub fn push_with(&mut self, write: impl FnOnce(&mut [f64])) {
+    pub fn push_with(&mut self, write: impl FnOnce(Row<'_>)) {
         if self.is_silent {
             return;
         }
-        let from = self.rows * self.width;
-        write(&mut self.block[from..from + self.width]);
+        write(Row { columns: &mut self.block, at: self.rows });
         self.rows += 1;
         if self.rows == BLOCK {
             self.flush();
         }
     }
 
-    /// Moves the block to the columns.
+    /// Moves the block to the channels.
     fn flush(&mut self) {
         for (channel, column) in self.recording.channels.iter_mut().zip(&self.columns) {
-            channel.values.extend(self.block.chunks_exact(self.width).take(self.rows).map(|row| row[*column]));
+            channel.values.extend_from_slice(&self.block[*column][..self.rows]);
         }
         self.rows = 0;
     }
@@ -201,7 +237,7 @@ mod tests {
             bodies: vec!["motor".into()],
             overrides: vec![],
         };
-        for rows in [0_u32, 1, 63, 64, 65, 200] {
+        for rows in [0_u32, 1, 71, 72, 73, 200] {
             let mut recorder = Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
             for k in 0..rows {
                 recorder.push(&[f64::from(k), -f64::from(k)]);
@@ -211,6 +247,26 @@ mod tests {
             let down: Vec<f64> = up.iter().map(|k| -k).collect();
             assert_eq!((recording.channel("up"), recording.channel("down")), (Some(&up[..]), Some(&down[..])));
         }
+    }
+
+    #[test]
+    fn channels_that_nobody_wants_are_left_out() {
+        let rate = Rate::new(1_000).unwrap();
+        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
+        let about = About {
+            scenario: "s".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec![],
+            overrides: vec![],
+        };
+        let mut recorder =
+            Recorder::new(about, rate, ["a", "b", "c"].map(spec).to_vec(), 1).with_rows(4, vec![3, 1, 0]);
+        recorder.retain(|spec| spec.name != "b");
+        recorder.push(&[1.0, 2.0, 3.0, 4.0]);
+        let recording = recorder.finish();
+        assert_eq!((recording.channel("a"), recording.channel("c")), (Some(&[4.0][..]), Some(&[1.0][..])));
+        assert_eq!(recording.channels.len(), 2);
     }
 
     /// Oracle: a recorder to which only what stays was said.
@@ -226,7 +282,7 @@ mod tests {
             overrides: vec![],
         };
         let recorder = || Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
-        for kept in [0_u32, 1, 63, 64, 65, 150] {
+        for kept in [0_u32, 1, 71, 72, 73, 150] {
             let (mut with, mut without) = (recorder(), recorder());
             let [one, other] = [&mut with, &mut without].map(|recorder| recorder.add_signal("axis", "state"));
             let note = |recorder: &mut Recorder, signal, k: u32, sign: f64| {
@@ -242,7 +298,7 @@ mod tests {
             }
             let mark = with.mark(f64::from(kept));
             for _ in 0..3 {
-                for k in kept..kept + 70 {
+                for k in kept..kept + 80 {
                     note(&mut with, one, k, 2.0);
                 }
                 with.rewind(&mark);

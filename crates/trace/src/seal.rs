@@ -22,10 +22,38 @@ pub(crate) const BLANK: &str = "0000000000000000";
 /// How a value of 16 bytes starts, after its key.
 const VALUE_START: [u8; 2] = [0x18, 0x10];
 
-/// Seals the file: computes the digest and writes it over the blank. Returns whether there was a place for it.
-pub(crate) fn apply(file: &mut (impl Read + Write + Seek)) -> io::Result<bool> {
+/// Hashes what passes through it on its way to a file that is to be sealed, so that nobody has to read it again.
+pub(crate) struct Hashed<W> {
+    sink: W,
+    hash: XxHash64,
+}
+
+impl<W: Write> Hashed<W> {
+    pub(crate) fn new(sink: W) -> Self {
+        Self { sink, hash: XxHash64::with_seed(0) }
+    }
+
+    /// The digits that seal the file, all of which has passed, with the blank in it.
+    pub(crate) fn digits(self) -> String {
+        digits(&self.hash)
+    }
+}
+
+impl<W: Write> Write for Hashed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.sink.write(bytes)?;
+        self.hash.write(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.sink.flush()
+    }
+}
+
+/// Seals the file: writes the digits of all its bytes over the blank. Returns whether there was a place for them.
+pub(crate) fn apply(file: &mut (impl Read + Write + Seek), digits: &str) -> io::Result<bool> {
     let Some((start, _)) = find(file)? else { return Ok(false) };
-    let digits = digest(file, start)?;
     file.seek(SeekFrom::Start(start))?;
     file.write_all(digits.as_bytes())?;
     Ok(true)
@@ -89,7 +117,11 @@ fn digest(file: &mut (impl Read + Seek), blank: u64) -> io::Result<String> {
     hash.write(BLANK.as_bytes());
     file.seek(SeekFrom::Start(blank + DIGITS as u64))?;
     hash_all(file, &mut hash)?;
-    Ok(format!("{:016x}", hash.finish()))
+    Ok(digits(&hash))
+}
+
+fn digits(hash: &XxHash64) -> String {
+    format!("{:016x}", hash.finish())
 }
 
 fn hash_all(mut source: impl Read, hash: &mut XxHash64) -> io::Result<()> {
@@ -120,7 +152,13 @@ mod tests {
         let mut file = unsealed();
         let expected = format!("{:016x}", XxHash64::oneshot(0, file.get_ref()));
         assert_eq!(holds(&mut file).unwrap(), Some(false));
-        assert!(apply(&mut file).unwrap());
+        let mut hashed = Hashed::new(Vec::new());
+        for part in file.get_ref().chunks(7) {
+            hashed.write_all(part).unwrap();
+        }
+        assert_eq!(&hashed.sink, file.get_ref());
+        let digits = hashed.digits();
+        assert!(apply(&mut file, &digits).unwrap());
         assert!(file.get_ref().windows(16).any(|window| window == expected.as_bytes()));
         assert_eq!(holds(&mut file).unwrap(), Some(true));
     }
@@ -134,7 +172,8 @@ mod tests {
     #[test]
     fn one_bit_breaks_it() {
         let mut file = unsealed();
-        apply(&mut file).unwrap();
+        let digits = format!("{:016x}", XxHash64::oneshot(0, file.get_ref()));
+        apply(&mut file, &digits).unwrap();
         for index in 0..file.get_ref().len() {
             file.get_mut()[index] ^= 4;
             assert_ne!(holds(&mut file).unwrap(), Some(true), "byte {index}");
@@ -146,7 +185,7 @@ mod tests {
     #[test]
     fn without_a_place_there_is_no_seal() {
         for bytes in [&b""[..], b"PAR1", &[0xff; 40], &[0; 40]] {
-            assert!(!apply(&mut Cursor::new(bytes.to_vec())).unwrap());
+            assert!(!apply(&mut Cursor::new(bytes.to_vec()), BLANK).unwrap());
             assert_eq!(holds(&mut Cursor::new(bytes.to_vec())).unwrap(), None);
         }
     }

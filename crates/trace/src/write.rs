@@ -2,15 +2,16 @@
 use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
+use crate::seal::Hashed;
 use crate::whole_file::Unfinished;
 use crate::{TIME, arrow, seal};
-use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType, ZstdLevel};
+use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
 use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use std::collections::HashSet;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -36,17 +37,17 @@ impl Recording {
         let io = |action| move |source| TraceError::Io { action, path: path.to_path_buf(), source };
         let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
         let mut unfinished = Unfinished::create(path).map_err(io("create"))?;
-        let mut buffered = BufWriter::with_capacity(1 << 20, &mut unfinished.file);
-        self.encode(&mut buffered).map_err(|error| match error {
+        let mut hashed = Hashed::new(BufWriter::with_capacity(1 << 20, &mut unfinished.file));
+        self.encode(&mut hashed).map_err(|error| match error {
             ParquetError::External(cause) => match cause.downcast() {
                 Ok(source) => io("write")(*source),
                 Err(cause) => encode(cause.to_string()),
             },
             error => encode(error.to_string()),
         })?;
-        buffered.flush().map_err(io("write"))?;
-        drop(buffered);
-        if !seal::apply(&mut unfinished.file).map_err(io("write"))? {
+        hashed.flush().map_err(io("write"))?;
+        let digits = hashed.digits();
+        if !seal::apply(&mut unfinished.file, &digits).map_err(io("write"))? {
             return Err(encode("the encoder left no place for the seal".into()));
         }
         unfinished.finish().map_err(io("put in its place"))
@@ -88,8 +89,11 @@ impl Recording {
             // The bytes of a smooth signal's f64 compress only when equal significance stands side by side.
             .set_dictionary_enabled(false)
             .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-            .set_compression(Compression::ZSTD(ZstdLevel::try_new(1)?))
-            .set_statistics_enabled(EnabledStatistics::Chunk)
+            // Nearly as small as by zstd in half the time: the bytes that do not compress are passed over.
+            .set_compression(Compression::LZ4_RAW)
+            // Somebody looks for a stretch of time, nobody for the rows in which a torque lies between two values.
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_column_statistics_enabled(ColumnPath::from(TIME), EnabledStatistics::Chunk)
             .set_offset_index_disabled(true)
             .build();
         let mut file = SerializedFileWriter::new(sink, self.schema()?, Arc::new(properties))?;

@@ -1,5 +1,5 @@
 //! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step, and of function blocks,
-//! bus and drive in front of it.
+//! bus and drive in front of it; and where the time of a whole run goes.
 use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
@@ -9,7 +9,8 @@ use crate::workspace::{Workspace, run as run_command};
 /// # Errors
 /// [`Failure`] of the build or of the run.
 pub(crate) fn run(workspace: &Workspace, json: bool) -> Result<(), Failure> {
-    let mut bench = workspace.cargo(["bench", "--quiet", "--package", "servobench-tests", "--bench", "closed_loop"]);
+    let mut bench = workspace.cargo(["bench", "--quiet", "--package", "servobench-tests"]);
+    bench.args(["--bench", "closed_loop", "--bench", "run"]);
     match wheel::MUJOCO.ensure(workspace) {
         Ok(_) => {
             bench.args(["--features", "mujoco"]);

@@ -41,8 +41,7 @@ impl Fit {
 
     /// With the one of `candidates` that takes most of what is left.
     pub(crate) fn with_best_of(&self, candidates: impl Iterator<Item = Component>, series: &Series) -> Option<Self> {
-        let mut basis = self.basis.clone();
-        let gains = candidates.filter_map(|one| Some((one, basis.gain(one.columns(series), &self.residual)?)));
+        let gains = candidates.filter_map(|one| Some((one, self.basis.gain(one.columns(series), &self.residual)?)));
         let (best, _) = gains.reduce(|one, two| if two.1 > one.1 { two } else { one })?;
         Self::of([self.components.as_slice(), &[best]].concat(), series)
     }

@@ -1,4 +1,7 @@
 //! Linear least squares by orthonormal columns.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+
+use servobench_base::wide_registers;
 
 /// Below this share of its own length, what is left of a column after projection is rounding.
 const DEPENDENT: f64 = 1e-11;
@@ -22,53 +25,32 @@ impl Orthonormal {
     }
 
     /// Adds a column; `None` when it depends on those that are there, or is not finite.
-    fn push(&mut self, mut column: Vec<f64>) -> Option<()> {
-        let length = norm(&column);
-        let mut above = self.remove_from(&mut column);
-        let left = norm(&column);
-        if !(left.is_finite() && left > DEPENDENT * length) {
-            return None;
-        }
-        for x in &mut column {
-            *x /= left;
-        }
-        above.push(left);
+    fn push(&mut self, column: Vec<f64>) -> Option<()> {
+        let (column, above) = beside(self.columns.iter(), column)?;
         self.columns.push(column);
         self.triangle.push(above);
         Some(())
     }
 
-    /// How much of the sum of squares of `residual`, orthogonal to what is there, further `columns` would take.
-    pub(crate) fn gain(&mut self, columns: Vec<Vec<f64>>, residual: &[f64]) -> Option<f64> {
-        let count = self.columns.len();
-        let independent = columns.into_iter().try_for_each(|column| self.push(column));
-        let taken = self.columns[count..].iter().map(|q| dot(q, residual)).map(|along| along * along).sum();
-        self.columns.truncate(count);
-        self.triangle.truncate(count);
-        independent.map(|()| taken)
+    /// How much of the sum of squares of `residual`, orthogonal to what is there, further `columns` would take; `None` when they depend on
+    /// what is there, or on each other.
+    pub(crate) fn gain(&self, columns: Vec<Vec<f64>>, residual: &[f64]) -> Option<f64> {
+        let mut further: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
+        for column in columns {
+            let (column, _) = beside(self.columns.iter().chain(&further), column)?;
+            further.push(column);
+        }
+        Some(further.iter().map(|q| dot(q, residual)).map(|along| along * along).sum())
     }
 
-    /// Subtracts from `vector` its projection on the columns and returns the projection's coordinates. Modified
-    /// Gram–Schmidt; where it cancels, a second time, which is enough (Giraud, Langou, Rozložník, 2005).
+    /// Subtracts from `vector` its projection on the columns and returns the projection's coordinates.
     pub(crate) fn remove_from(&self, vector: &mut [f64]) -> Vec<f64> {
-        let before = dot(vector, vector);
-        let mut coordinates = self.remove_once(vector);
-        if dot(vector, vector) <= SOUND * before {
-            let more = self.remove_once(vector);
-            coordinates.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-        }
-        coordinates
+        remove(self.columns.iter(), vector)
     }
 
     /// [`remove_from`](Self::remove_from) in one pass: not orthogonal to the last digit where it cancels.
     pub(crate) fn remove_once(&self, vector: &mut [f64]) -> Vec<f64> {
-        let mut coordinates = Vec::with_capacity(self.columns.len() + 1);
-        for column in &self.columns {
-            let along = dot(column, vector);
-            coordinates.push(along);
-            vector.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
-        }
-        coordinates
+        remove_once(self.columns.iter(), vector)
     }
 
     /// The x of `R·x = coordinates`.
@@ -109,8 +91,71 @@ pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Ve
     b.iter().all(|x| x.is_finite()).then_some(b)
 }
 
+/// `column` as a unit vector orthogonal to the `columns`, and its own column of R; `None` when it depends on them, or is not finite.
+fn beside<'a>(
+    columns: impl Iterator<Item = &'a Vec<f64>> + Clone,
+    mut column: Vec<f64>,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let length = norm(&column);
+    let mut above = remove(columns, &mut column);
+    let left = norm(&column);
+    if !(left.is_finite() && left > DEPENDENT * length) {
+        return None;
+    }
+    for x in &mut column {
+        *x /= left;
+    }
+    above.push(left);
+    Some((column, above))
+}
+
+/// Subtracts from `vector` its projection on the `columns` and returns the projection's coordinates. Modified Gram–Schmidt; where it
+/// cancels, a second time, which is enough (Giraud, Langou, Rozložník, 2005).
+fn remove<'a>(columns: impl Iterator<Item = &'a Vec<f64>> + Clone, vector: &mut [f64]) -> Vec<f64> {
+    let before = dot(vector, vector);
+    let mut coordinates = remove_once(columns.clone(), vector);
+    if dot(vector, vector) <= SOUND * before {
+        let more = remove_once(columns, vector);
+        coordinates.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    }
+    coordinates
+}
+
+fn remove_once<'a>(columns: impl Iterator<Item = &'a Vec<f64>>, vector: &mut [f64]) -> Vec<f64> {
+    columns.map(|column| remove_along(column, vector)).collect()
+}
+
+/// Subtracts from `vector` its projection on the unit vector `column` and returns how long that is.
+fn remove_along(column: &[f64], vector: &mut [f64]) -> f64 {
+    wide_registers!(remove_along_in_any(column, vector), remove_along_in_wide_registers, column, vector)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn remove_along_in_wide_registers(column: &[f64], vector: &mut [f64]) -> f64 {
+    remove_along_in_any(column, vector)
+}
+
+#[inline(always)]
+fn remove_along_in_any(column: &[f64], vector: &mut [f64]) -> f64 {
+    let along = dot_in_any(column, vector);
+    vector.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
+    along
+}
+
 /// Sum of products, always in the same order: eight interleaved sums, so that a processor can work on them side by side.
 pub(crate) fn dot(one: &[f64], two: &[f64]) -> f64 {
+    wide_registers!(dot_in_any(one, two), dot_in_wide_registers, one, two)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn dot_in_wide_registers(one: &[f64], two: &[f64]) -> f64 {
+    dot_in_any(one, two)
+}
+
+#[inline(always)]
+fn dot_in_any(one: &[f64], two: &[f64]) -> f64 {
     let ((ones, one_rest), (twos, two_rest)) = (one.as_chunks::<8>(), two.as_chunks::<8>());
     let mut sums = [0.0; 8];
     for (a, b) in ones.iter().zip(twos) {
@@ -145,7 +190,7 @@ mod tests {
     /// About their mean 4/3 the values (1, 1, 2) have 2/3; of that the line of the test above takes 1/2.
     #[test]
     fn the_gain_of_a_column_is_what_a_fit_with_it_takes() {
-        let mut basis = Orthonormal::of(&[vec![1.0, 1.0, 1.0]]).unwrap();
+        let basis = Orthonormal::of(&[vec![1.0, 1.0, 1.0]]).unwrap();
         let mut y = vec![1.0, 1.0, 2.0];
         basis.remove_from(&mut y);
         for _ in 0..2 {

@@ -4,6 +4,8 @@
 //! transform.
 use core::f64::consts::PI;
 use realfft::RealFftPlanner;
+use std::cell::RefCell;
+use std::ops::Range;
 
 /// Lowest frequency that is looked for, in cycles per record.
 pub(crate) const LOWEST: f64 = 0.7;
@@ -11,8 +13,8 @@ pub(crate) const LOWEST: f64 = 0.7;
 pub(crate) const HIGHEST: f64 = 0.45;
 /// Peaks lower than this share of the highest one are not looked at.
 const FAINT: f64 = 0.01;
-/// Bins whose magnitudes differ by less than this share count as equal; the lowest frequency wins.
-const EQUAL: f64 = 1e-9;
+/// Bins whose powers differ by less than this share count as equal; the lowest frequency wins.
+const EQUAL: f64 = 2e-9;
 
 /// Frequencies (Hz) of the highest peaks between `low` and `high` of `values` with steps of `step` (s), equal ones once.
 /// Under a Hann window, in which a lasting mode stands out from a drift; under its falling half, in which a mode that
@@ -23,11 +25,13 @@ pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> 
     let resolution = 1.0 / (length as f64 * step);
     let inside = |k: usize| (low..=high).contains(&(k as f64 * resolution));
     let mut found: Vec<f64> = Vec::with_capacity(4);
-    for magnitudes in windowed(values, length) {
-        let largest = magnitudes.iter().enumerate().filter(|(k, _)| inside(*k)).fold(0.0, |m: f64, (_, x)| m.max(*x));
-        let loud = |k: usize| inside(k) && magnitudes[k] >= FAINT * largest;
-        let slow = highest(&magnitudes, inside, |_| 1.0);
-        let fast = highest(&magnitudes, loud, |k| k as f64);
+    for powers in windowed(values, length) {
+        let first = (0..powers.len()).find(|k| inside(*k)).unwrap_or(powers.len());
+        let count = (first..powers.len()).take_while(|k| inside(*k)).count();
+        let bins = first..first + count;
+        let largest = powers[bins.clone()].iter().fold(0.0, |most: f64, power| most.max(*power));
+        let slow = highest(&powers, bins.clone(), 0.0, |_| 1.0);
+        let fast = highest(&powers, bins, FAINT * FAINT * largest, |k| (k * k) as f64);
         for bin in [slow, fast].into_iter().flatten() {
             let frequency = bin as f64 * resolution;
             if !found.iter().any(|other| (other - frequency).abs() < 2.0 * resolution) {
@@ -38,35 +42,61 @@ pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> 
     found
 }
 
-/// Bin of the highest local maximum of `magnitude × weight` among the bins `inside`.
-fn highest(magnitudes: &[f64], inside: impl Fn(usize) -> bool, weight: impl Fn(usize) -> f64) -> Option<usize> {
+/// Bin of the highest local maximum of `power × weight` among the `bins` that have at least `least`.
+fn highest(powers: &[f64], bins: Range<usize>, least: f64, weight: impl Fn(usize) -> f64) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
-    for k in 1..magnitudes.len().saturating_sub(1) {
-        let (before, here, after) = (magnitudes[k - 1], magnitudes[k], magnitudes[k + 1]);
-        let height = here * weight(k);
-        if inside(k) && here >= before && here >= after && best.is_none_or(|(_, b)| height > b * (1.0 + EQUAL)) {
-            best = Some((k, height));
+    for k in bins.start.max(1)..bins.end.min(powers.len().saturating_sub(1)) {
+        let (before, here, after) = (powers[k - 1], powers[k], powers[k + 1]);
+        if here >= before && here >= after && here >= least {
+            let height = here * weight(k);
+            if best.is_none_or(|(_, best)| height > best * (1.0 + EQUAL)) {
+                best = Some((k, height));
+            }
         }
     }
     best.filter(|(_, height)| *height > 0.0).map(|(bin, _)| bin)
 }
 
-/// Magnitudes of the spectra of `values`, padded to `length`, under a Hann window and under its falling half.
+thread_local! {
+    /// The transforms that this thread has made: a suite asks for the same length again and again.
+    static PLANNER: RefCell<RealFftPlanner<f64>> = RefCell::new(RealFftPlanner::new());
+}
+
+/// Squared magnitudes of the spectra of `values`, padded to `length`, under a Hann window and under its falling half.
 fn windowed(values: &[f64], length: usize) -> [Vec<f64>; 2] {
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    [2.0, 1.0].map(|turns| {
-        let angle = |k: usize| turns * PI * (k as f64 + 0.5) / values.len() as f64;
-        let sign = 3.0 - 2.0 * turns;
-        let mut input = transform.make_input_vec();
-        for (k, (slot, y)) in input.iter_mut().zip(values).enumerate() {
-            *slot = y * (0.5 + 0.5 * sign * libm::cos(angle(k)));
-        }
-        let mut output = transform.make_output_vec();
-        match transform.process(&mut input, &mut output) {
-            Ok(()) => output.iter().map(|z| (z.re * z.re + z.im * z.im).sqrt()).collect(),
+    let transform = PLANNER.with_borrow_mut(|planner| planner.plan_fft_forward(length));
+    let (mut output, mut scratch) = (transform.make_output_vec(), transform.make_scratch_vec());
+    let (mut under_hann, mut under_half) = (transform.make_input_vec(), transform.make_input_vec());
+    let cosines = half_turn(values.len());
+    for (((hann, half), y), cos) in under_hann.iter_mut().zip(&mut under_half).zip(values).zip(cosines) {
+        // ½ − ½·cos 2φ and ½ + ½·cos φ.
+        *hann = y * (1.0 - cos * cos);
+        *half = y * (0.5 + 0.5 * cos);
+    }
+    [under_hann, under_half].map(|mut input| {
+        match transform.process_with_scratch(&mut input, &mut output, &mut scratch) {
+            Ok(()) => output.iter().map(|z| z.re * z.re + z.im * z.im).collect(),
             // Lengths are those that the transform asked for; without a spectrum there is no peak.
             Err(_) => Vec::new(),
         }
+    })
+}
+
+/// Values after which cosines are computed anew.
+const FRESH: usize = 64;
+
+/// Cosines of `count` angles that go evenly through half a turn, each in the middle of its share.
+fn half_turn(count: usize) -> impl Iterator<Item = f64> {
+    let share = PI / count as f64;
+    let (step_sin, step_cos) = libm::sincos(share);
+    let mut here = (0.0, 1.0);
+    (0..count).map(move |k| {
+        here = if k % FRESH == 0 {
+            libm::sincos((k as f64 + 0.5) * share)
+        } else {
+            (here.0 * step_cos + here.1 * step_sin, here.1 * step_cos - here.0 * step_sin)
+        };
+        here.1
     })
 }
 
@@ -106,6 +136,16 @@ mod tests {
         let values = record(|t| (-t / 0.3).exp());
         let found = peaks(&values, 1e-3, 1.0, 400.0);
         assert!(found.iter().all(|f| *f < 2.0), "{found:?}");
+    }
+
+    #[test]
+    fn half_a_turn_is_gone_through_evenly() {
+        for count in [1, 2, 63, 64, 65, 4097] {
+            for (k, cos) in half_turn(count).enumerate() {
+                let expected = (PI * (k as f64 + 0.5) / count as f64).cos();
+                assert!((cos - expected).abs() < 1e-13, "{k} of {count}: {cos} {expected}");
+            }
+        }
     }
 
     #[test]

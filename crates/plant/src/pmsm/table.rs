@@ -5,13 +5,13 @@
 //! y = x² an entry is a polynomial of y, or x times one. Of its size, `TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
 //! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made when the first one
 //! comes.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::maps::{Forms, Maps, Matrix, Scalar, doublings};
 use super::{Input, Params};
 use core::array::from_fn;
 use core::ops::{Add, Mul};
 use servobench_base::Dq;
 use std::sync::OnceLock;
-use wide::f64x2;
 
 /// Coefficients in y.
 const TERMS: usize = 8;
@@ -70,14 +70,16 @@ impl Scalar for InTurn {
     }
 }
 
-/// The maps over a part of a tick, by powers of y. Values stand in pairs, as the processor multiplies them.
+/// The maps over a part of a tick, by powers of y. Values stand side by side as a processor multiplies them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Table {
-    /// Change of i_d and i_q: per current of the same axis, per voltage of it, and by itself, even in x; per current of the
-    /// other axis, per voltage of it, and by itself, odd.
-    change: [[f64x2; 6]; TERMS],
-    /// By [`PRODUCTS`].
-    forms: Forms<[[f64x2; PRODUCTS.len()]; TERMS]>,
+    /// Change of i_d and i_q that is even in x: per current of the same axis, per voltage of it, and by itself; beside it that which is
+    /// odd: per current of the other axis, per voltage of it, and by itself.
+    change: [[[f64; 4]; 3]; TERMS],
+    /// By [`PRODUCTS`], in pairs: the torque, beside it the square.
+    torque_and_square: [[[f64; 4]; PRODUCTS.len()]; TERMS],
+    /// The input: by products of the first kind and of the other one that have a voltage.
+    input: [[[f64; 2]; WITH_VOLTAGE[0] + WITH_VOLTAGE[1]]; TERMS],
 }
 
 /// Products of two entries of w. The first [`ALIKE`] are of d entries (i_d, u_d, 1) among themselves and of q entries (i_q,
@@ -97,18 +99,17 @@ const ALIKE: usize = 5;
 const WITH_VOLTAGE: [usize; 2] = [3, 2];
 
 /// [`PRODUCTS`] at `i` and `u`.
-#[inline]
-fn products(i: Dq, u: Dq) -> [f64x2; PRODUCTS.len()] {
-    let [current, voltage] = [i, u].map(|of| f64x2::new([of.d, of.q]));
+#[inline(always)]
+fn products(i: Dq, u: Dq) -> [[f64; 2]; PRODUCTS.len()] {
     [
-        current * voltage,
-        voltage * voltage,
-        f64x2::new([u.d, 0.0]),
-        current * current,
-        f64x2::new([i.d, 1.0]),
-        current * f64x2::new([u.q, u.d]),
-        f64x2::new([u.d, 1.0]) * f64x2::splat(u.q),
-        f64x2::new([i.d, 1.0]) * f64x2::splat(i.q),
+        [i.d * u.d, i.q * u.q],
+        [u.d * u.d, u.q * u.q],
+        [u.d, 0.0],
+        [i.d * i.d, i.q * i.q],
+        [i.d, 1.0],
+        [i.d * u.q, i.q * u.d],
+        [u.d * u.q, u.q],
+        [i.d * i.q, i.q],
     ]
 }
 
@@ -126,86 +127,83 @@ impl Table {
         let [d, q, ..] = &maps.change;
         let change = |k| {
             [
-                [even(&d[0], k), even(&q[1], k)],
-                [even(&d[2], k), even(&q[3], k)],
-                [even(&d[4], k), 0.0],
-                [odd(&d[1], k), odd(&q[0], k)],
-                [odd(&d[3], k), odd(&q[2], k)],
-                [0.0, odd(&q[4], k)],
+                [even(&d[0], k), even(&q[1], k), odd(&d[1], k), odd(&q[0], k)],
+                [even(&d[2], k), even(&q[3], k), odd(&d[3], k), odd(&q[2], k)],
+                [even(&d[4], k), 0.0, 0.0, odd(&q[4], k)],
             ]
-            .map(f64x2::new)
         };
-        let form = |form: &Matrix<InTurn>, alike_are_even: bool| {
-            let coefficient = |product: Option<(usize, usize)>, k: usize, is_even: bool| {
+        let coefficients = |form: &Matrix<InTurn>, at: usize, alike_are_even: bool, k: usize| {
+            let is_even = (at < ALIKE) == alike_are_even;
+            PRODUCTS[at].map(|product| {
                 product.map_or(0.0, |(a, b)| {
                     let times = if a == b { 1.0 } else { 2.0 };
                     times * if is_even { even(&form[a][b], k) } else { odd(&form[a][b], k) }
                 })
-            };
-            from_fn(|k| {
-                from_fn(|at| {
-                    let is_even = (at < ALIKE) == alike_are_even;
-                    f64x2::new(PRODUCTS[at].map(|product| coefficient(product, k, is_even)))
-                })
             })
         };
         let Forms { torque, square, input } = &maps.forms;
+        let torque_and_square = |k, at| {
+            let ([a, b], [c, d]) = (coefficients(torque, at, false, k), coefficients(square, at, true, k));
+            [a, b, c, d]
+        };
+        let [alike, _] = WITH_VOLTAGE;
+        let with_voltage = |at: usize| if at < alike { at } else { ALIKE + at - alike };
         Self {
             change: from_fn(change),
-            forms: Forms { torque: form(torque, false), square: form(square, true), input: form(input, true) },
+            torque_and_square: from_fn(|k| from_fn(|at| torque_and_square(k, at))),
+            input: from_fn(|k| from_fn(|at| coefficients(input, with_voltage(at), true, k))),
         }
     }
 
     /// The part that begins with `i` and `u`, in a tick in which the rotor turns by `x`.
-    #[inline]
+    #[inline(always)]
     fn solve<const TERMS_USED: usize, const POWER: bool>(&self, x: f64, i: Dq, u: Dq) -> Solution {
         let y = x * x;
-        let per = [f64x2::new([i.d, i.q]), f64x2::new([u.d, u.q]), f64x2::ONE];
-        let per_other = [f64x2::new([i.q, i.d]), f64x2::new([u.q, u.d]), f64x2::ONE];
-        let even = in_y::<TERMS_USED>(y, |k| sum_of_products(&self.change[k][..3], &per));
-        let odd = in_y::<TERMS_USED>(y, |k| sum_of_products(&self.change[k][3..], &per_other));
-        let [d, q] = (even + f64x2::splat(x) * odd).to_array();
+        let per = [[i.d, i.q, i.q, i.d], [u.d, u.q, u.q, u.d], [1.0; 4]];
+        let [even_d, even_q, odd_d, odd_q] = in_y::<TERMS_USED, 4>(y, |k| sum_of_products(&self.change[k], &per));
 
         let products = products(i, u);
-        let forms = &self.forms;
-        let torque = mean::<TERMS_USED>(&forms.torque, &products, y, [ALIKE, PRODUCTS.len() - ALIKE], [x, 1.0]);
-        let mut means = Forms { torque, square: 0.0, input: 0.0 };
+        let twice = products.map(|[a, b]| [a, b, a, b]);
+        let form = |k: usize| self.torque_and_square[k].split_at(ALIKE);
+        let alike = in_y::<TERMS_USED, 4>(y, |k| sum_of_products(form(k).0, &twice[..ALIKE]));
+        let others = in_y::<TERMS_USED, 4>(y, |k| sum_of_products(form(k).1, &twice[ALIKE..]));
+        let both: [f64; 4] = from_fn(|at| if at < 2 { x * alike[at] + others[at] } else { alike[at] + x * others[at] });
+        let mut means = Forms { torque: both[0] + both[1], square: both[2] + both[3], input: 0.0 };
         if POWER {
-            means.square = mean::<TERMS_USED>(&forms.square, &products, y, [ALIKE, PRODUCTS.len() - ALIKE], [1.0, x]);
-            means.input = mean::<TERMS_USED>(&forms.input, &products, y, WITH_VOLTAGE, [1.0, x]);
+            let [alike, others] = WITH_VOLTAGE;
+            let form = |k: usize| self.input[k].split_at(alike);
+            let of_alike = in_y::<TERMS_USED, 2>(y, |k| sum_of_products(form(k).0, &products[..alike]));
+            let of_others = in_y::<TERMS_USED, 2>(y, |k| sum_of_products(form(k).1, &products[ALIKE..ALIKE + others]));
+            let [one, other] = from_fn(|at| of_alike[at] + x * of_others[at]);
+            means.input = one + other;
         }
-        Solution { change: Dq { d, q }, means }
+        Solution { change: Dq { d: even_d + x * odd_d, q: even_q + x * odd_q }, means }
     }
 }
 
-/// A form's mean, of which there are so many products of each kind, with the kind's factor.
-#[inline]
-fn mean<const USED: usize>(
-    form: &[[f64x2; PRODUCTS.len()]; TERMS],
-    products: &[f64x2; PRODUCTS.len()],
-    y: f64,
-    [alike, others]: [usize; 2],
-    [of_alike, of_others]: [f64; 2],
-) -> f64 {
-    let alike = in_y::<USED>(y, |k| sum_of_products(&form[k][..alike], &products[..alike]));
-    let others =
-        in_y::<USED>(y, |k| sum_of_products(&form[k][ALIKE..ALIKE + others], &products[ALIKE..ALIKE + others]));
-    let [one, other] = (f64x2::splat(of_alike) * alike + f64x2::splat(of_others) * others).to_array();
-    one + other
+/// Sums of products, side by side.
+#[inline(always)]
+fn sum_of_products<const N: usize>(coefficients: &[[f64; N]], products: &[[f64; N]]) -> [f64; N] {
+    let mut pairs = coefficients.iter().zip(products);
+    let Some((coefficients, products)) = pairs.next() else { return [0.0; N] };
+    let mut sum = from_fn(|at| coefficients[at] * products[at]);
+    for (coefficients, products) in pairs {
+        sum = from_fn(|at| sum[at] + coefficients[at] * products[at]);
+    }
+    sum
 }
 
-#[inline]
-fn sum_of_products(coefficients: &[f64x2], products: &[f64x2]) -> f64x2 {
-    let mut both = coefficients.iter().zip(products).map(|(c, p)| *c * *p);
-    let first = both.next().unwrap_or_default();
-    both.fold(first, |sum, product| sum + product)
-}
-
-/// Two polynomials of y by their `USED` coefficients, side by side (Horner).
-#[inline]
-fn in_y<const USED: usize>(y: f64, coefficient: impl Fn(usize) -> f64x2) -> f64x2 {
-    let y = f64x2::splat(y);
-    (0..USED - 1).rev().fold(coefficient(USED - 1), |sum, k| sum * y + coefficient(k))
+/// Polynomials of y by their `USED` coefficients, side by side (Horner).
+#[inline(always)]
+fn in_y<const USED: usize, const N: usize>(y: f64, coefficient: impl Fn(usize) -> [f64; N]) -> [f64; N] {
+    let (mut sum, mut k) = (coefficient(USED - 1), USED - 1);
+    // A fold would be a call.
+    while k > 0 {
+        k -= 1;
+        let next = coefficient(k);
+        sum = from_fn(|at| sum[at] * y + next[at]);
+    }
+    sum
 }
 
 /// The tables of a tick.
@@ -234,7 +232,7 @@ impl Tables {
     }
 
     /// A tick from the current `i` on, if the rotor is slow enough.
-    #[inline]
+    #[inline(always)]
     pub(super) fn solve<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<Solution> {
         let turn = x.abs();
         if turn <= FURTHEST {
@@ -281,7 +279,7 @@ mod tests {
         let w = [-1.3, 2.4, 7.0, -11.0, 1.0];
         let found = products(Dq { d: w[0], q: w[1] }, Dq { d: w[2], q: w[3] });
         for (found, said) in found.into_iter().zip(PRODUCTS) {
-            for (value, said) in found.to_array().into_iter().zip(said) {
+            for (value, said) in found.into_iter().zip(said) {
                 assert!(said.is_none_or(|(a, b)| value.to_bits() == f64::to_bits(w[a] * w[b])), "{said:?}: {value}");
             }
         }

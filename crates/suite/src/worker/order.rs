@@ -16,6 +16,8 @@ pub enum Task {
     Run {
         /// How long that may take, by the clock.
         time_limit: Option<Duration>,
+        /// Whether all signals are recorded that the scenario asks for.
+        records_all: bool,
     },
 }
 

@@ -68,15 +68,15 @@ fn obey(order: &Order, file: &mut File, engines: &Engines, say: &mut dyn FnMut(&
     let Some(engine) = EngineName::from_name(&order.engine) else {
         return End::Failed(format!("there is no engine `{}`", order.engine));
     };
-    let done = engines.get(engine).map_err(RunError::from).and_then(|engine| {
-        let built_by = Loop { engine, fmu_opener: engines.fmu_opener };
-        match order.task {
-            Task::Run { time_limit } => run(&scenario, built_by, time_limit, file, say),
-            Task::Check => objections(&scenario, engine, engines.fmu_opener).map(|all| {
-                say(&Message::Objections(all));
-                End::Done
-            }),
+    let done = engines.get(engine).map_err(RunError::from).and_then(|engine| match order.task {
+        Task::Run { time_limit, records_all } => {
+            let built_by = Loop { engine, fmu_opener: engines.fmu_opener, records_all };
+            run(&scenario, built_by, time_limit, file, say)
         }
+        Task::Check => objections(&scenario, engine, engines.fmu_opener).map(|all| {
+            say(&Message::Objections(all));
+            End::Done
+        }),
     });
     done.unwrap_or_else(
         |error| {

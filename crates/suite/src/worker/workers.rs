@@ -96,7 +96,8 @@ impl Workers {
     /// Runs `job` in a worker process.
     pub(crate) fn run(&self, job: &Job, progress: &mut dyn FnMut(f64)) -> Result<Recorded, RunError> {
         let limit = TimeLimit::of(job, self.limits());
-        let order = Order::new(job, Task::Run { time_limit: limit.map(|limit| limit.time) });
+        let order =
+            Order::new(job, Task::Run { time_limit: limit.map(|limit| limit.time), records_all: job.records_all() });
         let mut done = 0.0;
         let mut recording = None;
         let end = self.converse(&order, limit.map(|limit| limit.time), &mut recording, &mut |message| {

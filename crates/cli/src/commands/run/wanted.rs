@@ -1,6 +1,6 @@
 //! What is to be run: runs, and files that cannot be used, in the order of the files.
 use super::ledger::Ledger;
-use crate::args::RunArgs;
+use crate::args::{Keep, RunArgs};
 use crate::error::CliError;
 use crate::output;
 use crate::sources::{self, Unusable};
@@ -66,7 +66,10 @@ impl PlannedRun {
             Origin::File(path) => sources::again(path, &args.with).map_err(|_| Changed)?,
             Origin::Demo(source) => source.as_ref().clone(),
         };
-        let job = Job::new(self.id.clone(), source, self.engine);
+        let mut job = Job::new(self.id.clone(), source, self.engine);
+        if args.keep == Keep::None {
+            job.leave_recording_out();
+        }
         if output::inputs_of(&job) == self.inputs { Ok(job) } else { Err(Changed) }
     }
 }
