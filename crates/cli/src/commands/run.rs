@@ -177,11 +177,15 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
     let workers = workers::of(folder, args.worker_timeout, limits)?;
     let pending: Vec<(usize, &PlannedRun)> = wanted.runs().filter(|(index, _)| !ledger.has(*index)).collect();
     let progress = Progress::new(pending.len(), args.quiet);
-    // Of a run without a job nothing is known but what it is called.
-    let without_a_job = |index, run: &PlannedRun, why: String| {
+    let without_a_result = |index, run: &PlannedRun, why: String| {
         progress.ended(run.id(), Outcome::Error.word());
-        let Unfinished { name, file, engine } = ledger.planned(index).unwrap_or_default();
-        let identity = RunIdentity { name, file, engine, inputs: run.inputs(), ..RunIdentity::default() };
+        let identity = if let Ok(job) = run.job(args) {
+            output::identity(&job, Written::default())
+        } else {
+            // Nothing is known of it but what it was called.
+            let Unfinished { name, file, engine } = ledger.planned(index).unwrap_or_default();
+            RunIdentity { name, file, engine, inputs: run.inputs(), ..RunIdentity::default() }
+        };
         ledger.note(Finished { index, seconds: 0.0, result: RunResult::error(identity, None, vec![why]) });
     };
     let ended = map_in_parallel(
@@ -194,7 +198,7 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
         },
         |(index, run), job| match job.filter(|_| !interrupt::is_stopping()) {
             None => {}
-            Some(Err(changed)) => without_a_job(*index, run, changed.to_string()),
+            Some(Err(changed)) => without_a_result(*index, run, changed.to_string()),
             Some(Ok(job)) => {
                 let start = Instant::now();
                 let result = one(&job, engines, &workers, args, ledger.out(), &progress);
@@ -204,7 +208,7 @@ fn run_all(args: &RunArgs, wanted: &Wanted, engines: &Engines, ledger: &Ledger) 
     );
     for ((index, run), ended) in pending.iter().zip(ended) {
         if let Err(panic) = ended {
-            without_a_job(*index, run, panic.to_string());
+            without_a_result(*index, run, panic.to_string());
         }
     }
     progress.finish();
