@@ -65,6 +65,8 @@ impl Deref for Checked<'_> {
 /// # Errors
 /// [`Absence::NoChannel`], [`Absence::NotFinite`].
 pub(crate) fn channel<'a>(checked: &'a Checked<'_>, signal: Signal) -> Result<&'a [f64], Absence> {
+    #[cfg(test)]
+    assert!(crate::MEASURED_FROM.contains(&signal), "`{signal}` is missing in `MEASURED_FROM`");
     let recording = checked.recording;
     let named = recording.channels.iter().zip(&checked.gaps).find(|(channel, _)| channel.spec.name == signal.name());
     let (channel, gap) = named.ok_or(Absence::NoChannel { channel: signal })?;

@@ -328,3 +328,54 @@ fn hold<const W: usize>(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -
         .map(|column| std::array::from_fn(|row| if row <= travel { e[(row, column)] } else { 0.0 }))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::{Body, Link};
+    use crate::friction::{DryFriction, Friction};
+
+    fn body(inertia: f64, friction: Friction) -> Body {
+        let coordinate = servobench_base::Coordinate::Linear;
+        Body { name: "body", coordinate, inertia, transmission: 1.0, friction, bias: 0.1 }
+    }
+
+    /// One to four bodies, with dry friction and without: what a processor with wide registers gives and what any other gives are the
+    /// same bits.
+    #[test]
+    fn both_kinds_of_processors_give_the_same_bits() {
+        fn compare<const W: usize>(chain: Chain, setup: &MechanicsSetup) {
+            let mut random = servobench_testkit::Random::seeded(19);
+            let mut here = ExactChain::<W>::new(chain, setup);
+            let mut in_any = here.clone();
+            for _ in 0..2000 {
+                let (motor_disturbance, load_disturbance) = (random.signed(), random.signed());
+                let actuation = Actuation::Effort(20.0 * random.signed());
+                let input = Input { actuation, motor_disturbance, load_disturbance };
+                here.advance(&input).unwrap();
+                in_any.advanced(&input).unwrap();
+                let bits = |chain: &ExactChain<W>| {
+                    let bodies =
+                        chain.bodies.iter().flat_map(|body| [body.position.to_bits(), body.velocity.to_bits()]);
+                    bodies.collect::<Vec<_>>()
+                };
+                assert_eq!(bits(&here), bits(&in_any), "{input:?}");
+            }
+            assert!(here.bodies[0].position != 0.0);
+        }
+        let dry = Friction { viscous: 0.2, dry: DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.01 } };
+        for friction in [Friction::NONE, dry] {
+            for count in 1..=MAX_BODIES {
+                let bodies = (0..count).map(|k| body(0.3 + 0.7 * k as f64, friction)).collect();
+                let links = vec![Link { stiffness: 3e4, damping: 2.0 }; count - 1];
+                let chain = Chain::new(bodies, links).unwrap();
+                let model = Model::Chain(chain.clone());
+                let setup = MechanicsSetup { model, drive: Drive::Effort, step: 1.0 / 12_000.0, initial: vec![] };
+                match states(&chain, false) + 1 {
+                    0..=4 => compare::<4>(chain, &setup),
+                    _ => compare::<8>(chain, &setup),
+                }
+            }
+        }
+    }
+}

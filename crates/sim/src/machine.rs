@@ -133,3 +133,64 @@ impl<Axes> Machine<Axes> {
 
 /// How often a run reports its progress, in ticks. With an FMU as mechanics a tick may take milliseconds.
 const PROGRESS_EVERY: u64 = 1 << 10;
+
+#[cfg(test)]
+mod tests {
+    use crate::bench::{Bench, Loop};
+    use crate::run::{Failure, Outcome};
+    use servobench_plant::Exact;
+    use std::ops::ControlFlow;
+
+    const AXIS: &str = r#"
+[run]
+base_rate = "16 kHz"
+duration = "0.3 s"
+[axis]
+model = "two-mass"
+[motor]
+model = "saarakkala-2.2kw"
+[drive]
+dc_link = "540 V"
+[drive.current]
+rate = "8 kHz"
+bandwidth = "1 kHz"
+[drive.velocity]
+rate = "4 kHz"
+bandwidth = "50 Hz"
+[drive.position]
+rate = "1 kHz"
+gain = "60 1/s"
+[drive.feedforward]
+velocity = true
+[setpoint]
+order = 3
+velocity = "100 rad/s"
+acceleration = "1500 rad/s2"
+jerk = "6e4 rad/s3"
+[[program]]
+move_to = "7 rad"
+"#;
+
+    /// A run on a processor with wide registers and one on any other are the same to the bit, limits that bind included.
+    #[test]
+    fn both_kinds_of_processors_give_the_same_run() {
+        for axis in [AXIS.to_owned(), AXIS.replace("540 V", "90 V"), AXIS.replace("1500 rad", "90000 rad")] {
+            let loaded = servobench_scenario::parse("axis.toml", &axis, None).unwrap_or_else(|error| panic!("{error}"));
+            let outcome = |any: bool| {
+                let bench = Bench::new(&loaded.scenario, &Exact).unwrap();
+                let (ticks, Loop::Alone(mut machine)) = (bench.ticks, bench.closed_loop) else { panic!("no FMUs") };
+                let mut progress = |_| ControlFlow::Continue(());
+                let done =
+                    if any { machine.all_ticks(ticks, &mut progress) } else { machine.run(ticks, &mut progress) };
+                Outcome::of(*machine, done.err().map(Failure::from))
+            };
+            let (here, in_any) = (outcome(false), outcome(true));
+            assert!(here.recording.len() > 4000 && here.failure == in_any.failure);
+            for (one, other) in here.recording.channels.iter().zip(&in_any.recording.channels) {
+                let is_same = one.values.iter().zip(&other.values).all(|(a, b)| a.to_bits() == b.to_bits());
+                assert!(is_same, "{}", one.spec.name);
+            }
+            assert_eq!(here.recording.events, in_any.recording.events);
+        }
+    }
+}

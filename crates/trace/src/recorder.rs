@@ -226,19 +226,28 @@ impl Recorder {
 mod tests {
     use super::*;
 
-    #[test]
-    fn rows_become_columns_whatever_their_number() {
-        let rate = Rate::new(1_000).unwrap();
-        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
-        let about = || About {
-            scenario: "rows".into(),
+    fn about() -> About {
+        About {
+            scenario: "s".into(),
             engine: "none".into(),
             axis_unit: "m".into(),
             bodies: vec!["motor".into()],
             overrides: vec![],
-        };
+        }
+    }
+
+    fn rate() -> Rate {
+        Rate::new(1_000).unwrap()
+    }
+
+    fn spec(name: &str) -> ChannelSpec {
+        ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate: rate() }
+    }
+
+    #[test]
+    fn rows_become_columns_whatever_their_number() {
         for rows in [0_u32, 1, 71, 72, 73, 200] {
-            let mut recorder = Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
+            let mut recorder = Recorder::new(about(), rate(), vec![spec("up"), spec("down")], 10);
             for k in 0..rows {
                 recorder.push(&[f64::from(k), -f64::from(k)]);
             }
@@ -251,17 +260,8 @@ mod tests {
 
     #[test]
     fn channels_that_nobody_wants_are_left_out() {
-        let rate = Rate::new(1_000).unwrap();
-        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
-        let about = About {
-            scenario: "s".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec![],
-            overrides: vec![],
-        };
         let mut recorder =
-            Recorder::new(about, rate, ["a", "b", "c"].map(spec).to_vec(), 1).with_rows(4, vec![3, 1, 0]);
+            Recorder::new(about(), rate(), ["a", "b", "c"].map(spec).to_vec(), 1).with_rows(4, vec![3, 1, 0]);
         recorder.retain(|spec| spec.name != "b");
         recorder.push(&[1.0, 2.0, 3.0, 4.0]);
         let recording = recorder.finish();
@@ -272,16 +272,7 @@ mod tests {
     /// Oracle: a recorder to which only what stays was said.
     #[test]
     fn what_comes_after_a_mark_can_be_taken_back() {
-        let rate = Rate::new(1_000).unwrap();
-        let spec = |name: &str| ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
-        let about = || About {
-            scenario: "s".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec![],
-            overrides: vec![],
-        };
-        let recorder = || Recorder::new(about(), rate, vec![spec("up"), spec("down")], 10);
+        let recorder = || Recorder::new(about(), rate(), vec![spec("up"), spec("down")], 10);
         for kept in [0_u32, 1, 71, 72, 73, 150] {
             let (mut with, mut without) = (recorder(), recorder());
             let [one, other] = [&mut with, &mut without].map(|recorder| recorder.add_signal("axis", "state"));
@@ -313,14 +304,7 @@ mod tests {
 
     #[test]
     fn a_signal_keeps_its_changes_only() {
-        let about = About {
-            scenario: "s".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec![],
-            overrides: vec![],
-        };
-        let mut recorder = Recorder::new(about, Rate::new(1_000).unwrap(), vec![], 0);
+        let mut recorder = Recorder::new(about(), rate(), vec![], 0);
         let [state, done] = ["state", "Done"].map(|name| recorder.add_signal("axis", name));
         for (time, value) in [(0.0, "Disabled"), (0.1, "Disabled"), (0.2, "Standstill"), (0.3, "Disabled")] {
             recorder.note_value(state, time, value);

@@ -193,6 +193,21 @@ proptest! {
     }
 }
 
+/// Recordings of builds before this one were compressed by zstd. Values by hand: 10 m/s² from rest for 10 ms, then −10 m/s².
+#[test]
+fn a_recording_of_an_older_build_is_read() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/zstd.parquet");
+    let recording = Recording::read_parquet(path).unwrap();
+    let (position, velocity) =
+        (recording.channel("load.position").unwrap(), recording.channel("load.velocity").unwrap());
+    assert_eq!((recording.rate.hertz(), position.len()), (1000, 21));
+    for (k, (position, velocity)) in position.iter().zip(velocity).enumerate() {
+        let (t, rest) = (k as f64 * 1e-3, (20.0 - k as f64) * 1e-3);
+        let (x, v) = if k <= 10 { (5.0 * t * t, 10.0 * t) } else { (1e-3 - 5.0 * rest * rest, 10.0 * rest) };
+        assert!((position - x).abs() < 1e-15 && (velocity - v).abs() < 1e-13, "{k}: {position} {velocity}");
+    }
+}
+
 /// Several row groups, the last one short.
 #[test]
 fn more_instants_than_a_row_group() {

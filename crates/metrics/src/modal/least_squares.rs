@@ -213,6 +213,20 @@ mod tests {
         assert!(solve_definite(vec![vec![1.0], vec![2.0, 1.0]], vec![1.0, 1.0]).is_none());
     }
 
+    /// What a processor with wide registers gives and what any other gives are the same bits.
+    #[test]
+    fn both_kinds_of_processors_give_the_same_bits() {
+        let mut random = servobench_testkit::Random::seeded(19);
+        for length in (0..70).chain([1000, 1001, 1007]) {
+            let column: Vec<f64> = (0..length).map(|_| random.signed()).collect();
+            let vector: Vec<f64> = (0..length).map(|_| 1e3 * random.signed()).collect();
+            assert_eq!(dot(&column, &vector).to_bits(), dot_in_any(&column, &vector).to_bits(), "{length}");
+            let (mut here, mut in_any) = (vector.clone(), vector);
+            let along = [remove_along(&column, &mut here), remove_along_in_any(&column, &mut in_any)];
+            assert_eq!((along[0].to_bits(), here), (along[1].to_bits(), in_any), "{length}");
+        }
+    }
+
     /// Whole numbers, so that the sum is exact: 0·1 + 1·2 + … + 20·21 = 20·21·22/3.
     #[test]
     fn a_sum_of_products_leaves_nothing_out() {
