@@ -29,7 +29,7 @@ fn demo() -> String {
     axis.to_owned()
 }
 
-/// A move of a quarter of a second and as much rest.
+/// A move of some 0.27 s, and rest.
 fn short() -> String {
     let text = demo().replace("duration = \"1.5 s\"", "duration = \"0.5 s\"");
     text.replace("move_to = \"250 mm\"", "move_to = \"30 mm\"")

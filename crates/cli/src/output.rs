@@ -93,6 +93,12 @@ fn write_each(
 }
 
 impl Written {
+    /// `result`, which left these files.
+    pub(crate) fn of(self, result: RunResult) -> RunResult {
+        let Self { recording, recording_seal, files } = self;
+        RunResult { recording, recording_seal, files, ..result }
+    }
+
     fn note(&mut self, name: String) {
         self.files.push(name);
     }

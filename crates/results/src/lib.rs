@@ -24,6 +24,7 @@ mod run;
 mod runs;
 #[cfg(any(test, feature = "samples"))]
 pub mod samples;
+mod written;
 
 pub use digest::{Digest, Digester};
 pub use entry::{ExpectedResult, MetricResult, MoveResult};
@@ -32,6 +33,7 @@ pub use folder::{COMPARISON, Folder, FolderError, Former, JOURNAL, RESULTS};
 pub use journal::{Finished, Journal, JournalError, Place, Suite, read as read_journal};
 pub use kept::Kept;
 pub use printable::{printable, printable_json, printable_lines};
-pub use results::{Outcome, Results, Status, Unfinished, files_of_results, read_results, write_results};
+pub use results::{Outcome, Results, Status, Unfinished, files_of_results, read_results};
 pub use run::{LimitPlace, RunIdentity, RunResult};
 pub use runs::{RunHead, Runs};
+pub use written::write_results;

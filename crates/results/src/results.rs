@@ -1,15 +1,11 @@
 //! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
 use crate::digest::Digest;
 use crate::error::ResultsError;
-use crate::journal::JournalError;
 use crate::run::RunResult;
-use crate::runs::Runs;
 use serde::de::IgnoredAny;
-use serde::ser::SerializeSeq as _;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use servobench_files::with_short_quotes;
-use std::cell::RefCell;
-use std::io::{self, BufReader, Write};
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// Name of the schema, before its version.
@@ -133,46 +129,6 @@ impl<R, U> Results<R, U> {
         let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
         let status = if unfinished.is_empty() { Status::Complete } else { Status::Incomplete };
         Self { schema: format!("{SCHEMA}{VERSION}"), generator, status, suite, scenarios, unfinished }
-    }
-}
-
-/// The results of runs that are read while they are written.
-struct OneByOne<'a> {
-    runs: &'a dyn Runs,
-    /// Why a run could not be read.
-    refusal: RefCell<Option<JournalError>>,
-}
-
-impl Serialize for &OneByOne<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut all = serializer.serialize_seq(None)?;
-        for run in self.runs.each() {
-            match run {
-                Ok(run) => all.serialize_element(&*run)?,
-                Err(error) => {
-                    let words = error.to_string();
-                    self.refusal.replace(Some(error));
-                    return Err(serde::ser::Error::custom(words));
-                }
-            }
-        }
-        all.end()
-    }
-}
-
-/// Writes what came of `runs`, those of `suite`, as [`Results::to_json`] does it.
-///
-/// # Errors
-/// [`ResultsError::Journal`] when a run cannot be read, [`ResultsError::Write`].
-pub fn write_results(suite: &Digest, runs: &dyn Runs, out: &mut dyn Write) -> Result<(), ResultsError> {
-    let each = OneByOne { runs, refusal: RefCell::new(None) };
-    let written =
-        serde_json::to_writer_pretty(&mut *out, &Results::of_suite(*suite, &each, runs.unfinished().collect()));
-    match (written, each.refusal.into_inner()) {
-        (_, Some(refusal)) => Err(refusal.into()),
-        (Err(error), None) if error.is_io() => Err(ResultsError::Write(error.into())),
-        (Err(error), None) => Err(error.into()),
-        (Ok(()), None) => out.write_all(b"\n").map_err(ResultsError::Write),
     }
 }
 
@@ -372,20 +328,6 @@ mod tests {
         assert!(validator().is_valid(&right));
     }
 
-    /// Whoever writes results one by one writes the same bytes.
-    #[test]
-    fn written_one_by_one_they_are_the_same() {
-        let mut results = samples::results();
-        results.unfinished = vec![Unfinished { name: "last".into(), file: None, engine: "exact".into() }];
-        results.status = Status::Incomplete;
-        results.suite = Digest::of(b"suite");
-        let mut written = Vec::new();
-        write_results(&results.suite, &results, &mut written).unwrap();
-        assert_eq!(String::from_utf8(written).unwrap(), results.to_json().unwrap());
-        let nowhere = write_results(&results.suite, &results, &mut &mut [0; 100][..]);
-        assert!(matches!(nowhere, Err(ResultsError::Write(_))), "{nowhere:?}");
-    }
-
     #[test]
     fn a_judged_run_holds_every_limit() {
         let run = judged();
@@ -485,7 +427,7 @@ mod tests {
         }
         let read = Results::from_json(&old.to_string()).unwrap();
         assert_eq!(read.scenarios[0].files, ["lambrechts-jerk.exact.parquet"]);
-        assert_eq!((&read as &dyn Runs).count_of(Outcome::Invalid), 1);
+        assert_eq!((&read as &dyn crate::runs::Runs).count_of(Outcome::Invalid), 1);
         assert_eq!(read.schema, "servobench-results/3");
     }
 

@@ -225,18 +225,19 @@ fn one(
     out: &OutputFolder,
     progress: &Progress,
 ) -> RunResult {
-    let write = |recording, outcome, shown: servobench_view::Verdict| {
+    let write = |recording, outcome, shown: &dyn Fn() -> servobench_view::Verdict| {
         if output::is_kept(args.keep, outcome) {
-            output::write_recording(job, recording, out, args.rrd.then_some(shown))
+            output::write_recording(job, recording, out, args.rrd.then(shown))
         } else {
             Ok(Written::default())
         }
     };
     let result = match execute(job, engines, workers, &mut progress.of_run(&job.id, workers.slow(job))) {
         Ok(Run { recording, metrics, verdict }) => {
-            let judged = RunResult::judged(RunIdentity::default(), &recording, &metrics, &verdict).verdict;
-            match write(&recording, judged, output::shown(&recording, &metrics, &verdict)) {
-                Ok(written) => RunResult::judged(output::identity(job, written), &recording, &metrics, &verdict),
+            let judged = RunResult::judged(output::identity(job, Written::default()), &recording, &metrics, &verdict);
+            let shown = || output::said_of(judged.verdict, judged.reasons.clone(), judged.warnings.clone());
+            match write(&recording, judged.verdict, &shown) {
+                Ok(written) => written.of(judged),
                 Err((error, written)) => {
                     let (run, until_then) = (output::identity(job, written), Some((&recording, &metrics)));
                     RunResult::error(run, until_then, vec![error.to_string()])
@@ -251,8 +252,9 @@ fn one(
             let mut reasons = vec![error.to_string()];
             let written = until_then.as_ref().map(|(recording, _)| {
                 let outcome = servobench_view::Outcome::Failed;
-                let shown = servobench_view::Verdict { outcome, reasons: reasons.clone(), warnings: Vec::new() };
-                write(recording, Outcome::Error, shown).unwrap_or_else(|(unwritten, written)| {
+                let said = reasons.clone();
+                let shown = || servobench_view::Verdict { outcome, reasons: said.clone(), warnings: Vec::new() };
+                write(recording, Outcome::Error, &shown).unwrap_or_else(|(unwritten, written)| {
                     reasons.push(unwritten.to_string());
                     written
                 })

@@ -21,6 +21,21 @@ fn scenario(engine: &str) -> String {
     )
 }
 
+/// The axis of the demo on one engine for [`LENGTH`].
+fn demo() -> String {
+    let text = include_str!("../../../../scenarios/demo/jerk.toml");
+    let lines = text.lines().map(|line| match line.split_once(" = ") {
+        Some(("engine", _)) => "engine = [\"exact\"]".to_owned(),
+        Some(("duration", _)) => format!("duration = \"{LENGTH} s\""),
+        _ => line.to_owned(),
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Runs of the demo's axis, and how long each of them is (s).
+const DEMOS: u64 = 200;
+const LENGTH: f64 = 1.5;
+
 /// Runs the drill.
 ///
 /// # Errors
@@ -30,24 +45,25 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let largest = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok());
     let sizes = RUNS.into_iter().filter(|runs| largest.is_none_or(|largest| *runs < largest)).chain(largest);
     let mut findings = Vec::new();
-    println!("time of processors; `beside` is without the program's start, for each run\n");
-    println!("{:7} {:>8} {:>10} {:>12} {:>8} {:>10}", "engine", "runs", "time", "beside", "memory", "a run");
+    println!(
+        "time is that of processors; what a run adds is told without the first one, in which the program starts\n"
+    );
+    println!(
+        "{:7} {:>8} {:>10} {:>10} {:>13} {:>12}",
+        "engine", "runs", "time", "memory", "time a run", "memory a run"
+    );
     for (engine, most) in [("exact", u64::MAX), ("mujoco", MOST_IN_WORKERS)] {
         if engine == "mujoco" && !has_mujoco {
             continue;
         }
-        let mut first = None;
+        let text = scenario(engine);
+        let start = suite(workspace, (&text, 1), "none", &mut findings)?;
         for runs in sizes.clone().filter(|runs| *runs <= most) {
-            let ended = suite(workspace, engine, runs)?;
-            let Measured { code, seconds, megabytes } = ended;
-            let start = *first.get_or_insert(ended);
+            let Measured { seconds, megabytes, .. } = suite(workspace, (&text, runs), "none", &mut findings)?;
             let more = (runs - 1).max(1) as f64;
             let each = (seconds - start.seconds) / more * 1e3;
             let grown = (megabytes - start.megabytes) * f64::from(1 << 20) / more;
-            println!("{engine:7} {runs:>8} {seconds:>8.3} s {each:>9.3} ms {megabytes:>5.1} MB {grown:>8.0} B");
-            if code != Some(0) {
-                findings.push(format!("{runs} runs on {engine} ended with {code:?}"));
-            }
+            println!("{engine:7} {runs:>8} {seconds:>8.3} s {megabytes:>7.1} MB {each:>10.3} ms {grown:>10.0} B");
             // Of a few runs the rest of the program is the larger part.
             if runs >= 20_000 && grown > MOST_BYTES {
                 findings.push(format!(
@@ -56,21 +72,36 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
             }
         }
     }
+    println!(
+        "\n{DEMOS} runs of {LENGTH} s of the demo's axis on exact, in simulated seconds per second of one processor:"
+    );
+    for (keep, what) in [("all", "with recordings"), ("none", "without")] {
+        let Measured { seconds, .. } = suite(workspace, (&demo(), DEMOS), keep, &mut findings)?;
+        println!("{what:16} {:>4.0}", DEMOS as f64 * LENGTH / seconds);
+    }
     if findings.is_empty() { Ok(()) } else { Err(Failure::Findings { findings }) }
 }
 
-/// Runs a suite of as many scenarios.
-fn suite(workspace: &Workspace, engine: &str, runs: u64) -> Result<Measured, Failure> {
+/// Runs a suite of as many scenarios with this text; one that does not end well is a finding.
+fn suite(
+    workspace: &Workspace,
+    (text, runs): (&str, u64),
+    keep: &str,
+    findings: &mut Vec<String>,
+) -> Result<Measured, Failure> {
     let room = tempfile::tempdir().map_err(Failure::file("make a folder in", std::env::temp_dir()))?;
     let folder = room.path().join("scenarios");
     fs::create_dir(&folder).map_err(Failure::file("make", &folder))?;
-    let text = scenario(engine);
     for number in 0..runs {
         let path = folder.join(format!("{number}.toml"));
-        fs::write(&path, &text).map_err(Failure::file("write", &path))?;
+        fs::write(&path, text).map_err(Failure::file("write", &path))?;
     }
-    let mut command = workspace.servobench(["run", "scenarios", "--quiet", "--keep", "none", "--jobs", "1"]);
+    let mut command = workspace.servobench(["run", "scenarios", "--quiet", "--jobs", "1", "--keep", keep]);
     command.current_dir(room.path()).env("LD_LIBRARY_PATH", workspace.native_lib());
     let ended = measured(&mut command);
-    ended.map_err(|source| Failure::Start { program: workspace.binary().display().to_string(), source })
+    let ended = ended.map_err(|source| Failure::Start { program: workspace.binary().display().to_string(), source })?;
+    if ended.code != Some(0) {
+        findings.push(format!("a suite of {runs} runs ended with {:?}", ended.code));
+    }
+    Ok(ended)
 }
