@@ -7,7 +7,7 @@ use crate::workspace::Workspace;
 use std::fs;
 
 /// Runs of the suites, unless `SERVOBENCH_SWEEP` says how many the largest has.
-const RUNS: [u64; 4] = [1, 300, 2_000, 20_000];
+const RUNS: [u64; 3] = [300, 2_000, 20_000];
 /// Suites on an engine in a worker process have no more runs than that.
 const MOST_IN_WORKERS: u64 = 2_000;
 /// What a run may add to the memory of a suite (bytes): its names and digests, but not its result.
@@ -35,6 +35,8 @@ fn demo() -> String {
 /// Runs of the demo's axis, and how long each of them is (s).
 const DEMOS: u64 = 200;
 const LENGTH: f64 = 1.5;
+/// Suites of them, of which the fastest counts.
+const ROUNDS: usize = 5;
 
 /// Runs the drill.
 ///
@@ -58,9 +60,10 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         }
         let text = scenario(engine);
         let start = suite(workspace, (&text, 1), "none", &mut findings)?;
-        for runs in sizes.clone().filter(|runs| *runs <= most) {
+        println!("{engine:7} {:>8} {:>8.3} s {:>7.1} MB", 1, start.seconds, start.megabytes);
+        for runs in sizes.clone().filter(|runs| (2..=most).contains(runs)) {
             let Measured { seconds, megabytes, .. } = suite(workspace, (&text, runs), "none", &mut findings)?;
-            let more = (runs - 1).max(1) as f64;
+            let more = (runs - 1) as f64;
             let each = (seconds - start.seconds) / more * 1e3;
             let grown = (megabytes - start.megabytes) * f64::from(1 << 20) / more;
             println!("{engine:7} {runs:>8} {seconds:>8.3} s {megabytes:>7.1} MB {each:>10.3} ms {grown:>10.0} B");
@@ -76,8 +79,12 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         "\n{DEMOS} runs of {LENGTH} s of the demo's axis on exact, in simulated seconds per second of one processor:"
     );
     for (keep, what) in [("all", "with recordings"), ("none", "without")] {
-        let Measured { seconds, .. } = suite(workspace, (&demo(), DEMOS), keep, &mut findings)?;
-        println!("{what:16} {:>4.0}", DEMOS as f64 * LENGTH / seconds);
+        // Whatever else the machine does only adds to it.
+        let mut least = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            least = least.min(suite(workspace, (&demo(), DEMOS), keep, &mut findings)?.seconds);
+        }
+        println!("{what:16} {:>4.0}", DEMOS as f64 * LENGTH / least);
     }
     if findings.is_empty() { Ok(()) } else { Err(Failure::Findings { findings }) }
 }
