@@ -1,15 +1,16 @@
 //! Which command the arguments ask for.
 use crate::failure::Failure;
 use crate::workspace::Workspace;
-use crate::{bench, checks, demo, dist, drill, test, wheel};
+use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 11] = [
+const COMMANDS: [(&str, &str); 12] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
     ("outside", "run the outside clients alone: what others wrote against ours"),
     ("bench [--json]", "measure a tick of the closed loop on every engine"),
+    ("bench peers [--json]", "simulate one loop here and in simulators for Python, and compare the speeds"),
     ("drill faults", "end and starve 200 suites at random, and compare what --resume makes of them"),
     ("checks", "check dependency arrows, licences and text"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
@@ -36,6 +37,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["outside"] => test::run_outside(&Workspace::find()?),
         ["bench"] => bench::run(&Workspace::find()?, false),
         ["bench", "--json"] => bench::run(&Workspace::find()?, true),
+        ["bench", "peers"] => peers::run(&Workspace::find()?, false),
+        ["bench", "peers", "--json"] => peers::run(&Workspace::find()?, true),
         ["drill", "faults"] => drill::faults(&Workspace::find()?),
         ["checks"] => checks::run(&Workspace::find()?),
         ["viewer"] => {

@@ -1,6 +1,6 @@
 //! `cargo xtask demo`: from nothing to a compared pair of moves.
 use crate::failure::Failure;
-use crate::wheel;
+use crate::program;
 use crate::workspace::{Workspace, run as run_command};
 
 /// Sets up what can be had, builds, runs the demo and compares its two moves.
@@ -8,14 +8,7 @@ use crate::workspace::{Workspace, run as run_command};
 /// # Errors
 /// [`Failure`] of the build or of a run; a missing library is only said.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
-    let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
-    match wheel::MUJOCO.ensure(workspace) {
-        Ok(_) => {
-            build.args(["--features", "mujoco"]);
-        }
-        Err(failure) => println!("{failure}; the demo goes on with the embedded engines"),
-    }
-    run_command(&mut build, 0)?;
+    program::build(workspace, "the demo goes on with the embedded engines")?;
     let compare = ["compare", "scenarios/demo/jerk.toml", "scenarios/demo/snap.toml"];
     for arguments in [&["run"][..], &compare] {
         let mut servobench = workspace.servobench(arguments);

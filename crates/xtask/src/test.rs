@@ -21,15 +21,20 @@ pub(crate) enum Engines {
 
 /// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a folder of
 /// its own, see [`scenarios`].
-const SCENARIOS: [(&[&str], i32); 3] = [
+const SCENARIOS: [(&[&str], i32); 4] = [
     (&["run", "scenarios/", "--quiet"], 0),
     (&["run", WITH_FMUS, "--quiet"], 0),
+    (&["run", "tests/peers/", "--quiet"], 0),
     (&["run", "tests/scenarios/", "--quiet"], 4),
 ];
 
 /// The same for a build without MuJoCo, which some scenarios name: the demo runs on the engines that are there.
-const EMBEDDED_SCENARIOS: [(&[&str], i32); 3] =
-    [(&["run", "--quiet"], 0), (&["run", WITH_FMUS, "--quiet"], 0), (&["run", "tests/scenarios/", "--quiet"], 4)];
+const EMBEDDED_SCENARIOS: [(&[&str], i32); 4] = [
+    (&["run", "--quiet"], 0),
+    (&["run", WITH_FMUS, "--quiet"], 0),
+    (&["run", "tests/peers/", "--quiet"], 0),
+    (&["run", "tests/scenarios/", "--quiet"], 4),
+];
 
 /// Scenarios whose FMUs are made before: each says at its head by which commands of the program.
 const WITH_FMUS: &str = "scenarios-fmu";
