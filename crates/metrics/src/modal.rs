@@ -13,6 +13,7 @@
 //! ```text
 //! proposal → series → order (fit, refine, spectrum) → dominant
 //! ```
+mod columns;
 mod dominant;
 mod fit;
 mod least_squares;

@@ -6,6 +6,7 @@
 
 mod arrow;
 mod channel;
+mod chunk;
 mod envelope;
 mod error;
 mod header;

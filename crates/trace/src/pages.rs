@@ -11,7 +11,7 @@ use std::ops::Range;
 
 /// Bytes of the header of a page at most: without statistics it has some thirty.
 const LONGEST_HEADER: usize = 1024;
-/// Bytes that a page unpacks to at most; the writer ends one at 20 000 values.
+/// Bytes that a page unpacks to at most; the writer ends one at 20 480 values.
 const LARGEST_PAGE: u64 = 8 << 20;
 /// Type of a page with values, first version.
 const DATA_PAGE: i64 = 0;

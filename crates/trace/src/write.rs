@@ -1,24 +1,28 @@
 //! Recording → Parquet.
+use crate::chunk::Pages;
 use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
 use crate::seal::Hashed;
 use crate::whole_file::Unfinished;
 use crate::{TIME, arrow, seal};
-use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
-use parquet::data_type::DoubleType;
+use parquet::basic::{Repetition, Type as PhysicalType};
 use parquet::errors::{ParquetError, Result as ParquetResult};
-use parquet::file::metadata::KeyValue;
-use parquet::file::properties::{EnabledStatistics, WriterProperties};
-use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{ColumnPath, Type, TypePtr};
+use parquet::file::metadata::{
+    ColumnChunkMetaData, FileMetaData, KeyValue, ParquetMetaData, ParquetMetaDataWriter, RowGroupMetaData,
+};
+use parquet::schema::types::{SchemaDescriptor, Type, TypePtr};
 use std::collections::HashSet;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Instants per row group: what a reader such as `DuckDB` hands to one thread, and 1 MiB per column.
 pub(crate) const ROW_GROUP: usize = 1 << 17;
+/// What a Parquet file begins with.
+const MAGIC: &[u8] = b"PAR1";
+/// Version of the format: pages of the first kind.
+const VERSION: i32 = 1;
 
 impl Recording {
     /// Writes the recording as a Parquet file: the column `time` (s), one column per channel (SI, f64), and in the
@@ -37,15 +41,13 @@ impl Recording {
         let io = |action| move |source| TraceError::Io { action, path: path.to_path_buf(), source };
         let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
         let mut unfinished = Unfinished::create(path).map_err(io("create"))?;
-        let mut hashed = Hashed::new(BufWriter::with_capacity(1 << 20, &mut unfinished.file));
-        self.encode(&mut hashed).map_err(|error| match error {
+        let hashed = self.encode(Hashed::new(&mut unfinished.file)).map_err(|error| match error {
             ParquetError::External(cause) => match cause.downcast() {
                 Ok(source) => io("write")(*source),
                 Err(cause) => encode(cause.to_string()),
             },
             error => encode(error.to_string()),
         })?;
-        hashed.flush().map_err(io("write"))?;
         let digits = hashed.digits();
         if !seal::apply(&mut unfinished.file, &digits).map_err(io("write"))? {
             return Err(encode("the encoder left no place for the seal".into()));
@@ -71,46 +73,57 @@ impl Recording {
         Ok(())
     }
 
-    /// The file's bytes, not yet sealed.
-    fn encode(&self, sink: impl Write + Send) -> ParquetResult<()> {
+    /// The file's bytes, not yet sealed, to `sink`, which is given back.
+    fn encode<W: Write>(&self, sink: W) -> ParquetResult<W> {
+        let schema = Arc::new(SchemaDescriptor::new(self.schema()?));
+        let mut pages = Pages::new(sink);
+        pages.add(MAGIC)?;
+        let mut groups = Vec::new();
+        let mut time = Vec::with_capacity(ROW_GROUP.min(self.len()));
+        for (ordinal, start) in (0..self.len()).step_by(ROW_GROUP).enumerate() {
+            let rows = start..self.len().min(start + ROW_GROUP);
+            time.clear();
+            time.extend(rows.clone().map(|index| self.time_of(index)));
+            let place = pages.position();
+            // Somebody looks for a stretch of time, nobody for the rows in which a torque lies between two values.
+            let range = [time.first(), time.last()].map(|time| time.copied().unwrap_or_default());
+            let mut columns = vec![pages.add_column(&time, schema.column(0), Some(range))?];
+            for (channel, index) in self.channels.iter().zip(1..) {
+                columns.push(pages.add_column(&channel.values[rows.clone()], schema.column(index), None)?);
+            }
+            let group = RowGroupMetaData::builder(Arc::clone(&schema))
+                .set_total_byte_size(columns.iter().map(ColumnChunkMetaData::uncompressed_size).sum())
+                .set_column_metadata(columns)
+                .set_num_rows(i64::try_from(rows.len())?)
+                .set_ordinal(i16::try_from(ordinal)?)
+                .set_file_offset(i64::try_from(place)?);
+            groups.push(group.build()?);
+        }
+        pages.add(&self.footer(schema, groups)?)?;
+        Ok(pages.finish()?)
+    }
+
+    /// What stands behind the pages: schema, places, and in words all that is no channel.
+    fn footer(&self, schema: Arc<SchemaDescriptor>, groups: Vec<RowGroupMetaData>) -> ParquetResult<Vec<u8>> {
+        let created_by = format!("servobench recording format {FORMAT}");
+        let (rows, metadata) = (i64::try_from(self.len())?, Some(self.key_values()?));
+        let file = FileMetaData::new(VERSION, rows, Some(created_by), metadata, schema, None);
+        let mut footer = Vec::new();
+        ParquetMetaDataWriter::new(&mut footer, &ParquetMetaData::new(file, groups)).finish()?;
+        Ok(footer)
+    }
+
+    fn key_values(&self) -> ParquetResult<Vec<KeyValue>> {
         let text =
             serde_json::to_string(&Header::of(self)).map_err(|error| ParquetError::General(error.to_string()))?;
         let arrow = arrow::schema(self);
         let arrow = arrow.ok_or_else(|| ParquetError::General("too many channels for an Arrow schema".into()))?;
-        let metadata = vec![
+        Ok(vec![
             KeyValue::new(FORMAT_KEY.into(), FORMAT.to_owned()),
             KeyValue::new(seal::KEY.into(), seal::BLANK.to_owned()),
             KeyValue::new(arrow::KEY.into(), arrow),
             KeyValue::new(RECORDING_KEY.into(), text),
-        ];
-        let properties = WriterProperties::builder()
-            .set_created_by(format!("servobench recording format {FORMAT}"))
-            .set_key_value_metadata(Some(metadata))
-            // The bytes of a smooth signal's f64 compress only when equal significance stands side by side.
-            .set_dictionary_enabled(false)
-            .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-            // Nearly as small as by zstd in half the time: the bytes that do not compress are passed over.
-            .set_compression(Compression::LZ4_RAW)
-            // Somebody looks for a stretch of time, nobody for the rows in which a torque lies between two values.
-            .set_statistics_enabled(EnabledStatistics::None)
-            .set_column_statistics_enabled(ColumnPath::from(TIME), EnabledStatistics::Chunk)
-            .set_offset_index_disabled(true)
-            .build();
-        let mut file = SerializedFileWriter::new(sink, self.schema()?, Arc::new(properties))?;
-        let mut time = Vec::with_capacity(ROW_GROUP.min(self.len()));
-        for start in (0..self.len()).step_by(ROW_GROUP) {
-            let end = self.len().min(start + ROW_GROUP);
-            time.clear();
-            time.extend((start..end).map(|index| self.time_of(index)));
-            let mut group = file.next_row_group()?;
-            write_column(&mut group, &time)?;
-            for channel in &self.channels {
-                write_column(&mut group, &channel.values[start..end])?;
-            }
-            group.close()?;
-        }
-        file.close()?;
-        Ok(())
+        ])
     }
 
     fn schema(&self) -> ParquetResult<TypePtr> {
@@ -124,10 +137,77 @@ impl Recording {
     }
 }
 
-fn write_column<W: Write + Send>(group: &mut SerializedRowGroupWriter<'_, W>, values: &[f64]) -> ParquetResult<()> {
-    let Some(mut column) = group.next_column()? else {
-        return Err(ParquetError::General("the schema has fewer columns than the recording".into()));
-    };
-    column.typed::<DoubleType>().write_batch(values, None, None)?;
-    column.close()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{About, Channel, ChannelSpec};
+    use parquet::basic::{Compression, Encoding};
+    use parquet::data_type::DoubleType;
+    use parquet::file::properties::{EnabledStatistics, WriterProperties};
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::types::ColumnPath;
+    use servobench_base::Rate;
+
+    /// Numbers that compress well, badly and not at all.
+    fn recording(rows: usize) -> Recording {
+        let rate = Rate::new(16_000).unwrap();
+        let about = About {
+            scenario: "s".into(),
+            engine: "none".into(),
+            axis_unit: "m".into(),
+            bodies: vec!["motor".into()],
+            overrides: vec![],
+        };
+        let mut random = servobench_testkit::Random::seeded(7);
+        let mut recording = Recording::new(about, rate);
+        let mut channel = |name: &str, values: Vec<f64>| {
+            let spec = ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
+            recording.channels.push(Channel { spec, values });
+        };
+        channel("rest", vec![0.25; rows]);
+        channel("smooth", (0..rows).map(|k| (k as f64 * 1e-3).sin()).collect());
+        channel("noise", (0..rows).map(|_| random.signed()).collect());
+        channel("not finite", (0..rows).map(|k| if k % 3 == 0 { f64::NAN } else { f64::NEG_INFINITY }).collect());
+        recording
+    }
+
+    /// The file as the library's own writer makes it.
+    fn by_the_library(recording: &Recording) -> Vec<u8> {
+        let properties = WriterProperties::builder()
+            .set_created_by(format!("servobench recording format {FORMAT}"))
+            .set_key_value_metadata(Some(recording.key_values().unwrap()))
+            .set_dictionary_enabled(false)
+            .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+            .set_compression(Compression::LZ4_RAW)
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_column_statistics_enabled(ColumnPath::from(TIME), EnabledStatistics::Chunk)
+            .set_offset_index_disabled(true)
+            .build();
+        let mut bytes = Vec::new();
+        let mut file =
+            SerializedFileWriter::new(&mut bytes, recording.schema().unwrap(), Arc::new(properties)).unwrap();
+        for start in (0..recording.len()).step_by(ROW_GROUP) {
+            let rows = start..recording.len().min(start + ROW_GROUP);
+            let time: Vec<f64> = rows.clone().map(|index| recording.time_of(index)).collect();
+            let mut group = file.next_row_group().unwrap();
+            let columns = recording.channels.iter().map(|channel| &channel.values[rows.clone()]);
+            for values in std::iter::once(&time[..]).chain(columns) {
+                let mut column = group.next_column().unwrap().unwrap();
+                column.typed::<DoubleType>().write_batch(values, None, None).unwrap();
+                column.close().unwrap();
+            }
+            group.close().unwrap();
+        }
+        file.close().unwrap();
+        bytes
+    }
+
+    #[test]
+    fn the_bytes_are_those_of_the_library() {
+        for rows in [0, 1, 17, 1_023, 20_479, 20_480, 20_481, 45_678, ROW_GROUP, ROW_GROUP + 1] {
+            let recording = recording(rows);
+            let bytes = recording.encode(Vec::new()).unwrap();
+            assert!(bytes == by_the_library(&recording), "{rows} rows");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The amplitudes that fit best, for given poles.
-use super::least_squares::{Orthonormal, dot};
+use super::columns::{Columns, dot};
+use super::least_squares::{Orthonormal, Solution};
 use super::model::Component;
 use super::series::Series;
 use std::ops::Range;
@@ -16,19 +17,20 @@ pub(crate) struct Fit {
     /// Coefficient of the constant, then those of the components in order.
     pub(super) coefficients: Vec<f64>,
     /// What the coefficients multiply.
-    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) columns: Columns,
     pub(super) basis: Orthonormal,
 }
 
 impl Fit {
     /// The best amplitudes of `components`; `None` when the series cannot tell them apart.
     pub(crate) fn of(components: Vec<Component>, series: &Series) -> Option<Self> {
-        let mut columns = vec![vec![1.0; series.values.len()]];
-        columns.extend(components.iter().flat_map(|component| component.columns(series)));
-        let basis = Orthonormal::of(&columns)?;
-        let mut residual = series.values.clone();
-        let along = basis.remove_from(&mut residual);
-        let coefficients = basis.back_substitute(along);
+        let width: usize = components.iter().map(|component| component.width()).sum();
+        let mut columns = Columns::new(series.values.len(), 1 + width);
+        columns.push(series.values.iter().map(|_| 1.0));
+        for component in &components {
+            component.add_to(&mut columns, series);
+        }
+        let Solution { basis, coefficients, residual } = Solution::of(&columns, &series.values)?;
         let energy = dot(&residual, &residual);
         let finite = energy.is_finite() && coefficients.iter().all(|c| c.is_finite());
         finite.then_some(Self { components, energy, residual, coefficients, columns, basis })
@@ -39,9 +41,15 @@ impl Fit {
         self.coefficients[0]
     }
 
-    /// With the one of `candidates` that takes most of what is left.
-    pub(crate) fn with_best_of(&self, candidates: impl Iterator<Item = Component>, series: &Series) -> Option<Self> {
-        let gains = candidates.filter_map(|one| Some((one, self.basis.gain(one.columns(series), &self.residual)?)));
+    /// With the one of `candidates`, all of the same kind, that takes most of what is left.
+    pub(crate) fn with_best_of(&self, candidates: &[Component], series: &Series) -> Option<Self> {
+        let width = candidates.first()?.width();
+        let mut columns = Columns::new(series.values.len(), candidates.len() * width);
+        for candidate in candidates {
+            candidate.add_to(&mut columns, series);
+        }
+        let gains = candidates.iter().zip(self.basis.gains(columns, width, &self.residual));
+        let gains = gains.filter_map(|(one, gain)| Some((*one, gain?)));
         let (best, _) = gains.reduce(|one, two| if two.1 > one.1 { two } else { one })?;
         Self::of([self.components.as_slice(), &[best]].concat(), series)
     }
@@ -65,7 +73,7 @@ impl Fit {
         let mut sum = vec![0.0; self.residual.len()];
         for place in self.terms().filter(|(component, _)| which(*component)).flat_map(|(_, places)| places) {
             let coefficient = self.coefficients[place];
-            sum.iter_mut().zip(&self.columns[place]).for_each(|(y, x)| *y += coefficient * x);
+            sum.iter_mut().zip(self.columns.column(place)).for_each(|(y, x)| *y += coefficient * x);
         }
         sum
     }

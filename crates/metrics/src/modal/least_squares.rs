@@ -1,7 +1,5 @@
 //! Linear least squares by orthonormal columns.
-#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-
-use servobench_base::wide_registers;
+use super::columns::{Columns, dot, remove_from_each};
 
 /// Below this share of its own length, what is left of a column after projection is rounding.
 const DEPENDENT: f64 = 1e-11;
@@ -9,57 +7,99 @@ const DEPENDENT: f64 = 1e-11;
 const SOUND: f64 = 0.1;
 
 /// Orthonormal columns Q and the triangle R of `A = Q·R`.
-#[derive(Debug, Clone, Default)]
+///
+/// By modified Gram–Schmidt: each column of Q, once it is there, is taken out of all that come later. Where that cancels, a second time,
+/// which is enough (Giraud, Langou, Rozložník, 2005).
+#[derive(Debug, Clone)]
 pub(crate) struct Orthonormal {
-    columns: Vec<Vec<f64>>,
-    /// Column k of R: its first k entries and its diagonal.
-    triangle: Vec<Vec<f64>>,
+    columns: Columns,
+    /// The columns of R, one behind the other, each with its zeros.
+    triangle: Vec<f64>,
+}
+
+/// The best sum of columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    pub(crate) basis: Orthonormal,
+    /// What the columns are to be multiplied by.
+    pub(crate) coefficients: Vec<f64>,
+    /// What is left.
+    pub(crate) residual: Vec<f64>,
+}
+
+impl Solution {
+    /// The sum of `columns` that is nearest to `values`; `None` when they are linearly dependent or not finite.
+    pub(crate) fn of(columns: &Columns, values: &[f64]) -> Option<Self> {
+        let count = columns.count();
+        let mut columns = columns.clone();
+        columns.push(values.iter().copied());
+        let before: Vec<f64> = columns.iter().map(|column| dot(column, column)).collect();
+        let (mut triangle, mut along) = (vec![0.0; count * count], vec![0.0; count + 1]);
+        let mut coordinates = vec![0.0; count];
+        for k in 0..count {
+            let (there, rest) = columns.split_at_mut(k);
+            let (column, later) = rest.split_at_mut(values.len());
+            let above = &mut triangle[k * count..][..count];
+            above[k] = make_unit(there.chunks_exact(values.len()), column, before[k], above)?;
+            let along = &mut along[k + 1..];
+            remove_from_each(column, later, along);
+            for (j, along) in (k + 1..count).zip(&*along) {
+                triangle[j * count + k] = *along;
+            }
+            coordinates[k] = along[count - k - 1];
+        }
+        let mut residual = columns.pop();
+        remove_again(columns.iter(), &mut residual, before[count], &mut coordinates);
+        let basis = Orthonormal { columns, triangle };
+        let coefficients = basis.back_substitute(coordinates);
+        Some(Self { basis, coefficients, residual })
+    }
 }
 
 impl Orthonormal {
-    /// Q and R of `columns`; `None` when they are linearly dependent or not finite.
-    pub(crate) fn of(columns: &[Vec<f64>]) -> Option<Self> {
-        let mut basis = Self::default();
-        columns.iter().try_for_each(|column| basis.push(column.clone()))?;
-        Some(basis)
+    /// How much of the sum of squares of `residual`, orthogonal to what is there, each group of further `columns` would take; `None` when
+    /// they depend on what is there, or on each other. A group has `width` columns.
+    pub(crate) fn gains(&self, mut columns: Columns, width: usize, residual: &[f64]) -> Vec<Option<f64>> {
+        let before: Vec<f64> = columns.iter().map(|column| dot(column, column)).collect();
+        self.remove_once(&mut columns);
+        let groups = columns.all_mut().chunks_exact_mut(width * residual.len()).zip(before.chunks_exact(width));
+        groups.map(|(columns, before)| self.gain(columns, before, residual)).collect()
     }
 
-    /// Adds a column; `None` when it depends on those that are there, or is not finite.
-    fn push(&mut self, column: Vec<f64>) -> Option<()> {
-        let (column, above) = beside(self.columns.iter(), column)?;
-        self.columns.push(column);
-        self.triangle.push(above);
-        Some(())
-    }
-
-    /// How much of the sum of squares of `residual`, orthogonal to what is there, further `columns` would take; `None` when they depend on
-    /// what is there, or on each other.
-    pub(crate) fn gain(&self, columns: Vec<Vec<f64>>, residual: &[f64]) -> Option<f64> {
-        let mut further: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
-        for column in columns {
-            let (column, _) = beside(self.columns.iter().chain(&further), column)?;
-            further.push(column);
+    /// That of one group, out of which the columns that are there were taken once.
+    fn gain(&self, columns: &mut [f64], before: &[f64], residual: &[f64]) -> Option<f64> {
+        let mut sum = 0.0;
+        for (k, before) in before.iter().enumerate() {
+            let (further, rest) = columns.split_at_mut(k * residual.len());
+            let column = &mut rest[..residual.len()];
+            for further in further.chunks_exact(residual.len()) {
+                remove_from_each(further, column, &mut [0.0]);
+            }
+            let there = self.columns.iter().chain(further.chunks_exact(residual.len()));
+            make_unit(there, column, *before, &mut [])?;
+            let along = dot(column, residual);
+            sum += along * along;
         }
-        Some(further.iter().map(|q| dot(q, residual)).map(|along| along * along).sum())
+        Some(sum)
     }
 
-    /// Subtracts from `vector` its projection on the columns and returns the projection's coordinates.
-    pub(crate) fn remove_from(&self, vector: &mut [f64]) -> Vec<f64> {
-        remove(self.columns.iter(), vector)
-    }
-
-    /// [`remove_from`](Self::remove_from) in one pass: not orthogonal to the last digit where it cancels.
-    pub(crate) fn remove_once(&self, vector: &mut [f64]) -> Vec<f64> {
-        remove_once(self.columns.iter(), vector)
+    /// Subtracts from each of `vectors` its projection on the columns, in one pass: not orthogonal to the last digit where it cancels.
+    pub(crate) fn remove_once(&self, vectors: &mut Columns) {
+        let mut along = vec![0.0; vectors.count()];
+        for column in self.columns.iter() {
+            remove_from_each(column, vectors.all_mut(), &mut along);
+        }
     }
 
     /// The x of `R·x = coordinates`.
-    pub(crate) fn back_substitute(&self, mut coordinates: Vec<f64>) -> Vec<f64> {
-        for k in (0..coordinates.len()).rev() {
-            coordinates[k] /= self.triangle[k][k];
+    fn back_substitute(&self, mut coordinates: Vec<f64>) -> Vec<f64> {
+        let count = coordinates.len();
+        for k in (0..count).rev() {
+            let column = &self.triangle[k * count..];
+            coordinates[k] /= column[k];
             let known = coordinates[k];
-            for (i, x) in coordinates.iter_mut().enumerate().take(k) {
-                *x -= self.triangle[k][i] * known;
+            for (x, r) in coordinates[..k].iter_mut().zip(column) {
+                *x -= r * known;
             }
         }
         coordinates
@@ -91,119 +131,96 @@ pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Ve
     b.iter().all(|x| x.is_finite()).then_some(b)
 }
 
-/// `column` as a unit vector orthogonal to the `columns`, and its own column of R; `None` when it depends on them, or is not finite.
-fn beside<'a>(
-    columns: impl Iterator<Item = &'a Vec<f64>> + Clone,
-    mut column: Vec<f64>,
-) -> Option<(Vec<f64>, Vec<f64>)> {
-    let length = norm(&column);
-    let mut above = remove(columns, &mut column);
-    let left = norm(&column);
-    if !(left.is_finite() && left > DEPENDENT * length) {
+/// Makes `vector`, which had the squared length `before` and out of which the unit vectors `there` were taken once, orthogonal to them,
+/// and adds what that takes to its `coordinates`.
+fn remove_again<'a>(
+    there: impl Iterator<Item = &'a [f64]>,
+    vector: &mut [f64],
+    before: f64,
+    coordinates: &mut [f64],
+) -> f64 {
+    let left = dot(vector, vector);
+    if left <= SOUND * before {
+        let mut coordinates = coordinates.iter_mut();
+        for unit in there {
+            let mut along = [0.0];
+            remove_from_each(unit, vector, &mut along);
+            if let Some(sum) = coordinates.next() {
+                *sum += along[0];
+            }
+        }
+        return dot(vector, vector);
+    }
+    left
+}
+
+/// The same, and makes it a unit vector; `None` when it depends on the others, or is not finite. Returns its length before that.
+fn make_unit<'a>(
+    there: impl Iterator<Item = &'a [f64]>,
+    vector: &mut [f64],
+    before: f64,
+    coordinates: &mut [f64],
+) -> Option<f64> {
+    let left = remove_again(there, vector, before, coordinates).sqrt();
+    if !(left.is_finite() && left > DEPENDENT * before.sqrt()) {
         return None;
     }
-    for x in &mut column {
+    for x in vector {
         *x /= left;
     }
-    above.push(left);
-    Some((column, above))
-}
-
-/// Subtracts from `vector` its projection on the `columns` and returns the projection's coordinates. Modified Gram–Schmidt; where it
-/// cancels, a second time, which is enough (Giraud, Langou, Rozložník, 2005).
-fn remove<'a>(columns: impl Iterator<Item = &'a Vec<f64>> + Clone, vector: &mut [f64]) -> Vec<f64> {
-    let before = dot(vector, vector);
-    let mut coordinates = remove_once(columns.clone(), vector);
-    if dot(vector, vector) <= SOUND * before {
-        let more = remove_once(columns, vector);
-        coordinates.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-    }
-    coordinates
-}
-
-fn remove_once<'a>(columns: impl Iterator<Item = &'a Vec<f64>>, vector: &mut [f64]) -> Vec<f64> {
-    columns.map(|column| remove_along(column, vector)).collect()
-}
-
-/// Subtracts from `vector` its projection on the unit vector `column` and returns how long that is.
-fn remove_along(column: &[f64], vector: &mut [f64]) -> f64 {
-    wide_registers!(remove_along_in_any(column, vector), remove_along_in_wide_registers, column, vector)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn remove_along_in_wide_registers(column: &[f64], vector: &mut [f64]) -> f64 {
-    remove_along_in_any(column, vector)
-}
-
-#[inline(always)]
-fn remove_along_in_any(column: &[f64], vector: &mut [f64]) -> f64 {
-    let along = dot_in_any(column, vector);
-    vector.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
-    along
-}
-
-/// Sum of products, always in the same order: eight interleaved sums, so that a processor can work on them side by side.
-pub(crate) fn dot(one: &[f64], two: &[f64]) -> f64 {
-    wide_registers!(dot_in_any(one, two), dot_in_wide_registers, one, two)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn dot_in_wide_registers(one: &[f64], two: &[f64]) -> f64 {
-    dot_in_any(one, two)
-}
-
-#[inline(always)]
-fn dot_in_any(one: &[f64], two: &[f64]) -> f64 {
-    let ((ones, one_rest), (twos, two_rest)) = (one.as_chunks::<8>(), two.as_chunks::<8>());
-    let mut sums = [0.0; 8];
-    for (a, b) in ones.iter().zip(twos) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = one_rest.iter().zip(two_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    dot(vector, vector).sqrt()
+    Some(left)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn columns(columns: &[[f64; 3]]) -> Columns {
+        let mut all = Columns::new(3, columns.len());
+        for column in columns {
+            all.push(column.iter().copied());
+        }
+        all
+    }
+
     /// The line through three points, from the normal equations by hand: y = 5/6 + x/2 for (0,1) (1,1) (2,2).
     #[test]
     fn fits_a_line() {
-        let columns = [vec![1.0, 1.0, 1.0], vec![0.0, 1.0, 2.0]];
-        let basis = Orthonormal::of(&columns).unwrap();
-        let mut y = vec![1.0, 1.0, 2.0];
-        let along = basis.remove_from(&mut y);
-        let x = basis.back_substitute(along);
+        let solution = Solution::of(&columns(&[[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]]), &[1.0, 1.0, 2.0]).unwrap();
+        let (x, left) = (&solution.coefficients, &solution.residual);
         assert!((x[0] - 5.0 / 6.0).abs() < 1e-15 && (x[1] - 0.5).abs() < 1e-15, "{x:?}");
-        assert!((dot(&y, &y) - 1.0 / 6.0).abs() < 1e-15, "residual {y:?}");
+        assert!((dot(left, left) - 1.0 / 6.0).abs() < 1e-15, "{left:?}");
     }
 
     /// About their mean 4/3 the values (1, 1, 2) have 2/3; of that the line of the test above takes 1/2.
     #[test]
     fn the_gain_of_a_column_is_what_a_fit_with_it_takes() {
-        let basis = Orthonormal::of(&[vec![1.0, 1.0, 1.0]]).unwrap();
-        let mut y = vec![1.0, 1.0, 2.0];
-        basis.remove_from(&mut y);
-        for _ in 0..2 {
-            let gain = basis.gain(vec![vec![0.0, 1.0, 2.0]], &y).unwrap();
-            assert!((gain - 0.5).abs() < 1e-15, "{gain}");
-            assert_eq!(basis.gain(vec![vec![3.0, 3.0, 3.0]], &y), None);
-        }
+        let Solution { basis, residual, .. } = Solution::of(&columns(&[[1.0; 3]]), &[1.0, 1.0, 2.0]).unwrap();
+        let gains = basis.gains(columns(&[[0.0, 1.0, 2.0], [3.0, 3.0, 3.0], [0.0, 1.0, 2.0]]), 1, &residual);
+        assert!(gains[0].is_some_and(|gain| (gain - 0.5).abs() < 1e-15), "{gains:?}");
+        assert_eq!((gains[1], gains[2]), (None, gains[0]));
+        // Three columns span all that three values can be.
+        let gains = basis.gains(columns(&[[0.0, 1.0, 2.0], [0.0, 1.0, 4.0]]), 2, &residual);
+        assert!((gains[0].unwrap() - 2.0 / 3.0).abs() < 1e-15, "{gains:?}");
+        assert_eq!(basis.gains(columns(&[[0.0, 1.0, 2.0], [1.0, 3.0, 5.0]]), 2, &residual), [None]);
+    }
+
+    /// Columns that are all but parallel: what is taken out twice is orthogonal to the last digit, and fits.
+    #[test]
+    fn what_cancels_is_taken_out_twice() {
+        let nearly = columns(&[[1.0, 1.0, 1.0], [1.0, 1.0 + 1e-8, 1.0]]);
+        let Solution { basis, coefficients, residual } = Solution::of(&nearly, &[1.0, 2.0, 1.0]).unwrap();
+        assert!(dot(basis.columns.column(0), basis.columns.column(1)).abs() < 1e-15);
+        assert!(
+            (coefficients[1] / 1e8 - 1.0).abs() < 1e-7 && residual.iter().all(|r| r.abs() < 1e-7),
+            "{coefficients:?}"
+        );
     }
 
     #[test]
     fn dependent_columns_are_refused() {
-        assert!(Orthonormal::of(&[vec![1.0, 2.0, 3.0], vec![0.1, 0.2, 0.3]]).is_none());
-        assert!(Orthonormal::of(&[vec![1.0, f64::NAN, 3.0]]).is_none());
+        assert!(Solution::of(&columns(&[[1.0, 2.0, 3.0], [0.1, 0.2, 0.3]]), &[1.0; 3]).is_none());
+        assert!(Solution::of(&columns(&[[1.0, f64::NAN, 3.0]]), &[1.0; 3]).is_none());
     }
 
     #[test]
@@ -211,27 +228,5 @@ mod tests {
         let x = solve_definite(vec![vec![4.0], vec![2.0, 3.0]], vec![2.0, 5.0]).unwrap();
         assert!((x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15, "{x:?}");
         assert!(solve_definite(vec![vec![1.0], vec![2.0, 1.0]], vec![1.0, 1.0]).is_none());
-    }
-
-    /// What a processor with wide registers gives and what any other gives are the same bits.
-    #[test]
-    fn both_kinds_of_processors_give_the_same_bits() {
-        let mut random = servobench_testkit::Random::seeded(19);
-        for length in (0..70).chain([1000, 1001, 1007]) {
-            let column: Vec<f64> = (0..length).map(|_| random.signed()).collect();
-            let vector: Vec<f64> = (0..length).map(|_| 1e3 * random.signed()).collect();
-            assert_eq!(dot(&column, &vector).to_bits(), dot_in_any(&column, &vector).to_bits(), "{length}");
-            let (mut here, mut in_any) = (vector.clone(), vector);
-            let along = [remove_along(&column, &mut here), remove_along_in_any(&column, &mut in_any)];
-            assert_eq!((along[0].to_bits(), here), (along[1].to_bits(), in_any), "{length}");
-        }
-    }
-
-    /// Whole numbers, so that the sum is exact: 0·1 + 1·2 + … + 20·21 = 20·21·22/3.
-    #[test]
-    fn a_sum_of_products_leaves_nothing_out() {
-        let one: Vec<f64> = (0..21).map(f64::from).collect();
-        let two: Vec<f64> = (1..22).map(f64::from).collect();
-        assert!((dot(&one, &two) - 3080.0).abs() < 1e-12);
     }
 }

@@ -6,8 +6,12 @@
 //! Real poles are written so that they stay well conditioned down to λ = 0, where they are a straight line. Pairs of
 //! poles are written so that they pass without a seam from an oscillation (q = ω_d² > 0) through a double pole (q = 0)
 //! to two tails (q < 0, where sine and cosine are hyperbolic): a fit that needs two tails does not end at the border.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+
+use super::columns::Columns;
 use super::series::Series;
 use core::f64::consts::PI;
+use servobench_base::wide_registers;
 
 /// One component beside the constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +41,8 @@ pub(crate) struct Oscillation {
 
 /// Steps of the recurrences between two fresh evaluations of the transcendental functions; each step rounds once.
 const FRESH: usize = 64;
+/// Stretches of so many steps that are gone through side by side.
+const LANES: usize = 8;
 /// Fastest decay that is told from a jump, per step.
 const FASTEST: f64 = 10.0;
 /// Growth of a tail over the series, as a power of e: tenfold at most. A tail that grows takes over from a drift.
@@ -88,47 +94,53 @@ impl Component {
         }
     }
 
-    /// The columns that the coefficients multiply.
-    pub(crate) fn columns(self, series: &Series) -> Vec<Vec<f64>> {
-        let count = series.values.len();
+    /// Adds the columns that the coefficients multiply.
+    pub(crate) fn add_to(self, columns: &mut Columns, series: &Series) {
         match self {
             Self::Tail { rate } => {
                 let length = series.length();
-                vec![(0..count).map(|k| tail(rate, series.time(k), length)).collect()]
+                columns.push((0..series.values.len()).map(|k| tail(rate, series.time(k), length)));
             }
             Self::Pair { decay, square } => {
-                let (mut cosines, mut sines) = (Vec::with_capacity(count), Vec::with_capacity(count));
-                let (c, s) = pair(decay, square, series.step);
-                let mut here = (1.0, 0.0);
-                for k in 0..count {
-                    here = if k % FRESH == 0 {
-                        pair(decay, square, series.time(k))
-                    } else {
-                        // The addition theorems, which hold on either side of q = 0.
-                        (here.0 * c - square * (here.1 * s), here.0 * s + here.1 * c)
-                    };
-                    cosines.push(here.0);
-                    sines.push(here.1);
+                let (cosines, sines) = columns.add(2).split_at_mut(series.values.len());
+                let step = pair(decay, square, series.step);
+                let stretches = cosines.chunks_mut(LANES * FRESH).zip(sines.chunks_mut(LANES * FRESH));
+                for (k, (cosines, sines)) in stretches.enumerate() {
+                    let at = |lane: usize| pair(decay, square, series.time((k * LANES + lane) * FRESH));
+                    let mut here = [[0.0; LANES]; 2];
+                    let lanes = 0..cosines.len().div_ceil(FRESH);
+                    let [c, s] = &mut here;
+                    for (lane, (c, s)) in lanes.zip(c.iter_mut().zip(s)) {
+                        (*c, *s) = at(lane);
+                    }
+                    go_on(here, step, square, cosines, sines);
                 }
-                vec![cosines, sines]
             }
         }
     }
 
-    /// Derivatives of this component, with these `columns` and `coefficients`, by its non-linear parameters.
-    pub(crate) fn derivatives(self, series: &Series, columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<Vec<f64>> {
+    /// Adds the derivatives of this component, whose columns begin at `first` among `columns` and have these `coefficients`, by its
+    /// non-linear parameters.
+    pub(crate) fn add_derivatives_to(
+        self,
+        derivatives: &mut Columns,
+        series: &Series,
+        columns: &Columns,
+        first: usize,
+        coefficients: &[f64],
+    ) {
         let times = (0..series.values.len()).map(|k| series.time(k));
         match self {
             Self::Tail { rate } => {
                 let (b, length) = (coefficients[0], series.length());
-                vec![times.map(|t| b * tail_by_rate(rate, t, length)).collect()]
+                derivatives.push(times.map(|t| b * tail_by_rate(rate, t, length)));
             }
             Self::Pair { decay, square } => {
                 let (a, b) = (coefficients[0], coefficients[1]);
-                let rows = times.zip(&columns[0]).zip(&columns[1]).map(|((t, c), s)| (t, *c, *s));
-                let by_decay = rows.clone().map(|(t, c, s)| -t * (a * c + b * s)).collect();
-                let by_square = rows.map(|(t, c, s)| b * sine_by_square(decay, square, t, c, s) - 0.5 * a * t * s);
-                vec![by_decay, by_square.collect()]
+                let rows =
+                    times.zip(columns.column(first)).zip(columns.column(first + 1)).map(|((t, c), s)| (t, *c, *s));
+                derivatives.push(rows.clone().map(|(t, c, s)| -t * (a * c + b * s)));
+                derivatives.push(rows.map(|(t, c, s)| b * sine_by_square(decay, square, t, c, s) - 0.5 * a * t * s));
             }
         }
     }
@@ -185,6 +197,57 @@ fn pair(decay: f64, square: f64, t: f64) -> (f64, f64) {
     }
 }
 
+/// Fills in `cosines` and `sines`, stretches of [`FRESH`] values of which those in `here` are the first, by the addition theorems, which
+/// hold on either side of q = 0. `step` is the [`pair`] of one step.
+fn go_on(here: [[f64; LANES]; 2], step: (f64, f64), square: f64, cosines: &mut [f64], sines: &mut [f64]) {
+    wide_registers!(
+        go_on_in_any(here, step, square, cosines, sines),
+        go_on_in_wide_registers,
+        here,
+        step,
+        square,
+        cosines,
+        sines
+    );
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn go_on_in_wide_registers(
+    here: [[f64; LANES]; 2],
+    step: (f64, f64),
+    square: f64,
+    cosines: &mut [f64],
+    sines: &mut [f64],
+) {
+    go_on_in_any(here, step, square, cosines, sines);
+}
+
+#[inline(always)]
+fn go_on_in_any(
+    [mut c, mut s]: [[f64; LANES]; 2],
+    step: (f64, f64),
+    square: f64,
+    cosines: &mut [f64],
+    sines: &mut [f64],
+) {
+    // Side by side in memory first: the columns have them far apart.
+    let mut rows = [[[0.0; LANES]; 2]; FRESH];
+    for row in &mut rows {
+        *row = [c, s];
+        for lane in 0..LANES {
+            let (here, there) = (c[lane], s[lane]);
+            c[lane] = here * step.0 - square * (there * step.1);
+            s[lane] = here * step.1 + there * step.0;
+        }
+    }
+    for (lane, (cosines, sines)) in cosines.chunks_mut(FRESH).zip(sines.chunks_mut(FRESH)).enumerate() {
+        for ((cos, sin), [c, s]) in cosines.iter_mut().zip(sines).zip(&rows) {
+            (*cos, *sin) = (c[lane], s[lane]);
+        }
+    }
+}
+
 /// Derivative by q of the `s` of the [`pair`] (`c`, `s`) at `t`: `(t·c − s)/2q`.
 fn sine_by_square(decay: f64, square: f64, t: f64, c: f64, s: f64) -> f64 {
     let u = square * t * t;
@@ -207,7 +270,13 @@ mod tests {
     }
 
     fn value(component: Component, coefficients: &[f64], k: usize) -> f64 {
-        component.columns(&series()).iter().zip(coefficients).map(|(column, c)| column[k] * c).sum()
+        columns_of(component).iter().zip(coefficients).map(|(column, c)| column[k] * c).sum()
+    }
+
+    fn columns_of(component: Component) -> Columns {
+        let mut columns = Columns::new(series().values.len(), 2);
+        component.add_to(&mut columns, &series());
+        columns
     }
 
     /// Columns are what the formula says, and the derivatives are what central differences of them say: an error of the
@@ -238,7 +307,8 @@ mod tests {
             (Component::Pair { decay: 30.0, square: -400.0 }, vec![a, b], Box::new(tails(30.0, -400.0))),
         ];
         for (component, coefficients, exact) in cases {
-            let derivatives = component.derivatives(&series, &component.columns(&series), &coefficients);
+            let mut derivatives = Columns::new(series.values.len(), 2);
+            component.add_derivatives_to(&mut derivatives, &series, &columns_of(component), 0, &coefficients);
             for k in [0, 63, 64, 65, 299] {
                 let exact = exact(series.time(k));
                 assert!((value(component, &coefficients, k) - exact).abs() < 1e-11, "{component:?} {k}");

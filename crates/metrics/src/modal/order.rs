@@ -94,12 +94,12 @@ fn with_another(fit: &Fit, series: &Series, proposed: &[f64]) -> Option<Fit> {
 }
 
 fn with_tail(fit: &Fit, series: &Series) -> Option<Fit> {
-    let tails = START_TAILS.iter().map(|start| Component::Tail { rate: start / series.length() });
-    Some(fit.with_best_of(tails, series)?.refined(series, COARSE))
+    let tails = START_TAILS.map(|start| Component::Tail { rate: start / series.length() });
+    Some(fit.with_best_of(&tails, series)?.refined(series, COARSE))
 }
 
 fn with_oscillation(fit: &Fit, series: &Series, frequencies: &[f64]) -> Option<Fit> {
-    let pairs =
-        frequencies.iter().flat_map(|frequency| START_DAMPING.map(|zeta| Component::oscillating(*frequency, zeta)));
-    Some(fit.with_best_of(pairs, series)?.refined(series, COARSE))
+    let of = |frequency: &f64| START_DAMPING.map(|zeta| Component::oscillating(*frequency, zeta));
+    let pairs: Vec<Component> = frequencies.iter().flat_map(of).collect();
+    Some(fit.with_best_of(&pairs, series)?.refined(series, COARSE))
 }

@@ -2,8 +2,9 @@
 //!
 //! Source: Golub & Pereyra, *Separable nonlinear least squares*, Inverse Problems 19, 2003, with the Jacobian of Kaufman;
 //! damping after Nielsen, *Damping parameter in Marquardt's method*, IMM-REP-1999-05.
+use super::columns::{Columns, dot, dots};
 use super::fit::Fit;
-use super::least_squares::{dot, solve_definite};
+use super::least_squares::solve_definite;
 use super::model::Component;
 use super::series::Series;
 
@@ -52,12 +53,16 @@ impl Fit {
     /// After one step downhill; `None` when none promises to take more than `least` of the energy.
     fn improved(&self, series: &Series, damping: &mut Damping, least: f64) -> Option<Self> {
         let derivatives = self.derivatives(series);
-        let curvature: Vec<Vec<f64>> = derivatives
-            .iter()
-            .enumerate()
-            .map(|(k, one)| derivatives[..=k].iter().map(|two| dot(one, two)).collect())
+        let count = derivatives.count();
+        let curvature: Vec<Vec<f64>> = (0..count)
+            .map(|k| {
+                let mut row = vec![0.0; k + 1];
+                dots(derivatives.column(k), derivatives.first(k + 1), &mut row);
+                row
+            })
             .collect();
-        let slope: Vec<f64> = derivatives.iter().map(|column| dot(column, &self.residual)).collect();
+        let mut slope = vec![0.0; count];
+        dots(&self.residual, derivatives.first(count), &mut slope);
         loop {
             let mut damped = curvature.clone();
             damped.iter_mut().enumerate().for_each(|(k, row)| row[k] *= 1.0 + damping.mu);
@@ -78,14 +83,18 @@ impl Fit {
     }
 
     /// Derivatives of the fitted curve by the poles, without what the amplitudes can make good.
-    fn derivatives(&self, series: &Series) -> Vec<Vec<f64>> {
-        let of = |(component, places): (Component, std::ops::Range<usize>)| {
-            component.derivatives(series, &self.columns[places.clone()], &self.coefficients[places])
-        };
-        let mut derivatives: Vec<Vec<f64>> = self.terms().flat_map(of).collect();
-        for column in &mut derivatives {
-            self.basis.remove_once(column);
+    fn derivatives(&self, series: &Series) -> Columns {
+        let mut derivatives = Columns::new(series.values.len(), self.coefficients.len());
+        for (component, places) in self.terms() {
+            component.add_derivatives_to(
+                &mut derivatives,
+                series,
+                &self.columns,
+                places.start,
+                &self.coefficients[places],
+            );
         }
+        self.basis.remove_once(&mut derivatives);
         derivatives
     }
 
