@@ -92,11 +92,11 @@ fn a_model_that_is_nested_without_end_is_refused() {
 fn a_recording_that_does_not_fit_is_refused_before_it_begins() {
     let work = folder(&[]);
     let (file, out) = (hostile("bigmem.toml"), work.path().join("out"));
-    let output = servobench(&["run", &file, "--memory-limit", "1 GB", "--out", out.to_str().unwrap()]);
+    let output = servobench(&["run", &file, "--memory-limit", "50 MB", "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 3, "{}", said(&output));
     let results = json(&fs::read(out.join("results.json")).unwrap());
     let reason = results["scenarios"][0]["reasons"][0].as_str().unwrap();
-    assert!(reason.contains("and the limit is 1.0 GB") && reason.contains("`record.channels`"), "{reason}");
+    assert!(reason.contains("and the limit is 50 MB") && reason.contains("`record.channels`"), "{reason}");
 }
 
 /// Ten days of an axis: named as slow, then ended with what it has. The file's own limit holds as that of the command line does.

@@ -423,3 +423,48 @@ fn of_a_file_that_has_no_room_nothing_is_left() {
     }
     assert_eq!(code(&servobench(&["schema"])), 0);
 }
+
+/// A channel of 150 s at 4 kHz does not stay in memory: it needs a file, and 5 MB in it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_recording_that_has_no_room_ends_its_run_and_is_kept_up_to_there() {
+    let long = SLIDE.replace("duration = \"0.4 s\"", "duration = \"150 s\"")
+        + "[record]\nchannels = [\"load.position\", \"motor.position\"]\n";
+    let work = folder(&[("long.toml", &long)]);
+    let error_of = |out: &str| {
+        let results = fs::read(work.path().join(out).join("results.json")).unwrap();
+        let results: serde_json::Value = serde_json::from_slice(&results).unwrap();
+        let run = &results["scenarios"][0];
+        assert_eq!(run["verdict"], "error", "{run}");
+        run["reasons"][0].as_str().unwrap().to_owned()
+    };
+    // Nowhere: the first block of a channel finds no file.
+    let nowhere = command(&["run", "long.toml", "--out", "nowhere"])
+        .current_dir(work.path())
+        .env("TMPDIR", "/dev/null/none")
+        .output()
+        .unwrap();
+    assert_eq!(code(&nowhere), 3, "{}", said(&nowhere));
+    let error = error_of("nowhere");
+    for words in ["the recording cannot be kept", "`/dev/null/none`", "by TMPDIR"] {
+        assert!(error.contains(words), "{error}");
+    }
+    // Too little room: 2 MB at least, 4 MB at most, as shells count blocks.
+    let line = "ulimit -f 4096; exec \"$0\" run long.toml --out little";
+    let little = Command::new("sh")
+        .args(["-c", line, env!("CARGO_BIN_EXE_servobench")])
+        .env("TMPDIR", work.path())
+        .current_dir(work.path())
+        .output()
+        .unwrap();
+    assert_eq!(code(&little), 3, "{}", said(&little));
+    assert!(error_of("little").contains("the recording cannot be kept"), "{}", error_of("little"));
+    let kept = servobench_trace::Recording::read_parquet(work.path().join("little/long.exact.parquet")).unwrap();
+    assert!((200_000..525_000).contains(&kept.len()), "{}", kept.len());
+    // Nothing else is left in the folder for it, and with room it ends well.
+    let mut left: Vec<_> = fs::read_dir(work.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["little", "long.toml", "nowhere"]);
+    let output = within(work.path(), &["run", "long.toml", "--out", "room"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+}

@@ -5,6 +5,9 @@
 //! d =  α·cos θ + β·sin θ  q = −α·sin θ + β·cos θ   (Park, θ electrical)
 //! ```
 //! Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 3 (with factor 2/3).
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+
+use crate::sine::sincos;
 
 /// Electrical angle of the rotor (rad): pole pairs × mechanical angle. A type of its own, because mixing the two
 /// is the classic error that dimensions cannot catch.
@@ -25,10 +28,10 @@ impl ElectricalAngle {
     }
 
     /// The rotation of the rotor frame at this angle.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn rotation(self) -> Rotation {
-        let (sin, cos) = libm::sincos(self.0);
+        let (sin, cos) = sincos(self.0);
         Rotation { sin, cos }
     }
 }
@@ -51,6 +54,7 @@ pub struct KnownRotation {
 
 impl KnownRotation {
     /// That of `angle`.
+    #[inline(always)]
     #[must_use]
     pub fn of(angle: ElectricalAngle) -> Self {
         Self { angle, rotation: angle.rotation() }
@@ -79,10 +83,10 @@ impl Default for Rotation {
 
 impl Rotation {
     /// Further by `angle` (rad, electrical); cheapest for angles below π/4, which need no range reduction.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn ahead(self, angle: f64) -> Self {
-        let (sin, cos) = libm::sincos(angle);
+        let (sin, cos) = sincos(angle);
         Self { sin: self.sin * cos + self.cos * sin, cos: self.cos * cos - self.sin * sin }
     }
 }

@@ -10,6 +10,7 @@ mod parameter;
 mod power_command;
 mod setpoint;
 mod severity;
+mod sine;
 mod step_end;
 mod time;
 mod wide_registers;

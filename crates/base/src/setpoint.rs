@@ -1,4 +1,5 @@
 //! The set-point of one instant: position and its four derivatives.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 
 /// Position and its derivatives at one instant, in the axis unit (m or rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,7 +39,7 @@ impl Setpoint {
     }
 
     /// The set-point `t` seconds later while the snap stays what it is: exact, not an approximation.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn after(self, t: f64) -> Self {
         let Self { x, v, a, j, s } = self;

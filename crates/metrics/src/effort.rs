@@ -17,7 +17,6 @@ const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
     let current = vector_squared(recording, Signal::CurrentD, Signal::CurrentQ, rows);
-    let voltage = vector_squared(recording, Signal::VoltageD, Signal::VoltageQ, rows);
     set.note(Name::CurrentPeak, PEAK_CURRENT, current.clone().and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
     // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
     set.note(
@@ -25,6 +24,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
         RMS_CURRENT,
         current.and_then(|squares| root_mean(squares.map(|square| square / 2.0), PART)),
     );
+    let voltage = vector_squared(recording, Signal::VoltageD, Signal::VoltageQ, rows);
     set.note(Name::VoltagePeak, "V", voltage.and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
     for (name, share) in [
         (Name::CurrentSaturationTime, Signal::SaturationCurrent),

@@ -25,7 +25,11 @@ const UNDAMPED: f64 = 1e-9;
 /// Makes zero what the recorded positions cannot show.
 pub(crate) fn clear(metrics: &mut Metrics, recording: &Recording) {
     let positions = recording.channels.iter().filter(|channel| channel.spec.name.ends_with(".position"));
-    let largest = positions.flat_map(|channel| &channel.values).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let largest = positions.fold(0.0, |largest, channel| {
+        let largest = channel.values.iter().fold(largest, |largest: f64, x| largest.max(x.abs()));
+        channel.values.release();
+        largest
+    });
     let floor = PLACES * f64::EPSILON * largest;
     let moves = metrics.moves.iter_mut().map(|made| &mut made.metrics);
     for set in moves.chain([&mut metrics.run]) {

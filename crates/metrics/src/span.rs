@@ -60,7 +60,7 @@ impl Deref for Checked<'_> {
     }
 }
 
-/// Values of a channel.
+/// Values of a channel. What was looked at before takes no memory any more.
 ///
 /// # Errors
 /// [`Absence::NoChannel`], [`Absence::NotFinite`].
@@ -70,7 +70,8 @@ pub(crate) fn channel<'a>(checked: &'a Checked<'_>, signal: Signal) -> Result<&'
     let recording = checked.recording;
     let named = recording.channels.iter().zip(&checked.gaps).find(|(channel, _)| channel.spec.name == signal.name());
     let (channel, gap) = named.ok_or(Absence::NoChannel { channel: signal })?;
-    let values = channel.values.as_slice();
+    recording.release();
+    let values = &*channel.values;
     match *gap.get_or_init(|| first_gap(values)) {
         None => Ok(values),
         Some(row) => Err(Absence::NotFinite { channel: signal, time: recording.rate.time(Tick(row as u64)) }),

@@ -8,6 +8,9 @@ use servobench_signals::Signal;
 use std::ops::Range;
 
 const LOAD: Signal = Signal::LoadPosition;
+/// Values in which a mode is looked for, at most: a minute at 16 kHz. What a move leaves ringing has died away by then, and a spectrum of
+/// ten minutes would take a gigabyte.
+const HEARD: usize = 1 << 20;
 
 /// Vibration over one stretch of the recording.
 #[derive(Debug, Clone)]
@@ -45,22 +48,23 @@ impl Residual {
         };
         let largest = load.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         // Deviations of nanometres beside a position of a metre: subtract before anything else.
-        let deviation: Vec<f64> = load.iter().map(|x| x - rest).collect();
+        let deviation = load.iter().map(|x| x - rest);
         let (low, high) =
-            deviation.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+            deviation.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         // From the first value on, so that a load at rest has no RMS of rounding.
-        let first = deviation.first().copied().unwrap_or_default();
-        let mean = first + deviation.iter().map(|x| x - first).sum::<f64>() / deviation.len() as f64;
+        let first = deviation.clone().next().unwrap_or_default();
+        let mean = first + deviation.clone().map(|x| x - first).sum::<f64>() / load.len() as f64;
         let period = recording.rate.period();
+        let heard: Vec<f64> = deviation.clone().take(HEARD).collect();
         let signal = modal::Signal {
-            values: &deviation,
+            values: &heard,
             start: rows.start as f64 * period - zero,
             step: period,
             resolution: 8.0 * f64::EPSILON * largest,
         };
         Self {
             peak_to_peak: Ok(high - low),
-            rms: root_mean(deviation.iter().map(|x| (x - mean) * (x - mean)), "after the profile"),
+            rms: root_mean(deviation.map(|x| (x - mean) * (x - mean)), "after the profile"),
             mode: fit_mode(&signal, mode),
         }
     }

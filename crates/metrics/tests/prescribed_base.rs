@@ -217,7 +217,7 @@ fn ring_down_without_a_move() {
 #[test]
 fn a_load_at_rest_has_no_vibration() {
     let mut still = recording(&jerk_limited(), 100.0);
-    still.channels[0].values.fill(0.1 + 0.2);
+    still.channels[0].values.to_mut().fill(0.1 + 0.2);
     let metrics = measure(&still, &Question::default());
     assert_eq!(metrics.run.value(Name::ResidualVibrationPp), Some(0.0));
     assert_eq!(metrics.run.value(Name::ResidualVibrationRms), Some(0.0));

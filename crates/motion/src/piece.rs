@@ -1,4 +1,5 @@
 //! One polynomial of a profile.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::Setpoint;
 
 /// The polynomial that holds at one time of a [`Profile`](crate::Profile) and for a while after it.
@@ -69,7 +70,7 @@ impl Piece {
     }
 
     /// Whether it is still the one at `t` (s), a time not before the one that it was looked up for.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
         t + self.tolerance - self.origin < self.until
@@ -82,7 +83,7 @@ impl Piece {
     }
 
     /// The set-point at `t` (s), a time at which it holds.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         let since = self.sign * (t - self.origin) - self.start;

@@ -1,4 +1,5 @@
 //! Set-points in the order of time, without a search at each.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::plan::Plan;
 use servobench_base::Setpoint;
 use servobench_motion::Piece;
@@ -37,24 +38,29 @@ impl Reader {
     }
 
     /// Whether it still holds at `t` (s), a time not before that of the look-up.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
         self.first.holds(t) && self.later.iter().all(|(_, delay, piece)| piece.holds(t - delay))
     }
 
     /// The set-point at `t` (s), a time at which it holds.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         let first = self.first.at(t);
-        if self.later.is_empty() { first } else { self.with_later(first, t) }
+        if self.later.is_empty() {
+            return first;
+        }
+        // As numbers, so that a set-point without later parts stays in registers.
+        let [x, v, a, j, s] = self.with_later(first, t);
+        Setpoint { x, v, a, j, s }
     }
 
-    /// The same with the later parts.
-    fn with_later(&self, first: Setpoint, t: f64) -> Setpoint {
+    /// The same with the later parts: position and its derivatives.
+    fn with_later(&self, first: Setpoint, t: f64) -> [f64; 5] {
         // Differences from the first part: at rest all are the same bit for bit.
-        self.later.iter().fold(first, |sum, (part, delay, piece)| {
+        let Setpoint { x, v, a, j, s } = self.later.iter().fold(first, |sum, (part, delay, piece)| {
             let Setpoint { x, v, a, j, s } = piece.at(t - delay);
             Setpoint {
                 x: sum.x + part * (x - first.x),
@@ -63,7 +69,8 @@ impl Reader {
                 j: sum.j + part * (j - first.j),
                 s: sum.s + part * (s - first.s),
             }
-        })
+        });
+        [x, v, a, j, s]
     }
 
     /// When the first of its polynomials ceases to hold (s).

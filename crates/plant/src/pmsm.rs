@@ -123,7 +123,7 @@ impl Params {
 impl Input {
     /// The voltage as the rotor meets it in the middle of a tick of `h` (s). Its mean over the tick is shorter by
     /// sin(ωh/2)/(ωh/2).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn voltage_at_middle(&self, h: f64) -> Dq {
         self.voltage.to_dq(self.rotor.ahead(self.omega_e * h / 2.0))
@@ -193,29 +193,31 @@ impl Ticks {
         self.params.torque_factor() * solution.means.torque
     }
 
-    /// The same with the powers.
+    /// The same with the powers, which go to `power`: a copy would have to wait until they are stored.
     #[inline]
-    pub fn step_with_power(&self, x: &mut State, u: &Input) -> Output {
-        wide_registers!(self.solved_with_power(x, u), Self::in_wide_registers, self, x, u)
+    pub fn step_with_power(&self, x: &mut State, u: &Input, power: &mut Power) -> f64 {
+        wide_registers!(self.solved_with_power(x, u, power), Self::in_wide_registers, self, x, u, power)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn in_wide_registers(&self, x: &mut State, u: &Input) -> Output {
-        self.solved_with_power(x, u)
+    fn in_wide_registers(&self, x: &mut State, u: &Input, power: &mut Power) -> f64 {
+        self.solved_with_power(x, u, power)
     }
 
     #[inline(always)]
-    fn solved_with_power(&self, x: &mut State, u: &Input) -> Output {
+    fn solved_with_power(&self, x: &mut State, u: &Input, power: &mut Power) -> f64 {
         let (solution, before) = (self.solve::<true>(x.current, u), x.current);
         x.current = moved(before, solution.change);
-        self.params.output(&solution, before, x.current, u.omega_e, self.h)
+        let output = self.params.output(&solution, before, x.current, u.omega_e, self.h);
+        *power = output.power;
+        output.torque
     }
 
     #[inline(always)]
     fn solve<const POWER: bool>(&self, i: Dq, u: &Input) -> Solution {
         let in_table = self.tables.solve::<POWER>(u.omega_e * self.h, i, u);
-        in_table.unwrap_or_else(|| solve(&self.params, i, u, self.h))
+        in_table.unwrap_or_else(|| Solution::of_numbers(solve_in_numbers(&self.params, i, u, self.h)))
     }
 }
 
@@ -230,6 +232,13 @@ pub fn step_with_power(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let (solution, before) = (solve(p, x.current, &u, h), x.current);
     x.current = moved(before, solution.change);
     p.output(&solution, before, x.current, u.omega_e, h)
+}
+
+/// As numbers, so that a solution of the tables stays in registers.
+#[cold]
+fn solve_in_numbers(p: &Params, i: Dq, u: &Input, h: f64) -> [f64; 5] {
+    let Solution { change: Dq { d, q }, means: Forms { torque, square, input } } = solve(p, i, u, h);
+    [d, q, torque, square, input]
 }
 
 /// A tick at any speed.
@@ -256,6 +265,7 @@ impl Params {
         1.5 * self.electrical_ratio
     }
 
+    #[inline(always)]
     fn output(&self, solution: &Solution, before: Dq, after: Dq, omega_e: f64, h: f64) -> Output {
         let Forms { torque, square, input } = solution.means;
         let torque = self.torque_factor() * torque;

@@ -175,11 +175,7 @@ impl PowerStage {
                 *voltage = input.voltage_at_middle(h);
                 match power {
                     None => ticks.step(state, &input),
-                    Some(power) => {
-                        let output = ticks.step_with_power(state, &input);
-                        *power = output.power;
-                        output.torque
-                    }
+                    Some(power) => ticks.step_with_power(state, &input, power),
                 }
             }
             // The current is gone within the tick, which takes a real inverter some milliseconds, and its energy back in

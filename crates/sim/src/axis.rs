@@ -9,6 +9,7 @@ use servobench_base::Severity;
 use servobench_plant::MechanicsError;
 use servobench_signals::{Instant, PerLimit, Selection, write_row};
 use servobench_trace::{Mark, Recorder, Recording};
+use std::io;
 
 /// Source of log lines of the mechanics: no engine but `fmu` writes any.
 const MECHANICS: &str = "FMU of the axis";
@@ -153,8 +154,8 @@ impl Axis {
         true
     }
 
-    /// Ends the mechanics at `present` (s) and gives the recording, which ends at `end` (s).
-    pub(crate) fn finish(mut self, present: f64, end: f64) -> Recording {
+    /// Ends the mechanics at `present` (s) and gives the recording, which ends at `end` (s); and why it is not all, if it is not.
+    pub(crate) fn finish(mut self, present: f64, end: f64) -> (Recording, Option<io::Error>) {
         self.closed_loop.mechanics.end();
         self.note_log(present);
         self.limits.finish(end, &mut self.recorder);

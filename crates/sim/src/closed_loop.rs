@@ -77,6 +77,12 @@ pub(crate) struct Control {
     pub(crate) load_encoder: Option<Encoder>,
 }
 
+/// Position and its derivatives.
+#[inline(always)]
+const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
+    [x, v, a, j, s]
+}
+
 impl ClosedLoop {
     /// Everything of tick `k` but the mechanics' way to the next one:
     ///
@@ -183,8 +189,15 @@ impl ClosedLoop {
         let Control { params, state, .. } = control;
         let command = match &mut self.state.source {
             Source::Program(program) => {
-                now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
-                let command = drive::step(params, state, &Demand::position(now.setpoint), EffortLimits::NONE, &sensors);
+                // As numbers, which stay in registers: a copy would have to wait until they are stored.
+                let [x, v, a, j, s] = match (&external.setpoint, &upcoming) {
+                    (None, None) => numbers(&program.at(since)),
+                    (Some(setpoint), _) | (None, Some(setpoint)) => numbers(setpoint),
+                };
+                let demand = Demand::position(Setpoint { x, v, a, j, s });
+                let command = drive::step(params, state, &demand, EffortLimits::NONE, &sensors);
+                let setpoint = &mut now.setpoint;
+                (setpoint.x, setpoint.v, setpoint.a, setpoint.j, setpoint.s) = (x, v, a, j, s);
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
                 command

@@ -139,6 +139,7 @@ impl Coupled {
             exchanges += 1;
             if exchanges.is_multiple_of(LOG_EVERY) {
                 self.note_logs();
+                failure = failure.or_else(|| self.lost());
             }
             // An exchange may take long: how long is up to the FMUs.
             if failure.is_none() && progress(self.master.tick().0 as f64 / ticks as f64).is_break() {
@@ -148,6 +149,12 @@ impl Coupled {
         // It is over: there is nothing to break off.
         let _: ControlFlow<()> = progress(1.0);
         self.finish(failure)
+    }
+
+    /// That the recording of the axis cannot be kept, if so.
+    fn lost(&mut self) -> Option<Failure> {
+        let Part::Axis(block) = self.master.block_mut(self.names.len()) else { return None };
+        block.machine.check_recordings().err().map(Failure::from)
     }
 
     /// Notes the new log lines of the FMUs. Those of a step that is repeated come again.

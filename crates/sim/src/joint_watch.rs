@@ -67,7 +67,7 @@ mod tests {
             watch.tick(t, &limits(binds).collect::<Vec<_>>(), &mut recorder);
         }
         watch.finish(5.0, &limits([true, false]).collect::<Vec<_>>(), &mut recorder);
-        let events = recorder.finish().events;
+        let events = recorder.finish().0.events;
         let found: Vec<_> =
             events.iter().map(|event| (event.start, event.end, &event.source[..], &event.message[..])).collect();
         assert_eq!(found, [(1.0, 3.0, "mechanics", "upper"), (4.0, 5.0, "mechanics", "lower")]);

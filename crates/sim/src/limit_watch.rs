@@ -140,7 +140,7 @@ mod tests {
             t += 1.0;
         }
         watch.finish(t - 1.0, &mut recorder);
-        recorder.finish().events
+        recorder.finish().0.events
     }
 
     const POSITIVE: PerLimit<f64> = PerLimit { voltage: 1.0, current: 1.0, effort: 1.0 };
@@ -154,7 +154,7 @@ mod tests {
             watch.tick(t, &binding(false, false, effort != 0.0), cut, &mut recorder);
         }
         watch.finish(7.0, &mut recorder);
-        let found = recorder.finish().limit_reversals;
+        let found = recorder.finish().0.limit_reversals;
         assert_eq!(found, [LimitReversals { limit: "effort limit".into(), times: vec![3.0, 6.0] }]);
     }
 

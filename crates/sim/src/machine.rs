@@ -87,12 +87,18 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
     #[inline(always)]
     fn all_ticks(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), AxisFailure> {
         let mut done = Ok(());
-        while done.is_ok() && self.tick + 1 < ticks {
-            if self.tick.is_multiple_of(PROGRESS_EVERY) && progress(self.tick as f64 / ticks as f64).is_break() {
-                let failure = Failure { time: self.time(), reason: Reason::Stopped };
-                return Err(AxisFailure { axis: 0, failure });
+        while self.tick + 1 < ticks {
+            if self.tick.is_multiple_of(PROGRESS_EVERY) {
+                self.check_recordings()?;
+                if progress(self.tick as f64 / ticks as f64).is_break() {
+                    let failure = Failure { time: self.time(), reason: Reason::Stopped };
+                    return Err(AxisFailure { axis: 0, failure });
+                }
             }
-            done = self.tick();
+            if let Err(failure) = self.tick() {
+                done = Err(failure);
+                break;
+            }
         }
         if done.is_ok() {
             self.observe();
@@ -100,6 +106,22 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         // It is over: there is nothing to break off.
         let _: ControlFlow<()> = progress(1.0);
         done
+    }
+}
+
+impl<Axes: AsMut<[Axis]>> Machine<Axes> {
+    /// Whether what happens is still recorded.
+    ///
+    /// # Errors
+    /// [`Reason::Recording`] of the first axis of which it is not.
+    pub(crate) fn check_recordings(&mut self) -> Result<(), AxisFailure> {
+        let time = self.time();
+        for (axis, of) in self.axes.as_mut().iter().enumerate() {
+            if let Some(error) = of.recorder.failure() {
+                return Err(AxisFailure { axis, failure: Failure::not_kept(time, error) });
+            }
+        }
+        Ok(())
     }
 }
 

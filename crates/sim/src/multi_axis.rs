@@ -2,7 +2,7 @@
 use crate::axis::Axis;
 use crate::bench::{Bench, Loop};
 use crate::machine::Machine;
-use crate::run::AxisFailure;
+use crate::run::{AxisFailure, Failure};
 use servobench_base::Rate;
 use servobench_trace::Recording;
 use std::ops::ControlFlow;
@@ -81,7 +81,13 @@ impl MultiAxisBench {
             })
             .err();
         let (present, end) = self.machine.ends(failure.as_ref().map(|axis| &axis.failure));
-        let recordings = self.machine.axes.into_iter().map(|axis| axis.finish(present, end)).collect();
+        let (mut recordings, mut failure) = (Vec::with_capacity(self.machine.axes.len()), failure);
+        for (index, axis) in self.machine.axes.into_iter().enumerate() {
+            let (recording, missing) = axis.finish(present, end);
+            let lost = |error: &_| Failure::not_kept(recording.time_of(recording.len()), error);
+            failure = failure.or_else(|| Some(AxisFailure { axis: index, failure: lost(missing.as_ref()?) }));
+            recordings.push(recording);
+        }
         MultiAxisOutcome { recordings, failure }
     }
 }

@@ -1,4 +1,5 @@
 //! The program of moves as a set-point over time.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 mod fine;
 
 use crate::error::{BuildError, check_length};
@@ -130,13 +131,13 @@ impl Program {
 
     /// Set-point at `t` (s), the time of a tick. Queries go from tick to tick where the program is interpolated, and must not
     /// go back in time elsewhere.
-    #[inline]
+    #[inline(always)]
     pub fn at(&mut self, t: f64) -> Setpoint {
         let Self { course, fine, .. } = self;
-        match fine {
-            None => course.at(t),
-            Some(fine) => fine.next(|| course.at(t)),
-        }
+        let Some(fine) = fine else { return course.at(t) };
+        // As numbers, so that a set-point that is not interpolated stays in registers.
+        let [x, v, a, j, s] = interpolated(fine, course, t);
+        Setpoint { x, v, a, j, s }
     }
 
     /// How long each move lasts (s).
@@ -167,9 +168,16 @@ impl Program {
     }
 }
 
+/// What `fine` makes of the set-point at `t` (s): position and its derivatives.
+#[inline(never)]
+fn interpolated(fine: &mut Fine, course: &mut Course, t: f64) -> [f64; 5] {
+    let Setpoint { x, v, a, j, s } = fine.next(|| course.at(t));
+    [x, v, a, j, s]
+}
+
 impl Course {
     /// Set-point at `t` (s). Queries must not go back in time.
-    #[inline]
+    #[inline(always)]
     fn at(&mut self, t: f64) -> Setpoint {
         if t >= self.now.next_start || !self.now.reader.holds(t - self.now.start) {
             self.look_up(t);

@@ -5,6 +5,7 @@ use crate::machine::Machine;
 use servobench_metrics::MEASURED_FROM;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
+use std::io;
 use std::ops::ControlFlow;
 
 /// What a run leaves behind.
@@ -39,6 +40,9 @@ pub enum Reason {
     /// What the program waited for in vain.
     #[error("{0}")]
     Program(String),
+    /// The disk, which takes no more of the recording.
+    #[error("the recording cannot be kept: {0}")]
+    Recording(String),
     /// Whoever follows its progress.
     #[error("the run was told to stop")]
     Stopped,
@@ -52,6 +56,13 @@ pub struct AxisFailure {
     pub axis: usize,
     /// Why.
     pub failure: Failure,
+}
+
+impl Failure {
+    /// The recording cannot be kept from `time` (s) on.
+    pub(crate) fn not_kept(time: f64, error: &io::Error) -> Self {
+        Self { time, reason: Reason::Recording(error.to_string()) }
+    }
 }
 
 impl From<AxisFailure> for Failure {
@@ -100,6 +111,9 @@ impl Outcome {
     pub(crate) fn of(machine: Machine<[Axis; 1]>, failure: Option<Failure>) -> Self {
         let (present, end) = machine.ends(failure.as_ref());
         let [axis] = machine.axes;
-        Self { recording: axis.finish(present, end), failure }
+        let (recording, missing) = axis.finish(present, end);
+        let end = recording.time_of(recording.len());
+        let failure = failure.or_else(|| Some(Failure::not_kept(end, missing.as_ref()?)));
+        Self { recording, failure }
     }
 }

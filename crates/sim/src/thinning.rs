@@ -1,32 +1,39 @@
 //! What is kept of a recording when it has been measured.
 use servobench_base::Rate;
 use servobench_signals::Signal;
-use servobench_trace::{Channel, Recording};
+use servobench_trace::{Channel, GrowingValues, Recording};
+use std::io;
 
 /// `recording` with rows at `rate` only: every n-th row, but of the shares of saturated ticks the mean since the last row
 /// that is kept. Unchanged when `rate` does not divide that of the rows.
-#[must_use]
-pub fn thinned(recording: Recording, rate: Rate) -> Recording {
+///
+/// # Errors
+/// Those of the file that holds a long recording: the disk is full.
+pub fn thinned(recording: Recording, rate: Rate) -> io::Result<Recording> {
     let every = match recording.rate.divider(rate) {
         Ok(divider) if divider.ticks() > 1 => divider.ticks() as usize,
-        _ => return recording,
+        _ => return Ok(recording),
     };
-    let thin = |channel: Channel| {
-        let values = if channel.spec.name.starts_with("saturation.") {
-            means(&channel.values, every)
+    let rows = recording.len().div_ceil(every);
+    let thin = |Channel { spec, values }: Channel| {
+        let mut kept = GrowingValues::with_room(rows);
+        if spec.name.starts_with("saturation.") {
+            kept.extend_from(means(&values, every))?;
         } else {
-            channel.values.into_iter().step_by(every).collect()
-        };
-        Channel { spec: channel.spec, values }
+            kept.extend_from(values.iter().step_by(every).copied())?;
+        }
+        values.release();
+        Ok(Channel { spec, values: kept.finish()? })
     };
-    Recording { rate, channels: recording.channels.into_iter().map(thin).collect(), ..recording }
+    let channels = recording.channels.into_iter().map(thin).collect::<io::Result<_>>()?;
+    Ok(Recording { rate, channels, ..recording })
 }
 
 /// At every n-th value the mean of the last n; at the first, itself.
-fn means(values: &[f64], every: usize) -> Vec<f64> {
+fn means(values: &[f64], every: usize) -> impl Iterator<Item = f64> {
     let (first, later) = values.split_at(values.len().min(1));
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    first.iter().copied().chain(later.chunks_exact(every).map(mean)).collect()
+    first.iter().copied().chain(later.chunks_exact(every).map(mean))
 }
 
 /// `recording` with the channels `wanted` only; all when the list is empty. What a run is judged by is recorded whatever is
@@ -77,13 +84,13 @@ mod tests {
     #[test]
     fn every_nth_row_stays() {
         for rows in [0, 1, 4, 5, 8, 9, 400, 401] {
-            let thin = thinned(recording(rows), Rate::new(250).unwrap());
+            let thin = thinned(recording(rows), Rate::new(250).unwrap()).unwrap();
             let instants: Vec<f64> = (0..rows).step_by(4).map(f64::from).collect();
             let shares: Vec<f64> = (0..rows).step_by(4).map(|k| if k == 0 { 0.0 } else { 0.25 }).collect();
             assert_eq!(thin.channel("load.position"), Some(instants.as_slice()), "{rows}");
             assert_eq!(thin.channel("saturation.voltage"), Some(shares.as_slice()), "{rows}");
             assert_eq!(thin.rate.hertz(), 250);
         }
-        assert_eq!(thinned(recording(9), Rate::new(1000).unwrap()), recording(9));
+        assert_eq!(thinned(recording(9), Rate::new(1000).unwrap()).unwrap(), recording(9));
     }
 }

@@ -49,7 +49,7 @@ fn run(scenario: &Scenario) -> Recording {
     let outcome = Bench::new(scenario, &Exact).unwrap().run(&mut |_| {});
     assert_eq!(outcome.failure, None);
     assert!(outcome.recording.events.is_empty(), "a limit binds: {:?}", outcome.recording.events);
-    servobench_sim::thinned(outcome.recording, scenario.record.rate)
+    servobench_sim::thinned(outcome.recording, scenario.record.rate).unwrap()
 }
 
 fn distance(one: &Recording, other: &Recording, channel: &str) -> f64 {

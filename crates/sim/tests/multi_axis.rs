@@ -54,7 +54,7 @@ fn a_run_lasts_as_long_as_its_longest_axis() {
     let recordings = together.run(&mut |_| {}).recordings;
     let short = alone(&y());
     for (channel, expected) in recordings[0].channels.iter().zip(&short.channels) {
-        assert_eq!(channel.values[..expected.values.len()], expected.values, "{}", expected.spec.name);
+        assert_eq!(channel.values[..expected.values.len()], *expected.values, "{}", expected.spec.name);
         assert_eq!(channel.values.len(), recordings[1].channels[0].values.len());
     }
 }

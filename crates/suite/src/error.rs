@@ -49,6 +49,9 @@ pub enum RunError {
         /// What there may be (B).
         limit: u64,
     },
+    /// The disk takes no more of its recording.
+    #[error("the recording cannot be kept: {0}")]
+    NotKept(#[source] std::io::Error),
     /// The worker process says why, or could not.
     #[error(transparent)]
     Worker(#[from] WorkerError),
@@ -77,6 +80,7 @@ impl RunError {
             | Self::Panicked(_)
             | Self::TimeLimit { .. }
             | Self::Memory { .. }
+            | Self::NotKept(_)
             | Self::Worker(_) => false,
         }
     }

@@ -52,7 +52,9 @@ impl From<Failure> for Interruption {
                 Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
             }
             Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),
-            Reason::Mechanics(_) | Reason::Coupling(_) | Reason::Stopped => Self::Broken(failure.into()),
+            Reason::Mechanics(_) | Reason::Coupling(_) | Reason::Recording(_) | Reason::Stopped => {
+                Self::Broken(failure.into())
+            }
         }
     }
 }
@@ -83,7 +85,10 @@ pub fn execute(
     let recording = selected(recording, &record.channels);
     let mut metrics = measure(&recording, &job.scenario.measure);
     // What is measured does not depend on how much of it is kept.
-    let recording = thinned(recording, record.rate);
+    let recording = match thinned(recording, record.rate) {
+        Ok(recording) => recording,
+        Err(error) => return Err(broken(RunError::NotKept(error), None)),
+    };
     if let Some(failure) = failure {
         return Err(broken(failure, Some((recording, metrics))));
     }

@@ -2,6 +2,7 @@
 use servobench_plant::{EngineName, ModelKind};
 use servobench_scenario::{AxisMechanics, Scenario, Step};
 use servobench_sim::{Program, RECORDING_LIMIT, most_channels};
+use servobench_trace::IN_MEMORY;
 use std::collections::HashMap;
 
 /// One scenario on one engine.
@@ -75,9 +76,11 @@ impl Job {
             return 0;
         };
         let channels = if record.channels.is_empty() { most_channels(&self.scenario) } else { record.channels.len() };
-        let bytes = |hertz: u32| (duration * f64::from(hertz) + 1.0) * channels as f64 * VALUE;
+        let rows = |hertz: u32| duration * f64::from(hertz) + 1.0;
+        // What is more is in a file.
+        let bytes = |hertz: u32| rows(hertz).min(IN_MEMORY as f64) * channels as f64 * VALUE;
         let (every, kept) = (bytes(base_rate.hertz()), bytes(record.rate.hertz()));
-        let bytes = if every > RECORDING_LIMIT * 1e9 {
+        let bytes = if rows(base_rate.hertz()) * channels as f64 * VALUE > RECORDING_LIMIT * 1e9 {
             kept
         } else if record.rate == *base_rate {
             every

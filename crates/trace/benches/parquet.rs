@@ -33,7 +33,7 @@ fn recording() -> Recording {
         }
         recorder.push(&row);
     }
-    recorder.finish()
+    recorder.finish().0
 }
 
 fn raw_size() -> BytesCount {

@@ -55,7 +55,7 @@ mod tests {
         let mut recording = Recording::new(about, rate);
         for (name, unit) in [("load.position", "m"), ("ratio", "")] {
             let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "plant".into(), rate };
-            recording.channels.push(Channel { spec, values: vec![0.0] });
+            recording.channels.push(Channel { spec, values: vec![0.0].into() });
         }
         recording
     }

@@ -1,4 +1,5 @@
 //! One recorded quantity.
+use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
 
@@ -22,5 +23,5 @@ pub struct Channel {
     /// What it is.
     pub spec: ChannelSpec,
     /// One value per recorded instant (SI).
-    pub values: Vec<f64>,
+    pub values: Values,
 }

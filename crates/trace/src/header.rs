@@ -9,6 +9,7 @@
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::LogEntry;
 use crate::recording::{About, Call, Event, LimitReversals, Move, Recording, Signal};
+use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
 
@@ -84,7 +85,7 @@ impl Header {
     pub(crate) fn into_recording(self) -> Recording {
         let Self { scenario, engine, axis_unit, bodies, overrides, .. } = self;
         let Self { rate, channels, moves, events, signals, calls, limit_reversals, log, .. } = self;
-        let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::new() }).collect();
+        let channels = channels.into_iter().map(|spec| Channel { spec, values: Values::default() }).collect();
         let about = About { scenario, engine, axis_unit, bodies, overrides };
         Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
     }

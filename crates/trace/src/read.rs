@@ -2,6 +2,7 @@
 use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, FORMER_FORMAT, Header, RECORDING_KEY};
 use crate::recording::Recording;
+use crate::values::{GrowingValues, Values};
 use crate::write::ROW_GROUP;
 use crate::{TIME, pages, seal};
 use parquet::basic::Type as PhysicalType;
@@ -146,18 +147,20 @@ fn holds(
 }
 
 /// All values of a column that has `instants` of them.
-fn values(reader: &SerializedFileReader<File>, column: usize, instants: usize) -> Result<Vec<f64>, ParquetError> {
+fn values(reader: &SerializedFileReader<File>, column: usize, instants: usize) -> Result<Values, ParquetError> {
     // A file that was edited may promise any number: what is reserved is what the writer puts into one row group.
-    let mut values = Vec::with_capacity(instants.min(ROW_GROUP));
+    let (mut values, mut of_group) = (GrowingValues::with_room(instants.min(ROW_GROUP)), Vec::new());
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let ColumnReader::DoubleColumnReader(mut column) = group.get_column_reader(column)? else {
             return Err(ParquetError::General("its type changes between row groups".into()));
         };
-        column.read_records(instants - values.len(), None, None, &mut values)?;
+        of_group.clear();
+        column.read_records(instants - values.len(), None, None, &mut of_group)?;
+        values.extend(&of_group)?;
     }
     if values.len() == instants {
-        Ok(values)
+        Ok(values.finish()?)
     } else {
         Err(ParquetError::General(format!("it has {} values, {instants} were written", values.len())))
     }

@@ -2,7 +2,9 @@
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::Log;
 use crate::recording::{About, Call, Event, LimitReversals, Move, Recording, Signal};
+use crate::values::{GrowingValues, Values};
 use servobench_base::{Rate, Severity};
+use std::io;
 
 /// Rows that are collected before they go to the channels: a block stays in the first cache, in which columns of 9 lines
 /// share no place, as columns of 8 would.
@@ -50,8 +52,12 @@ pub struct Recorder {
     /// Columns of a block, of which the first `rows` rows are there.
     block: Vec<Column>,
     rows: usize,
+    /// The values of each channel.
+    values: Vec<GrowingValues>,
     /// The column of each channel.
     columns: Vec<usize>,
+    /// Why no more rows are kept.
+    failure: Option<io::Error>,
     log: Log,
     is_silent: bool,
 }
@@ -61,9 +67,10 @@ impl Recorder {
     #[must_use]
     pub fn new(about: About, rate: Rate, channels: Vec<ChannelSpec>, rows: usize) -> Self {
         let (block, columns) = (vec![[0.0; BLOCK]; channels.len()], (0..channels.len()).collect());
-        let channels = channels.into_iter().map(|spec| Channel { spec, values: Vec::with_capacity(rows) }).collect();
+        let values = channels.iter().map(|_| GrowingValues::with_room(rows)).collect();
+        let channels = channels.into_iter().map(|spec| Channel { spec, values: Values::default() }).collect();
         let recording = Recording { channels, ..Recording::new(about, rate) };
-        Self { recording, block, rows: 0, columns, log: Log::default(), is_silent: false }
+        Self { recording, block, rows: 0, values, columns, failure: None, log: Log::default(), is_silent: false }
     }
 
     /// The same recorder for rows of `width` values, of which it keeps the one at `columns[i]` in channel i.
@@ -79,12 +86,9 @@ impl Recorder {
 
     /// Leaves out the channels that are not `wanted`, before the first row.
     pub fn retain(&mut self, wanted: impl Fn(&ChannelSpec) -> bool) {
-        let mut columns = self.columns.iter();
-        let of_channels = self.recording.channels.iter().filter_map(|channel| {
-            let column = columns.next();
-            column.filter(|_| wanted(&channel.spec)).copied()
-        });
-        self.columns = of_channels.collect();
+        let of_channels = std::mem::take(&mut self.values).into_iter().zip(std::mem::take(&mut self.columns));
+        let of_channels = of_channels.zip(&self.recording.channels).filter(|(_, channel)| wanted(&channel.spec));
+        (self.values, self.columns) = of_channels.map(|(of_channel, _)| of_channel).unzip();
         self.recording.channels.retain(|channel| wanted(&channel.spec));
     }
 
@@ -122,10 +126,18 @@ impl Recorder {
 
     /// Moves the block to the channels.
     fn flush(&mut self) {
-        for (channel, column) in self.recording.channels.iter_mut().zip(&self.columns) {
-            channel.values.extend_from_slice(&self.block[*column][..self.rows]);
+        if self.failure.is_none() {
+            let mut channels = self.values.iter_mut().zip(&self.columns);
+            let done = channels.try_for_each(|(values, column)| values.extend(&self.block[*column][..self.rows]));
+            self.failure = done.err();
         }
         self.rows = 0;
+    }
+
+    /// Why rows are not kept any more: the disk is full.
+    #[must_use]
+    pub const fn failure(&self) -> Option<&io::Error> {
+        self.failure.as_ref()
     }
 
     /// What the recording is of.
@@ -192,17 +204,17 @@ impl Recorder {
     /// Where the recording is at `time` (s), of which and after which nothing is noted yet.
     #[must_use]
     pub fn mark(&self, time: f64) -> Mark {
-        let rows = self.recording.channels.first().map_or(0, |channel| channel.values.len()) + self.rows;
+        let rows = self.values.first().map_or(0, GrowingValues::len) + self.rows;
         Mark { rows, moves: self.recording.moves.len(), events: self.recording.events.len(), time }
     }
 
     /// Forgets what has come since `mark`. What was said stays said.
     pub fn rewind(&mut self, mark: &Mark) {
         self.flush();
-        let Recording { channels, moves, events, signals, .. } = &mut self.recording;
-        for channel in channels {
-            channel.values.truncate(mark.rows);
+        for values in &mut self.values {
+            values.truncate(mark.rows);
         }
+        let Recording { moves, events, signals, .. } = &mut self.recording;
         moves.truncate(mark.moves);
         events.truncate(mark.events);
         for signal in signals {
@@ -212,13 +224,33 @@ impl Recorder {
         }
     }
 
-    /// The recording, events in order of their start.
+    /// The recording, events in order of their start; and why it is not all, if it is not: it ends where rows could not be kept any more.
     #[must_use]
-    pub fn finish(mut self) -> Recording {
+    pub fn finish(mut self) -> (Recording, Option<io::Error>) {
         self.flush();
-        self.recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
-        self.recording.log = self.log.finish();
-        self.recording
+        let Self { mut recording, values, failure, log, .. } = self;
+        let (values, failure) = together(values, failure);
+        for (channel, values) in recording.channels.iter_mut().zip(values) {
+            channel.values = values;
+        }
+        recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
+        recording.log = log.finish();
+        (recording, failure)
+    }
+}
+
+/// The values of all channels, as many of each as could be kept of all.
+fn together(mut all: Vec<GrowingValues>, failure: Option<io::Error>) -> (Vec<Values>, Option<io::Error>) {
+    let written = all.iter_mut().map(GrowingValues::settle).fold(Ok(()), Result::and);
+    let failure = failure.or(written.err());
+    let rows = all.iter().map(GrowingValues::len).min().unwrap_or(0);
+    let finished = all.into_iter().map(|mut values| {
+        values.truncate(rows);
+        values.finish()
+    });
+    match finished.collect() {
+        Ok(values) => (values, failure),
+        Err(error) => (Vec::new(), failure.or(Some(error))),
     }
 }
 
@@ -251,7 +283,7 @@ mod tests {
             for k in 0..rows {
                 recorder.push(&[f64::from(k), -f64::from(k)]);
             }
-            let recording = recorder.finish();
+            let recording = recorder.finish().0;
             let up: Vec<f64> = (0..rows).map(f64::from).collect();
             let down: Vec<f64> = up.iter().map(|k| -k).collect();
             assert_eq!((recording.channel("up"), recording.channel("down")), (Some(&up[..]), Some(&down[..])));
@@ -264,7 +296,7 @@ mod tests {
             Recorder::new(about(), rate(), ["a", "b", "c"].map(spec).to_vec(), 1).with_rows(4, vec![3, 1, 0]);
         recorder.retain(|spec| spec.name != "b");
         recorder.push(&[1.0, 2.0, 3.0, 4.0]);
-        let recording = recorder.finish();
+        let recording = recorder.finish().0;
         assert_eq!((recording.channel("a"), recording.channel("c")), (Some(&[4.0][..]), Some(&[1.0][..])));
         assert_eq!(recording.channels.len(), 2);
     }
@@ -298,7 +330,7 @@ mod tests {
                 note(&mut with, one, k, 1.0);
                 note(&mut without, other, k, 1.0);
             }
-            assert_eq!(with.finish(), without.finish(), "{kept} rows");
+            assert_eq!(with.finish().0, without.finish().0, "{kept} rows");
         }
     }
 
@@ -310,7 +342,7 @@ mod tests {
             recorder.note_value(state, time, value);
         }
         recorder.note_value(done, 0.1, "TRUE");
-        let recording = recorder.finish();
+        let recording = recorder.finish().0;
         let state = recording.signal("axis", "state").unwrap();
         assert_eq!(state.changes.len(), 3, "{state:?}");
         let values = [-0.1, 0.0, 0.15, 0.2, 0.29, 9.0].map(|time| state.at(time));

@@ -2,6 +2,8 @@
 use crate::channel::Channel;
 use crate::log::LogEntry;
 use crate::number;
+#[cfg(doc)]
+use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::{Ending, Rate, Tick};
 
@@ -239,11 +241,19 @@ impl Recording {
         }
     }
 
-    /// Values of the channel `name`.
+    /// Values of the channel `name`. Memory is given back that was taken to look at others, [`release`](Self::release).
     #[must_use]
     pub fn channel(&self, name: impl AsRef<str>) -> Option<&[f64]> {
         let name = name.as_ref();
-        self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| channel.values.as_slice())
+        self.release();
+        self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| &*channel.values)
+    }
+
+    /// Gives memory back that was taken to look at channels which are in files, [`Values::release`].
+    pub fn release(&self) {
+        for channel in &self.channels {
+            channel.values.release();
+        }
     }
 
     /// The signal `name` of `source`.

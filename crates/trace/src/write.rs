@@ -98,6 +98,7 @@ impl Recording {
                 .set_ordinal(i16::try_from(ordinal)?)
                 .set_file_offset(i64::try_from(place)?);
             groups.push(group.build()?);
+            self.release();
         }
         pages.add(&self.footer(schema, groups)?)?;
         Ok(pages.finish()?)
@@ -162,7 +163,7 @@ mod tests {
         let mut recording = Recording::new(about, rate);
         let mut channel = |name: &str, values: Vec<f64>| {
             let spec = ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
-            recording.channels.push(Channel { spec, values });
+            recording.channels.push(Channel { spec, values: values.into() });
         };
         channel("rest", vec![0.25; rows]);
         channel("smooth", (0..rows).map(|k| (k as f64 * 1e-3).sin()).collect());

@@ -92,7 +92,7 @@ fn channels() -> impl Strategy<Value = Vec<Channel>> {
         let values = prop::collection::vec(prop::collection::vec(number(), instants), specs.len());
         values.prop_map(move |values| {
             let pairs = specs.iter().cloned().zip(values);
-            pairs.map(|(spec, values)| Channel { spec, values }).collect()
+            pairs.map(|(spec, values)| Channel { spec, values: values.into() }).collect()
         })
     })
 }
@@ -260,7 +260,7 @@ fn a_channel_that_cannot_be_a_column_is_named_before_anything_is_written() {
         "channel `time` cannot be written: the name is taken by the column of instants; every channel needs its own name"
     );
     assert_eq!(
-        refusal(|recording| recording.channels[1].values.truncate(9)),
+        refusal(|recording| recording.channels[1].values.to_mut().truncate(9)),
         "channel `load.position` has 9 values where the first channel has 10; all channels are sampled together"
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -4,7 +4,7 @@ use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 12] = [
+const COMMANDS: [(&str, &str); 13] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
@@ -16,6 +16,7 @@ const COMMANDS: [(&str, &str); 12] = [
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
     ("drill many", "run suites of up to 20 000 runs (SERVOBENCH_SWEEP: how many), and say what each costs"),
+    ("drill long", "run ten minutes and 1e8 ticks, and say what memory they take"),
     ("dist", "pack binary, library, models and scenarios into one archive"),
 ];
 
@@ -48,6 +49,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         }
         ["drill", "inputs"] => drill::inputs(&Workspace::find()?),
         ["drill", "many"] => drill::many(&Workspace::find()?),
+        ["drill", "long"] => drill::long(&Workspace::find()?),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
     }

@@ -1,12 +1,14 @@
 //! Drills: the real program against what it must bear.
 mod faults;
 mod inputs;
+mod long;
 mod many;
 mod measured;
 mod mutants;
 
 pub(crate) use faults::run as faults;
 pub(crate) use inputs::run as inputs;
+pub(crate) use long::run as long;
 pub(crate) use many::run as many;
 
 use crate::failure::Failure;

@@ -120,6 +120,14 @@ pub(super) struct Solution {
     pub(super) means: Forms<f64>,
 }
 
+impl Solution {
+    /// From changes in d and q, and the means.
+    #[inline(always)]
+    pub(super) const fn of_numbers([d, q, torque, square, input]: [f64; 5]) -> Self {
+        Self { change: Dq { d, q }, means: Forms { torque, square, input } }
+    }
+}
+
 impl Table {
     fn of(maps: &Maps<InTurn>) -> Self {
         let even = |entry: &InTurn, k: usize| entry.0[2 * k];
@@ -247,11 +255,12 @@ impl Tables {
                 self.tick.solve::<TERMS, POWER>(x, i, voltage)
             });
         }
-        self.in_parts::<POWER>(x, i, u)
+        self.in_parts::<POWER>(x, i, u).map(Solution::of_numbers)
     }
 
+    /// As numbers, so that the solution of a slow rotor stays in registers.
     #[cold]
-    fn in_parts<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<Solution> {
+    fn in_parts<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<[f64; 5]> {
         let parts_of = |halvings: i32| 1_u32 << halvings;
         let at = HALVINGS.iter().position(|halvings| x.abs() <= FURTHEST * f64::from(parts_of(*halvings)))?;
         let table = self.parts[at].get_or_init(|| table(&self.params, self.h, HALVINGS[at]));
@@ -266,7 +275,7 @@ impl Tables {
             means.square += share * found.means.square;
             means.input += share * found.means.input;
         }
-        Some(Solution { change: Dq { d: now.d - i.d, q: now.q - i.q }, means })
+        Some([now.d - i.d, now.q - i.q, means.torque, means.square, means.input])
     }
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn logic(source: &str, name: &str, times: &[f64]) -> Signal {
 pub(crate) fn channel(name: &str, unit: &str, values: Vec<f64>) -> Channel {
     let spec =
         ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate: Rate::new(1000).unwrap() };
-    Channel { spec, values }
+    Channel { spec, values: values.into() }
 }
 
 /// Velocity at `t` (s): at 2 m/s to 6 m, aborted at 1.5 s by 3 m/s to 10 m, with 4 m/s². At 1.5 s 2.1 m are behind it, so

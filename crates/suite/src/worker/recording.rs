@@ -7,7 +7,9 @@
 //! ```
 //! It is not the format of recordings that stay: nothing is compressed or sealed, so that passing one on costs what copying it does.
 use servobench_base::Rate;
-use servobench_trace::{About, Call, Channel, ChannelSpec, Event, LimitReversals, LogEntry, Move, Recording, Signal};
+use servobench_trace::{
+    About, Call, Channel, ChannelSpec, Event, GrowingValues, LimitReversals, LogEntry, Move, Recording, Signal, Values,
+};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
@@ -37,10 +39,13 @@ pub(super) fn write(recording: &Recording, file: &mut File) -> io::Result<()> {
     out.write_all(&(header.len() as u64).to_le_bytes())?;
     out.write_all(&header)?;
     let mut bytes = Vec::with_capacity(CHUNK * size_of::<f64>());
-    for values in channels.iter().flat_map(|channel| channel.values.chunks(CHUNK)) {
-        bytes.clear();
-        bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-        out.write_all(&bytes)?;
+    for channel in channels {
+        for values in channel.values.chunks(CHUNK) {
+            bytes.clear();
+            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+            out.write_all(&bytes)?;
+        }
+        channel.values.release();
     }
     out.flush()
 }
@@ -72,15 +77,15 @@ pub(super) fn read(file: &mut File) -> io::Result<Recording> {
     Ok(Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log })
 }
 
-fn values_of(file: &mut impl Read, count: usize) -> io::Result<Vec<f64>> {
-    let mut values = Vec::with_capacity(count);
+fn values_of(file: &mut impl Read, count: usize) -> io::Result<Values> {
+    let mut values = GrowingValues::with_room(count);
     let mut bytes = vec![0; CHUNK.min(count) * size_of::<f64>()];
     while values.len() < count {
         let chunk = &mut bytes[..CHUNK.min(count - values.len()) * size_of::<f64>()];
         file.read_exact(chunk)?;
-        values.extend(chunk.as_chunks::<8>().0.iter().map(|value| f64::from_le_bytes(*value)));
+        values.extend_from(chunk.as_chunks::<8>().0.iter().map(|value| f64::from_le_bytes(*value)))?;
     }
-    Ok(values)
+    values.finish()
 }
 
 #[cfg(test)]
@@ -121,7 +126,7 @@ mod tests {
                 assert!(sent.values.iter().map(|v| v.to_bits()).eq(arrived.values.iter().map(|v| v.to_bits())));
             }
             let without_values = |mut recording: Recording| {
-                recording.channels.iter_mut().for_each(|channel| channel.values.clear());
+                recording.channels.iter_mut().for_each(|channel| channel.values.to_mut().clear());
                 recording
             };
             assert_eq!(without_values(arrived), without_values(sent));

@@ -151,5 +151,5 @@ pub(crate) fn run(case: Case) -> Recording {
         ending: Ending::AtRest,
     });
     recorder.note_event(Event::new(0.1, 0.1, "drive", "an event of the example, at an instant"));
-    recorder.finish()
+    recorder.finish().0
 }

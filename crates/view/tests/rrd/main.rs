@@ -198,7 +198,7 @@ fn what_an_fmu_said_is_in_the_log_at_its_time() {
 #[test]
 fn nothing_recorded_is_no_error() {
     let mut recording = example(3);
-    recording.channels.iter_mut().for_each(|channel| channel.values.clear());
+    recording.channels.iter_mut().for_each(|channel| channel.values.to_mut().clear());
     assert_views_are_fed(&written(&recording, &options()));
     recording.channels.clear();
     recording.moves.clear();
@@ -210,8 +210,8 @@ fn nothing_recorded_is_no_error() {
 fn what_is_not_finite_is_left_out() {
     let mut recording = example(3);
     for channel in &mut recording.channels {
-        channel.values[100] = f64::NAN;
-        channel.values[200] = f64::INFINITY;
+        channel.values.to_mut()[100] = f64::NAN;
+        channel.values.to_mut()[200] = f64::INFINITY;
     }
     let content = written(&recording, &ViewOptions { max_instants: usize::MAX, ..options() });
     assert_eq!(content.curves["/position/load"].len(), recording.len() - 2);
@@ -225,7 +225,7 @@ fn a_rotary_axis_and_an_axis_at_rest_have_a_3d_view() {
     assert!(rotary.entities.contains("/axis/shaft") && rotary.title("Position") == "Position (rad)");
     assert!(rotary.title("Motor torque").starts_with("Motor torque (N·m), peak "));
     let mut recording = example(3);
-    recording.channels.iter_mut().for_each(|channel| channel.values.fill(0.0));
+    recording.channels.iter_mut().for_each(|channel| channel.values.to_mut().fill(0.0));
     assert!(written(&recording, &options()).entities.contains("/axis/load"));
 }
 
@@ -263,7 +263,7 @@ fn a_long_run_makes_a_small_file() {
     for channel in &mut recording.channels {
         channel.spec.rate = Rate::new(16_000).unwrap();
         let once = channel.values.clone();
-        (0..39).for_each(|_| channel.values.extend_from_slice(&once));
+        (0..39).for_each(|_| channel.values.to_mut().extend_from_slice(&once));
     }
     assert_eq!(recording.len(), 960_000);
     let folder = tempfile::tempdir().unwrap();

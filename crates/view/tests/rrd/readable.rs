@@ -22,7 +22,7 @@ fn number(title: &str, word: &str, unit: &str) -> f64 {
 fn add(recording: &mut Recording, name: &str, unit: &str, values: Vec<f64>) {
     let rate = Rate::new(16_000).unwrap();
     let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate };
-    recording.channels.push(Channel { spec, values });
+    recording.channels.push(Channel { spec, values: values.into() });
 }
 
 /// Oracle: the recording. Three digits are shown.
@@ -122,7 +122,7 @@ fn one_body_is_drawn_as_one() {
         .channels
         .iter_mut()
         .filter(|one| one.spec.name == "load.position")
-        .for_each(|one| one.values.clone_from(&motor));
+        .for_each(|one| one.values = motor.clone().into());
     let content = written(&recording, &options());
     let bodies: Vec<_> = content.entities.iter().filter(|entity| entity.starts_with("/axis/")).collect();
     assert_eq!(bodies, ["/axis/bed", "/axis/body", "/axis/reference", "/axis/ruler"]);

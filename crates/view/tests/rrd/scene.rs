@@ -52,7 +52,7 @@ fn the_ruler_is_as_long_as_what_was_asked_for() {
     let mut recording = example(3);
     for channel in &mut recording.channels {
         if ["motor.position", "load.position"].contains(&channel.spec.name.as_str()) {
-            channel.values.iter_mut().for_each(|x| *x *= 1e-9);
+            channel.values.to_mut().iter_mut().for_each(|x| *x *= 1e-9);
         }
     }
     let content = written(&recording, &ViewOptions { exaggeration: Some(1.0), ..options() });

@@ -3,7 +3,7 @@
 //! Whatever is in a file, the program ends with one of its own exit codes, and says no within a second of a processor and 200 MB of
 //! memory. Time by the clock says nothing on a machine that others use too.
 use super::built;
-use super::measured::{Measured, measured};
+use super::measured::{Measured, PATIENCE, measured};
 use super::mutants::{Digest, Mutator};
 use crate::failure::Failure;
 use crate::workspace::{Workspace, run as run_command};
@@ -87,7 +87,7 @@ fn held_against(kind: &Kind, files: u64, workspace: &Workspace, kept: &Path) -> 
         let mut command = workspace.servobench(&kind.command);
         command.current_dir(&kind.folder).env("LD_LIBRARY_PATH", workspace.native_lib());
         let program = workspace.binary();
-        let ended = measured(&mut command)
+        let ended = measured(&mut command, PATIENCE)
             .map_err(|source| Failure::Start { program: program.display().to_string(), source })?;
         let code = ended.code.map_or_else(|| "signal".to_owned(), |code| code.to_string());
         *outcome.codes.entry(code).or_default() += 1;

@@ -1,7 +1,7 @@
 //! `cargo xtask drill many`: suites of more and more runs that are next to nothing by themselves, so that what is seen is what a run
 //! costs beside its simulation.
 use super::built;
-use super::measured::{Measured, measured};
+use super::measured::{Measured, PATIENCE, measured};
 use crate::failure::Failure;
 use crate::workspace::Workspace;
 use std::fs;
@@ -105,7 +105,7 @@ fn suite(
     }
     let mut command = workspace.servobench(["run", "scenarios", "--quiet", "--jobs", "1", "--keep", keep]);
     command.current_dir(room.path()).env("LD_LIBRARY_PATH", workspace.native_lib());
-    let ended = measured(&mut command);
+    let ended = measured(&mut command, PATIENCE);
     let ended = ended.map_err(|source| Failure::Start { program: workspace.binary().display().to_string(), source })?;
     if ended.code != Some(0) {
         findings.push(format!("a suite of {runs} runs ended with {:?}", ended.code));

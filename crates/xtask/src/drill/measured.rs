@@ -3,8 +3,8 @@ use std::io;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A program that takes longer by the clock hangs.
-const PATIENCE: Duration = Duration::from_mins(1);
+/// A program that takes longer by the clock hangs, unless it is known to be long.
+pub(super) const PATIENCE: Duration = Duration::from_mins(1);
 
 /// How a program ended, and what it took, with all that it has started and waited for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +17,8 @@ pub(super) struct Measured {
     pub(super) megabytes: f64,
 }
 
-/// Runs `command` without input and output. One that hangs is killed.
-pub(super) fn measured(command: &mut Command) -> io::Result<Measured> {
+/// Runs `command` without input and output. It is killed after `patience`.
+pub(super) fn measured(command: &mut Command, patience: Duration) -> io::Result<Measured> {
     let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
     let id = libc::pid_t::try_from(child.id()).map_err(io::Error::other)?;
     let begun = Instant::now();
@@ -27,7 +27,7 @@ pub(super) fn measured(command: &mut Command) -> io::Result<Measured> {
         if let Some(ended) = ended(id)? {
             return Ok(ended);
         }
-        if begun.elapsed() > PATIENCE && !is_killed {
+        if begun.elapsed() > patience && !is_killed {
             kill(id)?;
             is_killed = true;
         }
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn codes_and_signals_are_told_apart() {
-        let of = |script: &str| measured(Command::new("sh").args(["-c", script])).unwrap();
+        let of = |script: &str| measured(Command::new("sh").args(["-c", script]), PATIENCE).unwrap();
         assert_eq!(of("exit 4").code, Some(4));
         assert_eq!(of("kill -SEGV $$").code, None);
         let busy = of("i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done");
