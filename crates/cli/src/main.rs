@@ -12,6 +12,7 @@ mod exit;
 mod fmu_opener;
 mod fmu_trust;
 mod interrupt;
+mod memory;
 mod output;
 mod outputs;
 mod progress;
@@ -25,6 +26,7 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    memory::keep_freed();
     console::say_panics();
     let cli = args::parse();
     if let Err(error) = interrupt::refuse_large_files() {

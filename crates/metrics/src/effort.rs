@@ -1,9 +1,10 @@
 //! What the program asks of motor and inverter: current, voltage, torque, power.
 use crate::absence::Absence;
+use crate::extremes::most_of;
 use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::power;
-use crate::span::{Checked, channel, largest, root_mean, unit};
+use crate::span::{Checked, channel, largest_magnitude, root_mean, unit};
 use servobench_signals::Signal;
 use std::ops::Range;
 
@@ -16,16 +17,19 @@ const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
-    let current = vector_squared(recording, Signal::CurrentD, Signal::CurrentQ, rows);
-    set.note(Name::CurrentPeak, PEAK_CURRENT, current.clone().and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
+    let current = vector(recording, Signal::CurrentD, Signal::CurrentQ, rows);
+    set.note(Name::CurrentPeak, PEAK_CURRENT, current.clone().and_then(longest));
     // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
     set.note(
         Name::CurrentRms,
         RMS_CURRENT,
-        current.and_then(|squares| root_mean(squares.map(|square| square / 2.0), PART)),
+        current.and_then(|[d, q]| {
+            let squares = d.iter().zip(q).map(|(d, q)| d * d + q * q);
+            root_mean(squares.map(|square| square / 2.0), PART)
+        }),
     );
-    let voltage = vector_squared(recording, Signal::VoltageD, Signal::VoltageQ, rows);
-    set.note(Name::VoltagePeak, "V", voltage.and_then(|squares| Ok(largest(squares, PART)?.sqrt())));
+    let voltage = vector(recording, Signal::VoltageD, Signal::VoltageQ, rows);
+    set.note(Name::VoltagePeak, "V", voltage.and_then(longest));
     for (name, share) in [
         (Name::CurrentSaturationTime, Signal::SaturationCurrent),
         (Name::VoltageSaturationTime, Signal::SaturationVoltage),
@@ -34,7 +38,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
         set.note(name, "s", saturation_time(recording, share, rows));
     }
     let effort = channel(recording, EFFORT).map(|all| &all[rows.clone()]);
-    let peak = |all: &[f64]| largest(all.iter().map(|effort| effort.abs()), PART);
+    let peak = |all: &[f64]| largest_magnitude(all, PART);
     let rms = |all: &[f64]| root_mean(all.iter().map(|effort| effort * effort), PART);
     set.note(Name::TorquePeak, unit(recording, EFFORT), effort.clone().and_then(peak));
     let asked = channel(recording, EFFORT_REFERENCE).map(|all| &all[rows.clone()]);
@@ -45,15 +49,20 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
 
 const PART: &str = "of motor and inverter";
 
-/// Squared lengths of a vector.
-fn vector_squared<'a>(
+/// The two components of a vector.
+fn vector<'a>(
     recording: &'a Checked<'_>,
     d: Signal,
     q: Signal,
     rows: &Range<usize>,
-) -> Result<impl Iterator<Item = f64> + Clone + use<'a>, Absence> {
-    let (d, q) = (channel(recording, d)?, channel(recording, q)?);
-    Ok(d[rows.clone()].iter().zip(&q[rows.clone()]).map(|(d, q)| d * d + q * q))
+) -> Result<[&'a [f64]; 2], Absence> {
+    Ok([&channel(recording, d)?[rows.clone()], &channel(recording, q)?[rows.clone()]])
+}
+
+/// The largest length of a vector.
+fn longest([d, q]: [&[f64]; 2]) -> Result<f64, Absence> {
+    let square = most_of([d, q], |[d, q]| d * d + q * q);
+    if d.is_empty() { Err(Absence::NothingRecorded { part: PART }) } else { Ok(square.sqrt()) }
 }
 
 /// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.

@@ -10,6 +10,7 @@ mod absence;
 mod compliance;
 mod display_unit;
 mod effort;
+mod extremes;
 mod measure;
 mod metric;
 mod modal;

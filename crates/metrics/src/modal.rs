@@ -23,8 +23,10 @@ mod proposal;
 mod refine;
 mod series;
 mod spectrum;
+mod turns;
 
 use crate::absence::Absence;
+use crate::extremes::range_of;
 use fit::Fit;
 use model::Component;
 use order::Order;
@@ -76,7 +78,7 @@ pub fn fit_mode(signal: &Signal<'_>, near: Option<f64>) -> Result<Mode, Absence>
     if signal.values.len() < VALUES {
         return Err(Absence::TooShort { periods: 0.0, needed: PERIODS });
     }
-    let (low, high) = signal.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+    let (low, high) = range_of(signal.values);
     let height = high - low;
     if !height.is_finite() || height <= signal.resolution {
         return Err(Absence::NoVibration);

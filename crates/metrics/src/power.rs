@@ -4,7 +4,7 @@
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
-use crate::span::{Checked, channel, largest};
+use crate::span::{Checked, channel, largest_magnitude};
 use servobench_signals::Signal;
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
     for (name, power) in
         [(Name::ElectricalPowerPeak, Signal::PowerElectrical), (Name::ShaftPowerPeak, Signal::PowerShaft)]
     {
-        let peak = |all: &[f64]| largest(all.iter().map(|power| power.abs()), PART);
-        set.note(name, "W", channel(recording, power).and_then(|all| peak(&all[rows.clone()])));
+        let peak = channel(recording, power).and_then(|all| largest_magnitude(&all[rows.clone()], PART));
+        set.note(name, "W", peak);
     }
     for (name, power) in [(Name::ElectricalEnergy, Signal::PowerElectrical), (Name::CopperLoss, Signal::PowerCopper)] {
         set.note(name, "J", energy(recording, power, rows));

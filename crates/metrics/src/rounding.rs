@@ -1,4 +1,5 @@
 //! What is rounding counts as zero, or one rounding would be reported as a third less than another.
+use crate::extremes::most_of;
 use crate::metric::{MetricSet, Metrics};
 use crate::name::Name;
 use servobench_trace::Recording;
@@ -26,9 +27,9 @@ const UNDAMPED: f64 = 1e-9;
 pub(crate) fn clear(metrics: &mut Metrics, recording: &Recording) {
     let positions = recording.channels.iter().filter(|channel| channel.spec.name.ends_with(".position"));
     let largest = positions.fold(0.0, |largest, channel| {
-        let largest = channel.values.iter().fold(largest, |largest: f64, x| largest.max(x.abs()));
+        let of_channel = most_of([&*channel.values], |[x]| x.abs());
         channel.values.release();
-        largest
+        of_channel.max(largest)
     });
     let floor = PLACES * f64::EPSILON * largest;
     let moves = metrics.moves.iter_mut().map(|made| &mut made.metrics);

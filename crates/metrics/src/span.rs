@@ -1,5 +1,6 @@
 //! Which rows of a recording a metric is about.
 use crate::absence::Absence;
+use crate::extremes::most_of;
 use servobench_base::Tick;
 use servobench_signals::Signal;
 use servobench_trace::{Move, Recording};
@@ -90,6 +91,14 @@ fn first_gap(values: &[f64]) -> Option<usize> {
 pub(crate) fn unit(recording: &Recording, signal: Signal) -> &str {
     let of = recording.channels.iter().find(|channel| channel.spec.name == signal.name());
     of.map_or("", |channel| channel.spec.unit.as_str())
+}
+
+/// Largest magnitude of `values`.
+///
+/// # Errors
+/// [`Absence::NothingRecorded`] when there are none.
+pub(crate) fn largest_magnitude(values: &[f64], part: &'static str) -> Result<f64, Absence> {
+    if values.is_empty() { Err(Absence::NothingRecorded { part }) } else { Ok(most_of([values], |[x]| x.abs())) }
 }
 
 /// Largest of `values`.

@@ -2,7 +2,7 @@
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
-use crate::span::{Checked, Phase, channel, largest, root_mean, unit};
+use crate::span::{Checked, Phase, channel, largest, largest_magnitude, root_mean, unit};
 use servobench_signals::Signal;
 use servobench_trace::Move;
 use std::ops::Range;
@@ -35,7 +35,7 @@ const SIDES: [Side; 2] = [
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: Range<usize>, phases: &[Phase<'_>]) {
     for side in &SIDES {
         let (error, unit) = (channel(recording, side.channel), unit(recording, side.channel));
-        let peak = |e: &[f64]| largest(e[rows.clone()].iter().map(|e| e.abs()), "");
+        let peak = |e: &[f64]| largest_magnitude(&e[rows.clone()], "");
         let rms = |e: &[f64]| match phases {
             [] => root_mean(e[rows.clone()].iter().map(|e| e * e), ""),
             _ => {
@@ -89,17 +89,23 @@ fn velocity_error_peak(recording: &Checked<'_>, rows: Range<usize>) -> Result<f6
     }
     // Between two cycles of the position loop its output is held: there it says what the motor should have done, not what it
     // should do.
-    let written = written(recording, VELOCITY_REFERENCE);
-    let error = rows.filter(|row| written(*row)).map(|row| (reference[row] - actual[row]).abs());
+    let written = written(recording, VELOCITY_REFERENCE, rows);
+    let error = written.map(|row| (reference[row] - actual[row]).abs());
     largest(error, "at a cycle of the position loop")
 }
 
-/// Tells the rows at whose instant `signal` was written from those at which it was held.
-fn written(recording: &Checked<'_>, signal: Signal) -> impl Fn(usize) -> bool + use<> {
+/// The `rows` at whose instant `signal` was written; at the others it was held.
+fn written(recording: &Checked<'_>, signal: Signal, rows: Range<usize>) -> impl Iterator<Item = usize> + use<> {
     let of = recording.channels.iter().find(|other| other.spec.name == signal.name());
-    let row_rate = u64::from(recording.rate.hertz());
-    let rate = of.map_or(row_rate, |channel| u64::from(channel.spec.rate.hertz()));
-    move |row| (row as u64 * rate).is_multiple_of(row_rate)
+    let row_rate = recording.rate.hertz();
+    let rate = of.map_or(row_rate, |channel| channel.spec.rate.hertz());
+    // Row k is one when k·rate is a multiple of the rate of the rows.
+    let every = (row_rate / greatest_common_divisor(row_rate, rate)) as usize;
+    (rows.start.next_multiple_of(every)..rows.end).step_by(every)
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Residual vibration of the load: what is left when the set-point has come to rest.
 use crate::absence::Absence;
+use crate::extremes::range_of;
 use crate::metric::MetricSet;
 use crate::modal::{self, Mode, fit_mode};
 use crate::name::Name;
@@ -46,11 +47,11 @@ impl Residual {
             Ok(_) => return Self::absent(&Absence::NothingRecorded { part: "after the profile" }),
             Err(why) => return Self::absent(&why),
         };
-        let largest = load.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let (lowest, highest) = range_of(load);
+        let largest = lowest.abs().max(highest.abs());
         // Deviations of nanometres beside a position of a metre: subtract before anything else.
         let deviation = load.iter().map(|x| x - rest);
-        let (low, high) =
-            deviation.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let (low, high) = (lowest - rest, highest - rest);
         // From the first value on, so that a load at rest has no RMS of rounding.
         let first = deviation.clone().next().unwrap_or_default();
         let mean = first + deviation.clone().map(|x| x - first).sum::<f64>() / load.len() as f64;

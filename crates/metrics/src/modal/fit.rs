@@ -41,15 +41,11 @@ impl Fit {
         self.coefficients[0]
     }
 
-    /// With the one of `candidates`, all of the same kind, that takes most of what is left.
-    pub(crate) fn with_best_of(&self, candidates: &[Component], series: &Series) -> Option<Self> {
-        let width = candidates.first()?.width();
-        let mut columns = Columns::new(series.values.len(), candidates.len() * width);
-        for candidate in candidates {
-            candidate.add_to(&mut columns, series);
-        }
-        let gains = candidates.iter().zip(self.basis.gains(columns, width, &self.residual));
-        let gains = gains.filter_map(|(one, gain)| Some((*one, gain?)));
+    /// With the one of `candidates` that takes most of what is left.
+    pub(crate) fn with_best_of(&self, candidates: &Candidates, series: &Series) -> Option<Self> {
+        let Candidates { components, columns } = candidates;
+        let gains = self.basis.gains(columns.clone(), components.first()?.width(), &self.residual);
+        let gains = components.iter().zip(gains).filter_map(|(one, gain)| Some((*one, gain?)));
         let (best, _) = gains.reduce(|one, two| if two.1 > one.1 { two } else { one })?;
         Self::of([self.components.as_slice(), &[best]].concat(), series)
     }
@@ -76,5 +72,23 @@ impl Fit {
             sum.iter_mut().zip(self.columns.column(place)).for_each(|(y, x)| *y += coefficient * x);
         }
         sum
+    }
+}
+
+/// Components that a fit may be extended by, all of the same kind, with their columns.
+#[derive(Debug)]
+pub(crate) struct Candidates {
+    components: Vec<Component>,
+    columns: Columns,
+}
+
+impl Candidates {
+    pub(crate) fn of(components: Vec<Component>, series: &Series) -> Self {
+        let width: usize = components.iter().map(|component| component.width()).sum();
+        let mut columns = Columns::new(series.values.len(), width);
+        for component in &components {
+            component.add_to(&mut columns, series);
+        }
+        Self { components, columns }
     }
 }

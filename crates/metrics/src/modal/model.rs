@@ -6,12 +6,10 @@
 //! Real poles are written so that they stay well conditioned down to λ = 0, where they are a straight line. Pairs of
 //! poles are written so that they pass without a seam from an oscillation (q = ω_d² > 0) through a double pole (q = 0)
 //! to two tails (q < 0, where sine and cosine are hyperbolic): a fit that needs two tails does not end at the border.
-#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-
 use super::columns::Columns;
 use super::series::Series;
+use super::turns::by_addition;
 use core::f64::consts::PI;
-use servobench_base::wide_registers;
 
 /// One component beside the constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,10 +37,6 @@ pub(crate) struct Oscillation {
     pub(crate) damped: f64,
 }
 
-/// Steps of the recurrences between two fresh evaluations of the transcendental functions; each step rounds once.
-const FRESH: usize = 64;
-/// Stretches of so many steps that are gone through side by side.
-const LANES: usize = 8;
 /// Fastest decay that is told from a jump, per step.
 const FASTEST: f64 = 10.0;
 /// Growth of a tail over the series, as a power of e: tenfold at most. A tail that grows takes over from a drift.
@@ -103,18 +97,8 @@ impl Component {
             }
             Self::Pair { decay, square } => {
                 let (cosines, sines) = columns.add(2).split_at_mut(series.values.len());
-                let step = pair(decay, square, series.step);
-                let stretches = cosines.chunks_mut(LANES * FRESH).zip(sines.chunks_mut(LANES * FRESH));
-                for (k, (cosines, sines)) in stretches.enumerate() {
-                    let at = |lane: usize| pair(decay, square, series.time((k * LANES + lane) * FRESH));
-                    let mut here = [[0.0; LANES]; 2];
-                    let lanes = 0..cosines.len().div_ceil(FRESH);
-                    let [c, s] = &mut here;
-                    for (lane, (c, s)) in lanes.zip(c.iter_mut().zip(s)) {
-                        (*c, *s) = at(lane);
-                    }
-                    go_on(here, step, square, cosines, sines);
-                }
+                let at = |k| pair(decay, square, series.time(k));
+                by_addition(at, pair(decay, square, series.step), square, cosines, sines);
             }
         }
     }
@@ -194,57 +178,6 @@ fn pair(decay: f64, square: f64, t: f64) -> (f64, f64) {
     } else {
         let envelope = libm::exp(-decay * t);
         (envelope, envelope * t)
-    }
-}
-
-/// Fills in `cosines` and `sines`, stretches of [`FRESH`] values of which those in `here` are the first, by the addition theorems, which
-/// hold on either side of q = 0. `step` is the [`pair`] of one step.
-fn go_on(here: [[f64; LANES]; 2], step: (f64, f64), square: f64, cosines: &mut [f64], sines: &mut [f64]) {
-    wide_registers!(
-        go_on_in_any(here, step, square, cosines, sines),
-        go_on_in_wide_registers,
-        here,
-        step,
-        square,
-        cosines,
-        sines
-    );
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn go_on_in_wide_registers(
-    here: [[f64; LANES]; 2],
-    step: (f64, f64),
-    square: f64,
-    cosines: &mut [f64],
-    sines: &mut [f64],
-) {
-    go_on_in_any(here, step, square, cosines, sines);
-}
-
-#[inline(always)]
-fn go_on_in_any(
-    [mut c, mut s]: [[f64; LANES]; 2],
-    step: (f64, f64),
-    square: f64,
-    cosines: &mut [f64],
-    sines: &mut [f64],
-) {
-    // Side by side in memory first: the columns have them far apart.
-    let mut rows = [[[0.0; LANES]; 2]; FRESH];
-    for row in &mut rows {
-        *row = [c, s];
-        for lane in 0..LANES {
-            let (here, there) = (c[lane], s[lane]);
-            c[lane] = here * step.0 - square * (there * step.1);
-            s[lane] = here * step.1 + there * step.0;
-        }
-    }
-    for (lane, (cosines, sines)) in cosines.chunks_mut(FRESH).zip(sines.chunks_mut(FRESH)).enumerate() {
-        for ((cos, sin), [c, s]) in cosines.iter_mut().zip(sines).zip(&rows) {
-            (*cos, *sin) = (c[lane], s[lane]);
-        }
     }
 }
 

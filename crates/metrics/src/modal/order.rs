@@ -1,5 +1,5 @@
 //! How many components a record holds.
-use super::fit::Fit;
+use super::fit::{Candidates, Fit};
 use super::model::{Component, Oscillation};
 use super::series::Series;
 use super::spectrum::{self, HIGHEST, LOWEST};
@@ -44,6 +44,7 @@ impl Order {
     pub(crate) fn of(series: &Series, proposed: &[f64], resolution: f64) -> Option<Self> {
         let mut fit = Fit::of(vec![], series)?;
         let nothing = (NOTHING * fit.energy).max(resolution * resolution * series.values.len() as f64);
+        let tails = tails(series);
         let next = loop {
             if fit.components.len() == MAX_COMPONENTS {
                 break Next::TooMany;
@@ -51,7 +52,7 @@ impl Order {
             if fit.energy <= nothing {
                 break Next::Needless;
             }
-            match with_another(&fit, series, proposed) {
+            match with_another(&fit, series, proposed, &tails) {
                 Some(better) if is_worth(&better, &fit) => fit = better,
                 Some(next) => break Next::Worthless(next),
                 None => break Next::TooMany,
@@ -78,28 +79,31 @@ impl Order {
 /// The tail of a series, where it has one.
 pub(crate) fn trend(series: &Series) -> Option<Fit> {
     let bare = Fit::of(vec![], series)?;
-    with_tail(&bare, series).filter(|with| is_worth(with, &bare))
+    with_best_of(&bare, series, &tails(series)).filter(|with| is_worth(with, &bare))
 }
 
 fn is_worth(with: &Fit, without: &Fit) -> bool {
     with.energy <= WORTH * without.energy
 }
 
-fn with_another(fit: &Fit, series: &Series, proposed: &[f64]) -> Option<Fit> {
+fn with_another(fit: &Fit, series: &Series, proposed: &[f64], tails: &Candidates) -> Option<Fit> {
     let (low, high) = (LOWEST / series.length(), HIGHEST / series.step);
     let mut frequencies = spectrum::peaks(&fit.residual, series.step, low, high);
     frequencies.extend_from_slice(proposed);
-    let fits = [with_tail(fit, series), with_oscillation(fit, series, &frequencies)];
+    let fits = [with_best_of(fit, series, tails), with_best_of(fit, series, &oscillations(series, &frequencies))];
     fits.into_iter().flatten().reduce(|one, two| if two.energy < one.energy { two } else { one })
 }
 
-fn with_tail(fit: &Fit, series: &Series) -> Option<Fit> {
-    let tails = START_TAILS.map(|start| Component::Tail { rate: start / series.length() });
-    Some(fit.with_best_of(&tails, series)?.refined(series, COARSE))
+fn with_best_of(fit: &Fit, series: &Series, candidates: &Candidates) -> Option<Fit> {
+    Some(fit.with_best_of(candidates, series)?.refined(series, COARSE))
 }
 
-fn with_oscillation(fit: &Fit, series: &Series, frequencies: &[f64]) -> Option<Fit> {
+fn tails(series: &Series) -> Candidates {
+    let of = |start: &f64| Component::Tail { rate: start / series.length() };
+    Candidates::of(START_TAILS.iter().map(of).collect(), series)
+}
+
+fn oscillations(series: &Series, frequencies: &[f64]) -> Candidates {
     let of = |frequency: &f64| START_DAMPING.map(|zeta| Component::oscillating(*frequency, zeta));
-    let pairs: Vec<Component> = frequencies.iter().flat_map(of).collect();
-    Some(fit.with_best_of(&pairs, series)?.refined(series, COARSE))
+    Candidates::of(frequencies.iter().flat_map(of).collect(), series)
 }

@@ -2,6 +2,7 @@
 //!
 //! Only the position of a peak leaves this module; the fit that starts there does not depend on the last bits of the
 //! transform.
+use super::turns::{TOGETHER, by_addition};
 use core::f64::consts::PI;
 use realfft::RealFftPlanner;
 use std::cell::RefCell;
@@ -64,14 +65,20 @@ thread_local! {
 
 /// Squared magnitudes of the spectra of `values`, padded to `length`, under a Hann window and under its falling half.
 fn windowed(values: &[f64], length: usize) -> [Vec<f64>; 2] {
+    let count = values.len();
     let transform = PLANNER.with_borrow_mut(|planner| planner.plan_fft_forward(length));
     let (mut output, mut scratch) = (transform.make_output_vec(), transform.make_scratch_vec());
     let (mut under_hann, mut under_half) = (transform.make_input_vec(), transform.make_input_vec());
-    let cosines = half_turn(values.len());
-    for (((hann, half), y), cos) in under_hann.iter_mut().zip(&mut under_half).zip(values).zip(cosines) {
-        // ½ − ½·cos 2φ and ½ + ½·cos φ.
-        *hann = y * (1.0 - cos * cos);
-        *half = y * (0.5 + 0.5 * cos);
+    let inputs = under_hann.chunks_mut(TOGETHER).zip(under_half.chunks_mut(TOGETHER));
+    let mut first = 0;
+    for ((under_hann, under_half), values) in inputs.zip(values.chunks(TOGETHER)) {
+        let cosines = half_turn(first, values.len(), count);
+        for (((hann, half), y), cos) in under_hann.iter_mut().zip(under_half).zip(values).zip(cosines) {
+            // ½ − ½·cos 2φ and ½ + ½·cos φ.
+            *hann = y * (1.0 - cos * cos);
+            *half = y * (0.5 + 0.5 * cos);
+        }
+        first += values.len();
     }
     [under_hann, under_half].map(|mut input| {
         match transform.process_with_scratch(&mut input, &mut output, &mut scratch) {
@@ -82,22 +89,18 @@ fn windowed(values: &[f64], length: usize) -> [Vec<f64>; 2] {
     })
 }
 
-/// Values after which cosines are computed anew.
-const FRESH: usize = 64;
-
-/// Cosines of `count` angles that go evenly through half a turn, each in the middle of its share.
-fn half_turn(count: usize) -> impl Iterator<Item = f64> {
+/// Cosines of `length` of `count` angles that go evenly through half a turn, each in the middle of its share, from the one at `first` on;
+/// at most [`TOGETHER`].
+fn half_turn(first: usize, length: usize, count: usize) -> [f64; TOGETHER] {
     let share = PI / count as f64;
-    let (step_sin, step_cos) = libm::sincos(share);
-    let mut here = (0.0, 1.0);
-    (0..count).map(move |k| {
-        here = if k % FRESH == 0 {
-            libm::sincos((k as f64 + 0.5) * share)
-        } else {
-            (here.0 * step_cos + here.1 * step_sin, here.1 * step_cos - here.0 * step_sin)
-        };
-        here.1
-    })
+    let turned = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle);
+        (cos, sin)
+    };
+    let (mut cosines, mut sines) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+    let fresh = |k: usize| turned(((first + k) as f64 + 0.5) * share);
+    by_addition(fresh, turned(share), 1.0, &mut cosines[..length], &mut sines[..length]);
+    cosines
 }
 
 #[cfg(test)]
@@ -141,7 +144,10 @@ mod tests {
     #[test]
     fn half_a_turn_is_gone_through_evenly() {
         for count in [1, 2, 63, 64, 65, 4097] {
-            for (k, cos) in half_turn(count).enumerate() {
+            let stretches = (0..count).step_by(TOGETHER).map(|first| (first, TOGETHER.min(count - first)));
+            let cosines =
+                stretches.flat_map(|(first, length)| half_turn(first, length, count).into_iter().take(length));
+            for (k, cos) in cosines.enumerate() {
                 let expected = (PI * (k as f64 + 0.5) / count as f64).cos();
                 assert!((cos - expected).abs() < 1e-13, "{k} of {count}: {cos} {expected}");
             }

@@ -1,6 +1,7 @@
 //! `bounded`: positions stay finite, and within a multiple of the range of the program.
 use super::Rules;
 use super::rules::{Driven, EarlyEnd};
+use crate::extremes::range_of;
 use crate::quantity::Quantity;
 use servobench_signals::Signal;
 use servobench_trace::Recording;
@@ -55,8 +56,8 @@ fn range(recording: &Recording, rules: &Rules<'_>) -> Option<Range> {
     let start = [Signal::LoadPosition, Signal::MotorPosition]
         .into_iter()
         .filter_map(|name| recording.channel(name)?.first().copied());
-    let all = recording.channel(Signal::SetpointPosition)?.iter().copied().chain(start);
-    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let all = range_of(recording.channel(Signal::SetpointPosition)?);
+    let (low, high) = start.fold(all, |(low, high), x| (low.min(x), high.max(x)));
     let moves = recording.moves.iter().any(|made| made.peaks[0] > 0.0);
     (moves && high > low).then_some(Range { low, high })
 }
