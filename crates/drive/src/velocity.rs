@@ -102,6 +102,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
 }
 
 /// `effort` within the limits.
+#[inline(always)]
 #[must_use]
 pub fn limited(p: &Params, available: f64, limits: EffortLimits, effort: f64) -> Output {
     let own = limits.at_most(p.max_effort);

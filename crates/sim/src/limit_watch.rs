@@ -50,11 +50,16 @@ impl LimitWatch {
     }
 
     /// Shares of the ticks since the last call in which each limit bound, 0 to 1.
+    #[inline(always)]
     pub(crate) fn shares(&mut self) -> PerLimit<f64> {
-        let ticks = f64::from(self.ticks.max(1));
-        self.ticks = 0;
-        let share = |watch: &mut Watch| f64::from(core::mem::take(&mut watch.bound_ticks)) / ticks;
+        let ticks = core::mem::take(&mut self.ticks);
         let PerLimit { voltage, current, effort } = &mut self.watches;
+        let [voltage, current, effort] =
+            [voltage, current, effort].map(|watch| core::mem::take(&mut watch.bound_ticks));
+        if voltage | current | effort == 0 {
+            return PerLimit::default();
+        }
+        let share = |bound: u32| f64::from(bound) / f64::from(ticks.max(1));
         PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) }
     }
 
