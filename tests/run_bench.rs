@@ -3,7 +3,7 @@
 //!
 //! `cargo xtask bench [--json]`. The run: the axis of the demo for 1.5 s at 16 kHz, on one core. Rounds of all engines alternate; the
 //! median of each part counts.
-use servobench_metrics::measure;
+use servobench_metrics::{Name, measure};
 use servobench_plant::{Engine, EngineName, Exact};
 use servobench_scenario::{Scenario, parse};
 use servobench_sim::Bench;
@@ -11,11 +11,14 @@ use servobench_suite::{Engines, Job, Source, Workers, execute, jobs};
 use servobench_trace::Recording;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const ROUNDS: usize = 21;
 const DEMO: &str = include_str!("../scenarios/demo/jerk.toml");
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
+
+/// Metrics that need no mode.
+const FEW: [Name; 2] = [Name::SettlingTime, Name::FollowingErrorPeakLoad];
 
 /// What a run consists of, in its order.
 const PARTS: [&str; 6] = ["read", "build", "ticks", "record", "measure", "write"];
@@ -94,13 +97,18 @@ fn main() {
     let (text, engines) = (demo(), servobench_tests::engines());
     let mut short = job_of(&short());
     short.leave_recording_out();
+    let mut few = short.clone();
+    few.measure_only(&FEW);
     let mut rounds: Vec<Vec<[f64; PARTS.len()]>> = vec![Vec::new(); engines.len()];
-    let mut shorts = Vec::new();
+    let (mut shorts, mut with_few) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
         for (engine, rounds) in engines.iter().zip(&mut rounds) {
             rounds.push(parts(&text, *engine, &folder));
         }
-        shorts.extend((0..10).map(|_| whole(&short)));
+        for _ in 0..10 {
+            shorts.push(whole(&short));
+            with_few.push(whole(&few));
+        }
     }
     std::fs::remove_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let medians: Vec<[f64; PARTS.len()]> = rounds
@@ -108,7 +116,7 @@ fn main() {
         .map(|rounds| std::array::from_fn(|part| median(rounds.iter().map(|round| round[part]).collect())))
         .collect();
     let length = scenario_of(&text).duration.map_or(f64::NAN, |length| length);
-    let per_second = 1.0 / median(shorts);
+    let per_second = [shorts, with_few].map(|times| 1.0 / median(times));
     if json {
         print_json(&engines, &medians, length, per_second);
     } else {
@@ -116,7 +124,7 @@ fn main() {
     }
 }
 
-fn print_table(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: f64, per_second: f64) {
+fn print_table(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: f64, per_second: [f64; 2]) {
     println!("a run of {length} s on one core (ms), and simulated seconds per second with and without its recording");
     let titles = PARTS.map(|part| format!("{part:>8}")).concat();
     println!("{:8}{titles}{:>9}{:>9}", "engine", "with", "without");
@@ -126,13 +134,12 @@ fn print_table(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: 
         let (with, without) = (length / all, length / (all - parts[WRITE]));
         println!("{:8}{columns}{with:>9.0}{without:>9.0}", engine.name().to_string());
     }
-    let each = Duration::from_secs_f64(1.0 / per_second).as_secs_f64() * 1e3;
-    println!(
-        "runs of 0.5 s with a move, metrics and no recording, on exact: {per_second:.0} per second ({each:.2} ms each)"
-    );
+    let [all, few] = per_second;
+    println!("runs of 0.5 s with a move on exact, without a recording, per second of one core:");
+    println!("{all:.0} with all metrics, {few:.0} with {} and {} only", FEW[0], FEW[1]);
 }
 
-fn print_json(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: f64, per_second: f64) {
+fn print_json(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: f64, [all, few]: [f64; 2]) {
     let engines: Vec<String> = engines
         .iter()
         .zip(medians)
@@ -142,5 +149,6 @@ fn print_json(engines: &[&dyn Engine], medians: &[[f64; PARTS.len()]], length: f
             format!("{{\"engine\":\"{}\",{}}}", engine.name(), parts.join(","))
         })
         .collect();
-    println!("{{\"run_s\":{length},\"short_runs_per_second\":{per_second:.0},\"parts\":[{}]}}", engines.join(","));
+    let shorts = format!("\"short_runs_per_second\":{all:.0},\"with_few_metrics\":{few:.0}");
+    println!("{{\"run_s\":{length},{shorts},\"parts\":[{}]}}", engines.join(","));
 }

@@ -103,20 +103,28 @@ def print_json(simulated: dict[str, float], speeds: dict[str, list[float]], besi
 def print_table(simulated: dict[str, float], speeds: dict[str, list[float]], beside: dict[str, dict[str, float]]) -> None:
     """A line for each program, servobench's two first."""
     medians = {name: statistics.median(of) for name, of in speeds.items()}
-    width = max(map(len, speeds))
+    names = {name: shown(name, simulated[name]) for name in speeds}
+    width = max(map(len, names.values()))
     short, long = (f"{simulated[name]:g} s" for name in (SHORT_RUN, LONG_RUN))
-    print(f"the loop of {SCENARIO.name} in simulated seconds per second, median of {ROUNDS} rounds (least to largest);")
-    print(f"how many times as fast servobench's runs of {short} and of {long} are, rounded down;")
-    print("the largest difference from servobench's errors, current, torque, power and loss\n")
-    titles = f"{short:>8} {long:>8} {'beside':>8}"
-    print(f"{'':{width}} {'run':>6} {'speed':>8}  {'':17} {titles}")
+    print(f"The loop of {SCENARIO.name} in simulated seconds per second: median of {ROUNDS} rounds,")
+    print(f"least and largest; how many times as fast servobench's runs of {short} and {long}")
+    print("are; the largest difference from its errors, current, torque, power and loss.")
+    print("GEM is gym-electric-motor; bare is without the environment around its motor.\n")
+    print(f"{'':{width}} {'speed':>6} {'':15} {short:>7} {long:>7} {'differs':>8}")
     for name, of in speeds.items():
-        line = f"{name:{width}} {f'{simulated[name]:g} s':>6} {medians[name]:8.3g}  {f'({min(of):.3g} to {max(of):.3g})':17}"
+        line = f"{names[name]:{width}} {medians[name]:6.3g} {f'({min(of):.3g}–{max(of):.3g})':15}"
         if name in beside:
             ratios = (medians[ours] / medians[name] for ours in (SHORT_RUN, LONG_RUN))
-            line += "".join(f" {f'{int(ratio)} ×':>8}" for ratio in ratios)
+            line += "".join(f" {f'{int(ratio)} ×':>7}" for ratio in ratios)
             line += f" {max(map(abs, beside[name].values())):8.2%}"
         print(line.rstrip())
+
+
+def shown(name: str, simulated: float) -> str:
+    """The name in the table, which has eighty columns."""
+    if name in (SHORT_RUN, LONG_RUN):
+        return f"servobench, all, {simulated:g} s"
+    return name.replace("gym-electric-motor", "GEM").replace("no environment", "bare")
 
 
 if __name__ == "__main__":

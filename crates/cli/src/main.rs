@@ -12,10 +12,10 @@ mod exit;
 mod fmu_opener;
 mod fmu_trust;
 mod interrupt;
-mod memory;
 mod output;
 mod outputs;
 mod progress;
+mod resources;
 mod sources;
 mod workers;
 
@@ -26,7 +26,8 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    memory::keep_freed();
+    resources::keep_freed();
+    resources::open_many();
     console::say_panics();
     let cli = args::parse();
     if let Err(error) = interrupt::refuse_large_files() {

@@ -32,7 +32,7 @@ mod vibration;
 
 pub use absence::Absence;
 pub use display_unit::{DisplayUnit, DisplayUnits, digits};
-pub use measure::{MEASURED_FROM, Question, measure};
+pub use measure::{MEASURED_FROM, Question, measure, measure_only};
 pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, Scope, UnknownMetric};

@@ -1,8 +1,9 @@
 //! A recording to its metrics.
 use crate::absence::Absence;
 use crate::metric::{MetricSet, Metrics, MoveMetrics};
+use crate::name::Name;
 use crate::span::{Checked, Phase, phases};
-use crate::vibration::Residual;
+use crate::vibration::{Residual, Search};
 use crate::{compliance, effort, rounding, settling, tracking};
 use servobench_signals::Signal;
 use servobench_trace::Recording;
@@ -45,23 +46,52 @@ pub const MEASURED_FROM: [Signal; 23] = [
     Signal::EffortEndStop,
 ];
 
+/// Metrics that need the dominant mode of a residual vibration, which takes longer than all others.
+const OF_A_MODE: [Name; 5] = [
+    Name::ResidualVibrationAmplitude,
+    Name::ResidualVibrationFrequency,
+    Name::ResidualVibrationDamping,
+    Name::ResidualVibrationShare,
+    Name::SteadyStateError,
+];
+
 /// Measures everything that the recording allows; what it does not allow is absent with the reason.
 /// The definitions are in `docs/metrics.md`.
 #[must_use]
 pub fn measure(recording: &Recording, question: &Question) -> Metrics {
+    measure_only(recording, question, &|_| true)
+}
+
+/// The same of the metrics that are `wanted`: neither present nor absent are any others, and a mode that only they need is not looked
+/// for.
+#[must_use]
+pub fn measure_only(recording: &Recording, question: &Question, wanted: &dyn Fn(Name) -> bool) -> Metrics {
+    let search = match question.mode {
+        _ if !OF_A_MODE.into_iter().any(wanted) => Search::Nowhere,
+        None => Search::Everywhere,
+        Some(frequency) => Search::Near(frequency),
+    };
+    let mut metrics = measured(recording, question, search);
+    for set in metrics.moves.iter_mut().map(|made| &mut made.metrics).chain([&mut metrics.run]) {
+        set.retain(wanted);
+    }
+    metrics
+}
+
+fn measured(recording: &Recording, question: &Question, search: Search) -> Metrics {
     let phases = phases(recording);
     let checked = Checked::of(recording);
     let mut run = MetricSet::default();
     let mut moves = Vec::with_capacity(phases.len());
     let mut residual = Residual::absent(&Absence::NoMove);
     for phase in &phases {
-        residual = Residual::after(&checked, phase, question.mode);
+        residual = Residual::after(&checked, phase, search);
         let made = phase.made;
         let metrics = move_metrics(&checked, phase, question, &residual);
         moves.push(MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics });
     }
     if let Some(from) = question.from {
-        residual = Residual::from_time(&checked, from, question.mode);
+        residual = Residual::from_time(&checked, from, search);
     }
     let all = 0..recording.len();
     settling::note_worst(&mut run, &checked, &moves);

@@ -97,6 +97,12 @@ impl MetricSet {
         misses
     }
 
+    /// Drops what is not `wanted`.
+    pub(crate) fn retain(&mut self, wanted: impl Fn(Name) -> bool) {
+        self.present.retain(|name, _| wanted(*name));
+        self.absent.retain(|name, _| wanted(*name));
+    }
+
     /// Makes a metric zero whose magnitude is not above `floor`.
     pub(crate) fn clear(&mut self, name: Name, floor: f64) {
         if let Some(metric) = self.present.get_mut(&name)

@@ -13,35 +13,47 @@ const LOAD: Signal = Signal::LoadPosition;
 /// ten minutes would take a gigabyte.
 const HEARD: usize = 1 << 20;
 
+/// Where the mode of a vibration is looked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Search {
+    /// Nobody wants one.
+    Nowhere,
+    /// At any frequency.
+    Everywhere,
+    /// Near a frequency (Hz).
+    Near(f64),
+}
+
 /// Vibration over one stretch of the recording.
 #[derive(Debug, Clone)]
 pub(crate) struct Residual {
     peak_to_peak: Result<f64, Absence>,
     rms: Result<f64, Absence>,
-    mode: Result<Mode, Absence>,
+    /// `None` when none was looked for.
+    mode: Option<Result<Mode, Absence>>,
 }
 
 impl Residual {
     /// No vibration to measure, and why.
     pub(crate) fn absent(why: &Absence) -> Self {
-        Self { peak_to_peak: Err(why.clone()), rms: Err(why.clone()), mode: Err(why.clone()) }
+        Self { peak_to_peak: Err(why.clone()), rms: Err(why.clone()), mode: Some(Err(why.clone())) }
     }
 
-    /// From the end of the profile to the next move.
-    pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, mode: Option<f64>) -> Self {
-        Self::over(recording, &phase.after, phase.made.end, phase.made.to, mode)
+    /// From the end of the profile to the next move. `search` says where a mode is looked for.
+    pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, search: Search) -> Self {
+        Self::over(recording, &phase.after, phase.made.end, phase.made.to, search)
     }
 
     /// From `time` (s) to the next move.
-    pub(crate) fn from_time(recording: &Checked<'_>, time: f64, mode: Option<f64>) -> Self {
+    pub(crate) fn from_time(recording: &Checked<'_>, time: f64, search: Search) -> Self {
         let start = recording.index_at(time);
         let next = recording.moves.iter().map(|made| recording.index_at(made.start)).find(|row| *row > start);
         let rest = recording.channel(LOAD).and_then(|load| load.last()).copied().unwrap_or_default();
-        Self::over(recording, &(start..next.unwrap_or(recording.len())), time, rest, mode)
+        Self::over(recording, &(start..next.unwrap_or(recording.len())), time, rest, search)
     }
 
     /// Over `rows`, as deviation from `rest` (axis unit), with the amplitude referred to the instant `zero` (s).
-    fn over(recording: &Checked<'_>, rows: &Range<usize>, zero: f64, rest: f64, mode: Option<f64>) -> Self {
+    fn over(recording: &Checked<'_>, rows: &Range<usize>, zero: f64, rest: f64, search: Search) -> Self {
         let load = match channel(recording, LOAD) {
             Ok(load) if !rows.is_empty() => &load[rows.clone()],
             Ok(_) => return Self::absent(&Absence::NothingRecorded { part: "after the profile" }),
@@ -66,21 +78,26 @@ impl Residual {
         Self {
             peak_to_peak: Ok(high - low),
             rms: root_mean(deviation.map(|x| (x - mean) * (x - mean)), "after the profile"),
-            mode: fit_mode(&signal, mode),
+            mode: match search {
+                Search::Nowhere => None,
+                Search::Everywhere => Some(fit_mode(&signal, None)),
+                Search::Near(frequency) => Some(fit_mode(&signal, Some(frequency))),
+            },
         }
     }
 
     /// The dominant mode, where there is one.
     pub(crate) fn mode(&self) -> Option<&Mode> {
-        self.mode.as_ref().ok()
+        self.mode.as_ref()?.as_ref().ok()
     }
 
-    /// Notes the six metrics.
+    /// Notes the metrics, without those of a mode when none was looked for.
     pub(crate) fn note(&self, set: &mut MetricSet, recording: &Checked<'_>) {
         let unit = recording.about.axis_unit.as_str();
-        let of_mode = |value: fn(&Mode) -> f64| self.mode.as_ref().map(value).map_err(Clone::clone);
         set.note(Name::ResidualVibrationPp, unit, self.peak_to_peak.clone());
         set.note(Name::ResidualVibrationRms, unit, self.rms.clone());
+        let Some(mode) = &self.mode else { return };
+        let of_mode = |value: fn(&Mode) -> f64| mode.as_ref().map(value).map_err(Clone::clone);
         set.note(Name::ResidualVibrationAmplitude, unit, of_mode(|mode| mode.amplitude));
         set.note(Name::ResidualVibrationFrequency, "Hz", of_mode(|mode| mode.frequency));
         set.note(Name::ResidualVibrationDamping, "", of_mode(|mode| mode.damping));

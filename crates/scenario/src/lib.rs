@@ -36,6 +36,7 @@ mod scenario;
 mod schema;
 mod simple;
 mod source;
+mod sweep_file;
 mod table;
 mod tree;
 mod unit;
@@ -60,3 +61,4 @@ pub use scenario::{
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};
+pub use sweep_file::{SweepRequest, load_sweep, parse_sweep, sweep_schema};

@@ -181,7 +181,7 @@ fn parse_from(
 
 /// Everything that is wrong. On lines with wrong syntax only that is said, and nothing is missing from a file that
 /// could not be read completely. The lines are in the order of the files, none within another.
-fn all_errors(syntax: Report, report: &mut Report, broken: &[(SourceId, Range<usize>)]) -> Vec<Diagnostic> {
+pub(crate) fn all_errors(syntax: Report, report: &mut Report, broken: &[(SourceId, Range<usize>)]) -> Vec<Diagnostic> {
     let mut all = syntax.errors;
     let is_whole = |one: &Diagnostic| {
         let before = |(source, line): &(SourceId, Range<usize>)| (*source, line.end) < (one.source, one.span.start);

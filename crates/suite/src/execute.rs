@@ -5,7 +5,7 @@ use crate::job::Job;
 use crate::requirements::rules;
 use crate::worker::{RunLimits, Workers};
 use servobench_isolation::Stopwatch;
-use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure};
+use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only};
 use servobench_plant::{Engine, MechanicsError};
 use servobench_scenario::{Scenario, Step};
 use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
@@ -83,7 +83,7 @@ pub fn execute(
     let requirements = judge_requirements(&recording, &rules(&job.scenario, ended));
     let record = &job.scenario.record;
     let recording = selected(recording, &record.channels);
-    let mut metrics = measure(&recording, &job.scenario.measure);
+    let mut metrics = measure_only(&recording, &job.scenario.measure, &|name| job.wants(name));
     // What is measured does not depend on how much of it is kept.
     let recording = match thinned(recording, record.rate) {
         Ok(recording) => recording,

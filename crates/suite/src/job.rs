@@ -1,4 +1,5 @@
 //! One scenario on one engine.
+use servobench_metrics::Name;
 use servobench_plant::{EngineName, ModelKind};
 use servobench_scenario::{AxisMechanics, Scenario, Step};
 use servobench_sim::{Program, RECORDING_LIMIT, most_channels};
@@ -20,6 +21,8 @@ pub struct Job {
     durations: Vec<f64>,
     /// Whether somebody wants the recording, and not only what is measured of it.
     keeps_recording: bool,
+    /// Metrics that somebody wants; `None`: all.
+    wanted: Option<Vec<Name>>,
 }
 
 /// How long a run goes on after its program when the scenario does not say (s), as [`Scenario::duration`] has it.
@@ -30,7 +33,7 @@ impl Job {
     #[must_use]
     pub fn new(id: String, source: Source, engine: EngineName) -> Self {
         let Source { scenario, text } = source;
-        Self { id, scenario, text, engine, durations: Vec::new(), keeps_recording: true }
+        Self { id, scenario, text, engine, durations: Vec::new(), keeps_recording: true, wanted: None }
     }
 
     /// Slows the moves to `durations` (s), one for each move.
@@ -43,6 +46,22 @@ impl Job {
     /// of. Metrics and verdict are the same.
     pub const fn leave_recording_out(&mut self) {
         self.keeps_recording = false;
+    }
+
+    /// From now on nobody wants metrics but these, and those that the scenario limits. Others are not measured.
+    pub fn measure_only(&mut self, metrics: &[Name]) {
+        self.wanted = Some(metrics.to_vec());
+    }
+
+    /// Whether a metric is wanted or limited.
+    pub(crate) fn wants(&self, metric: Name) -> bool {
+        let Some(wanted) = &self.wanted else { return true };
+        let of_moves = self.scenario.program.iter().filter_map(|step| match step {
+            Step::Move(step) => Some(&step.metric_limits),
+            Step::Wait(_) => None,
+        });
+        let mut limited = self.scenario.limits.iter().chain(of_moves.flatten());
+        wanted.contains(&metric) || limited.any(|limit| limit.metric == metric)
     }
 
     /// Whether all signals are recorded that the scenario asks for.

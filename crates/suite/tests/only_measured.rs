@@ -1,4 +1,5 @@
 //! Of a run whose recording nobody wants fewer signals are recorded; what is measured of it and what it comes to are the same.
+use servobench_metrics::Name;
 use servobench_plant::{EngineName, Exact};
 use servobench_scenario::load;
 use servobench_suite::{Engines, Run, Source, Workers, execute, jobs};
@@ -30,7 +31,19 @@ fn metrics_and_verdict_do_not_depend_on_what_is_recorded_beside_them() {
         let Ok(Run { recording, metrics, verdict }) = run(&job) else { continue };
         job.leave_recording_out();
         let only = run(&job).unwrap_or_else(|broken| panic!("{}: {}", path.display(), broken.error));
-        assert_eq!((only.metrics, only.verdict), (metrics, verdict), "{}", path.display());
+        assert_eq!((&only.metrics, &only.verdict), (&metrics, &verdict), "{}", path.display());
+        // Some of the metrics, and those that the scenario limits, are what they are among all.
+        job.measure_only(&[Name::SettlingTime, Name::TorqueRms]);
+        let few = run(&job).unwrap_or_else(|broken| panic!("{}: {}", path.display(), broken.error));
+        assert_eq!(few.verdict, only.verdict, "{}", path.display());
+        for (name, metric) in few.metrics.run.iter() {
+            let is_asked = [Name::SettlingTime, Name::TorqueRms].contains(&name);
+            let in_moves = few.metrics.moves.iter().filter_map(|made| made.metrics.get(name));
+            let is_limited = in_moves.chain([metric]).any(|metric| metric.limit.is_some());
+            assert!(is_asked || is_limited, "{}: {name}", path.display());
+            assert_eq!(only.metrics.get(name), Some(metric), "{}: {name}", path.display());
+        }
+        assert_eq!(few.metrics.get(Name::TorqueRms), only.metrics.get(Name::TorqueRms), "{}", path.display());
         compared += 1;
         fewer += usize::from(only.recording.channels.len() < recording.channels.len());
     }

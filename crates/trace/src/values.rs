@@ -196,8 +196,12 @@ impl GrowingValues {
             file.write_all(bytemuck::cast_slice(&self.tail))
         });
         let named = |error: io::Error| {
-            let where_to = format!("{error}, in `{}`; name a folder with more room by TMPDIR", folder.display());
-            io::Error::new(error.kind(), where_to)
+            let what_to_do = if is_too_many_files(&error) {
+                "allow more open files (`ulimit -n`), or make fewer runs at once"
+            } else {
+                "name a folder with more room by TMPDIR"
+            };
+            io::Error::new(error.kind(), format!("{error}, in `{}`; {what_to_do}", folder.display()))
         };
         written.map_err(named)
     }
@@ -218,6 +222,11 @@ impl GrowingValues {
         let map = unsafe { Mmap::map(&file) }?;
         Ok(Values(Place::File(Arc::new(map))))
     }
+}
+
+/// Whether the process, or the machine, has too many files open (EMFILE, ENFILE; errno(3)).
+fn is_too_many_files(error: &io::Error) -> bool {
+    cfg!(unix) && matches!(error.raw_os_error(), Some(23 | 24))
 }
 
 /// Where files go that may be large: `TMPDIR`; without it `/var/tmp`, which unlike `/tmp` is on a disk everywhere.
@@ -284,6 +293,13 @@ mod tests {
                 assert!(is_right(&growing.finish().unwrap(), kept), "{kept} kept, and no more");
             }
         }
+    }
+
+    /// EMFILE, ENFILE, ENOSPC, ENOENT of Linux (errno(3)).
+    #[test]
+    fn too_many_files_are_told_from_too_little_room() {
+        let are = [24, 23, 28, 2].map(|code| is_too_many_files(&io::Error::from_raw_os_error(code)));
+        assert_eq!(are, [true, true, false, false]);
     }
 
     #[test]

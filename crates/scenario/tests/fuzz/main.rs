@@ -3,6 +3,7 @@
 mod points;
 mod quantities;
 mod sound;
+mod sweeps;
 
 use servobench_fuzz::{Splice, Target, check, fuzz};
 use servobench_scenario::{Diagnostic, LoadError, Loaded, Sources, embedded_models, parse};

@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 34] = [
+const PLAN: [(&str, May); 35] = [
     ("base", May::On(&[])),
     ("files", May::On(&[])),
     ("config", May::On(&["base"])),
@@ -26,6 +26,7 @@ const PLAN: [(&str, May); 34] = [
     ("fmi", May::On(&["base", "config", "files"])),
     ("plant", May::On(&["base", "config", "fmi"])),
     ("stability", May::On(&["base", "drive", "plant"])),
+    ("sweep", May::On(&["config"])),
     ("engine-*", May::On(&["base", "files", "plant"])),
     ("isolation", May::On(&[])),
     ("engine-fmu", May::On(&["base", "plant", "fmi", "isolation"])),
@@ -37,7 +38,7 @@ const PLAN: [(&str, May); 34] = [
         "scenario",
         May::On(&[
             "base", "config", "cia402", "motion", "planner", "drive", "fieldbus", "fmi", "plant", "plcopen",
-            "coupling", "signals", "metrics", "files",
+            "coupling", "signals", "metrics", "files", "sweep",
         ]),
     ),
     (

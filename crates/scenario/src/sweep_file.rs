@@ -1,0 +1,401 @@
+//! A sweep file: a scenario, and keys of it that take other values from run to run.
+//!
+//! ```text
+//! TOML → tree with places → tables → `SweepRequest`
+//! ```
+//! What a value means is for the scenario to say in which it stands: here it is a number with a unit, or a text.
+use crate::diagnostic::{Invalid, LoadError, Report};
+use crate::field::{Field, Reported, Slot, key, written};
+use crate::list::{Many, OneOrMany};
+use crate::load::all_errors;
+use crate::nearest::suggestion;
+use crate::simple::OneOf;
+use crate::source::{At, Place, SourceId, Sources, Span};
+use crate::table::table;
+use crate::tree::{self, Node, Value as TreeValue};
+use serde_json::{Value as Json, json};
+use servobench_config::Kind::Plain;
+use servobench_config::positive;
+use servobench_config::quantities::RATIO;
+use servobench_metrics::Name;
+use servobench_plant::EngineName;
+use servobench_sweep::{Arrangement, Axis, Distribution, Drawn, Draws, Method, Spacing, Sweep, SweepError, Value};
+use std::ops::Range as Bytes;
+use std::path::{Path, PathBuf};
+
+/// A sweep, as its file asks for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepRequest {
+    /// The scenario that is varied.
+    pub scenario: PathBuf,
+    /// What it shows, in a sentence; empty where the file does not say.
+    pub description: String,
+    /// Engines to run it on; empty: those of the scenario.
+    pub engines: Vec<EngineName>,
+    /// Metrics that are wanted of each run; empty: all.
+    pub metrics: Vec<Name>,
+    /// What varies.
+    pub sweep: Sweep,
+}
+
+table! {
+    /// A sweep of servobench: a scenario, and keys of it that take other values from run to run.
+    pub(crate) struct SweepFile requires ["scenario", "vary"] {
+        /// The scenario that is varied: a path from the folder of this file.
+        scenario: String = (),
+        /// What the sweep shows, in a sentence.
+        description: String = (),
+        /// Engine or engines to run it on; default: those of the scenario.
+        engine: OneOrMany<EngineName> = OneOf,
+        /// How the values of several keys are combined; default: "grid".
+        arrangement: Arrangement = OneOf,
+        /// Metrics that are wanted of each run; default: all. Those that the scenario limits are measured in any case.
+        metrics: OneOrMany<WantedMetric> = (),
+        /// Keys that vary; `[[vary]]` for each.
+        vary: Many<Vary> = (),
+        /// How keys with a distribution are drawn.
+        draws: DrawTable = (),
+    }
+}
+
+table! {
+    /// A key that varies. It has values, a range, or a distribution.
+    pub(crate) struct Vary requires ["key"] {
+        /// The key of the scenario, as `--set` has it: "setpoint.jerk", "program[0].move_to".
+        key: String = (),
+        /// The values that it takes one after the other.
+        values: OneOrMany<Amount> = (),
+        /// Values from one end to the other, both among them.
+        range: Range = (),
+        /// Drawn: every value between two is as likely as any other.
+        uniform: Uniform = (),
+        /// Drawn: Gauss's distribution.
+        normal: Normal = (),
+        /// Drawn: most likely in the middle, less and less towards two ends.
+        triangular: Triangular = (),
+    }
+}
+
+table! {
+    /// Values from one end to the other, both among them.
+    pub(crate) struct Range requires ["from", "to", "count"] {
+        /// The first value.
+        from: Amount = (),
+        /// The last value, in the unit of the first.
+        to: Amount = (),
+        /// How many there are.
+        count: u32 = 2..=1_000_000,
+        /// At equal distances or at equal ratios; default: "linear".
+        spacing: Spacing = OneOf,
+    }
+}
+
+table! {
+    /// Every value between two is as likely as any other: `from` and `to`, or `mean` and `tolerance`.
+    pub(crate) struct Uniform {
+        /// The smallest value.
+        from: Amount = (),
+        /// The largest value, in the unit of the smallest.
+        to: Amount = (),
+        /// The value in the middle.
+        mean: Amount = (),
+        /// How far the ends are from the middle, in parts of it.
+        tolerance: f64 = positive(Plain(&RATIO), "5 %"),
+    }
+}
+
+table! {
+    /// Gauss's distribution: `mean` and `sigma`, or `mean` and `tolerance`.
+    pub(crate) struct Normal requires ["mean"] {
+        /// The value in the middle.
+        mean: Amount = (),
+        /// Standard deviation, in the unit of the middle.
+        sigma: Amount = (),
+        /// Three standard deviations, in parts of the middle: 99.7 % of all are within.
+        tolerance: f64 = positive(Plain(&RATIO), "5 %"),
+    }
+}
+
+table! {
+    /// Most likely in the middle, less and less towards two ends: `from`, `mode` and `to`, or `mode` and `tolerance`.
+    pub(crate) struct Triangular requires ["mode"] {
+        /// The smallest value, in the unit of the most likely.
+        from: Amount = (),
+        /// The most likely value.
+        mode: Amount = (),
+        /// The largest value, in the unit of the most likely.
+        to: Amount = (),
+        /// How far the ends are from the most likely value, in parts of it.
+        tolerance: f64 = positive(Plain(&RATIO), "5 %"),
+    }
+}
+
+table! {
+    /// How keys with a distribution are drawn.
+    pub(crate) struct DrawTable requires ["count"] {
+        /// How many draws there are, of all these keys together.
+        count: u32 = 1..=10_000_000,
+        /// The same seed gives the same draws, on every machine; default: 1.
+        seed: u32 = 0..=u32::MAX,
+        /// How the draws spread; default: "latin-hypercube".
+        method: Method = OneOf,
+    }
+}
+
+/// A number with a unit, or whatever else a key may be.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Amount(Value);
+
+impl Field for Amount {
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        let value = match &node.value {
+            TreeValue::Number(number) => Value::Number(number.value, String::new()),
+            TreeValue::Bool(value) => Value::Text(value.to_string()),
+            TreeValue::Text(text) => amount(text),
+            TreeValue::Array(_) | TreeValue::Table(_) | TreeValue::Date => {
+                let message = format!("`{}` must be a value, got {}", key(path), node.value.kind());
+                report.error(node.span, message, "write it as text: \"[1, 2]\"");
+                return None;
+            }
+        };
+        Some(Self(value))
+    }
+
+    fn schema((): &()) -> Json {
+        json!({ "type": ["string", "number", "boolean"], "examples": ["50 m/s3"] })
+    }
+}
+
+/// A text that is a number with a unit, or any other.
+fn amount(text: &str) -> Value {
+    let trimmed = text.trim();
+    let is_of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
+    // The longest beginning that is a number: of "5 e" the 5, of "5e3 m" all but the unit.
+    let ends = trimmed.char_indices().map(|(at, c)| (at + c.len_utf8(), c)).take_while(|(_, c)| is_of_number(*c));
+    let longest = ends.filter_map(|(end, _)| Some((end, trimmed[..end].parse::<f64>().ok()?))).last();
+    match longest {
+        Some((end, number)) if number.is_finite() => Value::Number(number, trimmed[end..].trim().to_owned()),
+        _ => Value::Text(text.to_owned()),
+    }
+}
+
+/// A metric by its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct WantedMetric(Name);
+
+impl Field for WantedMetric {
+    fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
+        let TreeValue::Text(text) = &node.value else {
+            report.error(node.span, format!("`{}` must be a metric, got {}", key(path), written(node)), "");
+            return None;
+        };
+        if let Ok(name) = text.parse() {
+            return Some(Self(name));
+        }
+        let names = Name::ALL.iter().map(|metric| metric.as_str());
+        report.error(node.span, format!("there is no metric `{text}`"), suggestion(text, names));
+        None
+    }
+
+    fn schema((): &()) -> Json {
+        let names: Vec<&str> = Name::ALL.iter().map(|metric| metric.as_str()).collect();
+        json!({ "enum": names })
+    }
+}
+
+/// Loads the sweep file at `path`.
+///
+/// # Errors
+/// [`LoadError::Read`] when it cannot be read, [`LoadError::Invalid`] with every mistake in it.
+pub fn load_sweep(path: &Path) -> Result<SweepRequest, LoadError> {
+    let unreadable = |error| LoadError::Read { path: path.to_owned(), error };
+    let text = servobench_files::read_text(path, LONGEST).map_err(unreadable)?;
+    parse_sweep(&path.display().to_string(), &text, path.parent().unwrap_or_else(|| Path::new("")))
+}
+
+/// Bytes of a sweep file, at most.
+const LONGEST: u64 = 16 << 20;
+
+/// Reads a sweep from `text`; `name` stands for the file in messages, and paths in it are from `folder`.
+///
+/// # Errors
+/// [`LoadError::Invalid`] with every mistake in it.
+pub fn parse_sweep(name: &str, text: &str, folder: &Path) -> Result<SweepRequest, LoadError> {
+    let mut sources = Sources::default();
+    let id = sources.add(name.to_owned(), text.to_owned(), Place::Folder(folder.to_owned()));
+    let (mut syntax, mut report) = (Report::default(), Report::default());
+    let mut parsed = tree::parse(id, text, &mut syntax);
+    let broken: Vec<(SourceId, Bytes<usize>)> = parsed.broken.drain(..).map(|line| (id, line)).collect();
+    let root = Node { value: TreeValue::Table(parsed.table), span: Span::new(id, &(0..0)) };
+    let request =
+        SweepFile::decode("", &root, &(), &mut report).and_then(|file| request(&file, folder, &mut report).ok());
+    let diagnostics = all_errors(syntax, &mut report, &broken);
+    match request {
+        Some(request) if diagnostics.is_empty() => Ok(request),
+        _ => Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings: report.warnings, sources }))),
+    }
+}
+
+/// JSON Schema of a sweep file.
+#[must_use]
+pub fn sweep_schema() -> Json {
+    let mut schema = SweepFile::schema(&());
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    schema["title"] = json!("servobench sweep");
+    schema
+}
+
+fn request(file: &SweepFile, folder: &Path, report: &mut Report) -> Result<SweepRequest, Reported> {
+    let scenario = file.scenario.given().map(|path| folder.join(path));
+    let (axes, drawn) = varied(file, report)?;
+    let draws = draws(file, drawn, report)?;
+    let arrangement = file.arrangement.optional()?.copied().unwrap_or_default();
+    let place = file.vary.span().unwrap_or(file.span);
+    let sweep = Sweep::new(axes, arrangement, draws).map_err(|error| refuse(report, place, &error))?;
+    let all = |list: Option<&OneOrMany<WantedMetric>>| list.map(|list| list.0.iter().map(|at| at.value.0).collect());
+    Ok(SweepRequest {
+        scenario: scenario.ok_or(Reported)?,
+        description: file.description.optional()?.cloned().unwrap_or_default(),
+        engines: file.engine.optional()?.map(|list| list.0.iter().map(|at| at.value).collect()).unwrap_or_default(),
+        metrics: all(file.metrics.optional()?).unwrap_or_default(),
+        sweep,
+    })
+}
+
+fn refuse(report: &mut Report, place: Span, error: &SweepError) -> Reported {
+    report.error(place, error.to_string(), "");
+    Reported
+}
+
+/// Keys that take values one after the other, and keys that are drawn.
+fn varied(file: &SweepFile, report: &mut Report) -> Result<(Vec<Axis>, Vec<Drawn>), Reported> {
+    let (mut axes, mut drawn, mut is_right) = (Vec::new(), Vec::new(), true);
+    for At { value: vary, span } in &file.vary.given().ok_or(Reported)?.0 {
+        match one(vary, *span, report) {
+            Ok(Varied::Axis(axis)) => axes.push(axis),
+            Ok(Varied::Drawn(of)) => drawn.push(of),
+            Err(Reported) => is_right = false,
+        }
+    }
+    if is_right { Ok((axes, drawn)) } else { Err(Reported) }
+}
+
+enum Varied {
+    Axis(Axis),
+    Drawn(Drawn),
+}
+
+fn one(vary: &Vary, span: Span, report: &mut Report) -> Result<Varied, Reported> {
+    let key = vary.key.given().ok_or(Reported)?;
+    let given =
+        [vary.values.span(), vary.range.span(), vary.uniform.span(), vary.normal.span(), vary.triangular.span()];
+    if given.iter().flatten().count() != 1 {
+        let message = format!("`{key}` needs one of `values`, `range`, `uniform`, `normal` and `triangular`");
+        let what = if given.iter().flatten().next().is_none() { "it has none" } else { "it has more than one" };
+        report.error(span, format!("{message}; {what}"), "");
+        return Err(Reported);
+    }
+    if let Some(list) = vary.values.optional()? {
+        let values = list.0.iter().map(|at| at.value.0.clone()).collect();
+        return Ok(Varied::Axis(Axis { key: key.clone(), values }));
+    }
+    if let Some(range) = vary.range.optional()? {
+        let (ends, unit) = ends(&range.from, &range.to, report)?;
+        let count = *range.count.given().ok_or(Reported)? as usize;
+        let spacing = range.spacing.optional()?.copied().unwrap_or_default();
+        let axis = Axis::range(key, ends, &unit, count, spacing).map_err(|error| refuse(report, range.span, &error))?;
+        return Ok(Varied::Axis(axis));
+    }
+    let (distribution, unit, place) = distribution(vary, report)?;
+    if let Some(reason) = distribution.objection() {
+        return Err(refuse(report, place, &SweepError::Distribution { key: key.clone(), reason }));
+    }
+    Ok(Varied::Drawn(Drawn { key: key.clone(), unit, distribution }))
+}
+
+/// The distribution of a key, the unit of its values and where it stands.
+fn distribution(vary: &Vary, report: &mut Report) -> Result<(Distribution, String, Span), Reported> {
+    if let Some(table) = vary.uniform.optional()? {
+        let (low, high, unit) = match (table.from.optional()?, table.mean.optional()?, table.tolerance.optional()?) {
+            (Some(_), None, None) => {
+                let ([low, high], unit) = ends(&table.from, &table.to, report)?;
+                (low, high, unit)
+            }
+            (None, Some(_), Some(tolerance)) if table.to.optional()?.is_none() => {
+                let (mean, unit) = number(&table.mean, None, report)?;
+                let off = (mean * tolerance).abs();
+                (mean - off, mean + off, unit)
+            }
+            _ => return Err(incomplete(report, table.span, "`from` and `to`, or `mean` and `tolerance`")),
+        };
+        return Ok((Distribution::Uniform { low, high }, unit, table.span));
+    }
+    if let Some(table) = vary.normal.optional()? {
+        let (mean, unit) = number(&table.mean, None, report)?;
+        let sigma = match (table.sigma.optional()?, table.tolerance.optional()?) {
+            (Some(_), None) => number(&table.sigma, Some(&unit), report)?.0,
+            (None, Some(tolerance)) => (mean * tolerance / 3.0).abs(),
+            _ => return Err(incomplete(report, table.span, "`sigma` or `tolerance` beside `mean`")),
+        };
+        return Ok((Distribution::Normal { mean, sigma }, unit, table.span));
+    }
+    let table = vary.triangular.optional()?.ok_or(Reported)?;
+    let (mode, unit) = number(&table.mode, None, report)?;
+    let (low, high) = match (table.from.optional()?, table.to.optional()?, table.tolerance.optional()?) {
+        (Some(_), Some(_), None) => {
+            (number(&table.from, Some(&unit), report)?.0, number(&table.to, Some(&unit), report)?.0)
+        }
+        (None, None, Some(tolerance)) => {
+            let off = (mode * tolerance).abs();
+            (mode - off, mode + off)
+        }
+        _ => return Err(incomplete(report, table.span, "`from` and `to`, or `tolerance`, beside `mode`")),
+    };
+    Ok((Distribution::Triangular { low, mode, high }, unit, table.span))
+}
+
+fn incomplete(report: &mut Report, place: Span, needed: &str) -> Reported {
+    report.error(place, format!("the distribution needs {needed}"), "");
+    Reported
+}
+
+/// Two numbers in the same unit, and that.
+fn ends(from: &Slot<Amount>, to: &Slot<Amount>, report: &mut Report) -> Result<([f64; 2], String), Reported> {
+    let (low, unit) = number(from, None, report)?;
+    let (high, _) = number(to, Some(&unit), report)?;
+    Ok(([low, high], unit))
+}
+
+/// A number, in this unit if there is to be one, and its unit.
+fn number(slot: &Slot<Amount>, unit: Option<&str>, report: &mut Report) -> Result<(f64, String), Reported> {
+    let At { value: Amount(value), span } = slot.at().ok_or(Reported)?;
+    let Value::Number(number, own) = value else {
+        report.error(*span, format!("`{}` is no number", value.written()), "write a number with its unit: \"50 m/s3\"");
+        return Err(Reported);
+    };
+    if let Some(unit) = unit.filter(|unit| unit != own) {
+        let of = |unit: &str| if unit.is_empty() { "no unit".to_owned() } else { format!("`{unit}`") };
+        report.error(
+            *span,
+            format!("`{}` has {}, the other number {}", value.written(), of(own), of(unit)),
+            "use one unit for both",
+        );
+        return Err(Reported);
+    }
+    Ok((*number, own.clone()))
+}
+
+fn draws(file: &SweepFile, drawn: Vec<Drawn>, report: &mut Report) -> Result<Option<Draws>, Reported> {
+    let Some(table) = file.draws.optional()? else {
+        if drawn.is_empty() {
+            return Ok(None);
+        }
+        let place = file.vary.span().unwrap_or(file.span);
+        report.error(place, "how many draws there are is missing", "write `[draws]` with `count = 1000`");
+        return Err(Reported);
+    };
+    let count = *table.count.given().ok_or(Reported)?;
+    let seed = u64::from(table.seed.optional()?.copied().unwrap_or(1));
+    let method = table.method.optional()?.copied().unwrap_or_default();
+    Draws::new(count, seed, method, drawn).map(Some).map_err(|error| refuse(report, table.span, &error))
+}

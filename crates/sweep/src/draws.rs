@@ -1,0 +1,199 @@
+//! Draws of what has a tolerance.
+use crate::axis::Value;
+use crate::distribution::Distribution;
+use crate::error::SweepError;
+use crate::random;
+use crate::sweep::Setting;
+use servobench_config::choices;
+
+choices! {
+    /// How the draws of a key spread over its distribution.
+    pub enum Method default LatinHypercube {
+        /// Each draw by itself.
+        Random = "random",
+        /// One draw in each of as many equally likely parts as there are draws, in a random order for each key: fewer draws tell as much.
+        LatinHypercube = "latin-hypercube",
+    }
+}
+
+/// A key that is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// The key: `axis.load.mass`.
+    pub key: String,
+    /// Unit of the values; empty of a pure number.
+    pub unit: String,
+    /// How often which value is met.
+    pub distribution: Distribution,
+}
+
+/// Keys that are drawn, all of them anew in each draw, independent of each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draws {
+    count: u32,
+    seed: u64,
+    keys: Vec<Drawn>,
+    /// The part of its distribution that each draw of a key is from; empty where each draw is by itself.
+    parts: Vec<Vec<u32>>,
+}
+
+impl Draws {
+    /// `count` draws of `keys`. The same seed gives the same draws on every machine, and a key the same ones whatever else is drawn after it.
+    ///
+    /// # Errors
+    /// [`SweepError::NothingDrawn`], [`SweepError::Distribution`].
+    pub fn new(count: u32, seed: u64, method: Method, keys: Vec<Drawn>) -> Result<Self, SweepError> {
+        if keys.is_empty() {
+            return Err(SweepError::NothingDrawn("no key has a distribution"));
+        }
+        if count == 0 {
+            return Err(SweepError::NothingDrawn("the number of draws is 0"));
+        }
+        for Drawn { key, distribution, .. } in &keys {
+            if let Some(reason) = distribution.objection() {
+                return Err(SweepError::Distribution { key: key.clone(), reason });
+            }
+        }
+        let parts = match method {
+            Method::Random => Vec::new(),
+            Method::LatinHypercube => {
+                (0..keys.len()).map(|key| random::order(stream(seed, key, Purpose::Order), count)).collect()
+            }
+        };
+        Ok(Self { count, seed, keys, parts })
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub const fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// The keys that are drawn.
+    #[must_use]
+    pub fn keys(&self) -> &[Drawn] {
+        &self.keys
+    }
+
+    /// The values of draw `index`.
+    pub(crate) fn settings(&self, index: u32) -> impl Iterator<Item = Setting<'_>> {
+        self.keys.iter().enumerate().map(move |(key, drawn)| {
+            let number = drawn.distribution.quantile(self.share(key, index));
+            Setting { key: &drawn.key, value: Value::Number(number, drawn.unit.clone()) }
+        })
+    }
+
+    /// Where in the distribution of key `key` draw `index` is, between 0 and 1.
+    fn share(&self, key: usize, index: u32) -> f64 {
+        let within = random::between(random::number(stream(self.seed, key, Purpose::Value), index.into()));
+        match self.parts.get(key) {
+            None => within,
+            Some(parts) => (f64::from(parts[index as usize]) + within) / f64::from(self.count),
+        }
+    }
+}
+
+/// What a stream of random numbers is for.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Value,
+    Order,
+}
+
+fn stream(seed: u64, key: usize, purpose: Purpose) -> u64 {
+    random::stream(seed, 2 * key as u64 + purpose as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COUNT: u32 = 20_000;
+
+    fn draws(method: Method, distribution: Distribution) -> Vec<f64> {
+        let other = Distribution::Uniform { low: 0.0, high: 1.0 };
+        let of = |key: &str, distribution| Drawn { key: key.into(), unit: "kg".into(), distribution };
+        let draws = Draws::new(COUNT, 5, method, vec![of("other", other), of("mass", distribution)]).unwrap();
+        (0..COUNT).map(|index| draws.settings(index).nth(1).unwrap().value.number().unwrap()).collect()
+    }
+
+    /// Mean and quantiles against the distribution, within three standard errors: σ/√n of the mean, √(p(1 − p)/n) of a share.
+    #[test]
+    fn draws_are_distributed_as_they_are_to_be() {
+        let n = f64::from(COUNT);
+        for (distribution, mean, sigma) in [
+            (Distribution::Uniform { low: 2.0, high: 5.0 }, 3.5, 3.0 / 12_f64.sqrt()),
+            (Distribution::Normal { mean: -1.0, sigma: 0.25 }, -1.0, 0.25),
+            (Distribution::Triangular { low: 0.0, mode: 1.0, high: 4.0 }, 5.0 / 3.0, (13.0 / 18.0_f64).sqrt()),
+        ] {
+            for method in [Method::Random, Method::LatinHypercube] {
+                let found = draws(method, distribution);
+                let average = found.iter().sum::<f64>() / n;
+                assert!((average - mean).abs() < 3.0 * sigma / n.sqrt(), "{distribution:?} {method:?}: {average}");
+                for share in [0.01, 0.1, 0.5, 0.9, 0.99] {
+                    let below = found.iter().filter(|x| **x < distribution.quantile(share)).count() as f64 / n;
+                    let error = (share * (1.0 - share) / n).sqrt();
+                    assert!((below - share).abs() < 3.0 * error, "{distribution:?} {method:?} {share}: {below}");
+                }
+            }
+        }
+    }
+
+    /// Of a hypercube each of the equally likely parts has one draw.
+    #[test]
+    fn a_latin_hypercube_has_one_draw_in_each_part() {
+        let mut found = draws(Method::LatinHypercube, Distribution::Uniform { low: 0.0, high: 1.0 });
+        found.sort_by(f64::total_cmp);
+        for (part, x) in found.iter().enumerate() {
+            let (low, high) = (part as f64 / f64::from(COUNT), (part + 1) as f64 / f64::from(COUNT));
+            assert!((low..=high).contains(x), "{part}: {x}");
+        }
+    }
+
+    /// Keys do not follow each other: their correlation is that of independent draws, 1/√n.
+    #[test]
+    fn keys_are_drawn_independently() {
+        for method in [Method::Random, Method::LatinHypercube] {
+            let uniform = Distribution::Uniform { low: -1.0, high: 1.0 };
+            let keys = ["a", "b", "c"].map(|key| Drawn { key: key.into(), unit: String::new(), distribution: uniform });
+            let draws = Draws::new(COUNT, 1, method, keys.to_vec()).unwrap();
+            let rows: Vec<Vec<f64>> = (0..COUNT)
+                .map(|index| draws.settings(index).map(|setting| setting.value.number().unwrap()).collect())
+                .collect();
+            for (one, other) in [(0, 1), (0, 2), (1, 2)] {
+                let product: f64 = rows.iter().map(|row| row[one] * row[other]).sum();
+                let correlation = product * 3.0 / f64::from(COUNT);
+                assert!(correlation.abs() < 3.0 / f64::from(COUNT).sqrt(), "{method:?} {one} {other}: {correlation}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_draw_does_not_depend_on_what_is_drawn_beside_it() {
+        let of = |key: &str| Drawn {
+            key: key.into(),
+            unit: String::new(),
+            distribution: Distribution::Normal { mean: 0.0, sigma: 1.0 },
+        };
+        for method in [Method::Random, Method::LatinHypercube] {
+            let one = Draws::new(50, 3, method, vec![of("a")]).unwrap();
+            let two = Draws::new(50, 3, method, vec![of("a"), of("b")]).unwrap();
+            let other = Draws::new(50, 4, method, vec![of("a")]).unwrap();
+            for index in 0..50 {
+                assert_eq!(one.settings(index).next(), two.settings(index).next());
+                assert_ne!(one.settings(index).next(), other.settings(index).next());
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused() {
+        let of = |distribution| vec![Drawn { key: "load.mass".into(), unit: "kg".into(), distribution }];
+        let good = Distribution::Normal { mean: 5.0, sigma: 1.0 };
+        assert!(Draws::new(0, 1, Method::Random, of(good)).unwrap_err().to_string().contains("number of draws is 0"));
+        assert!(Draws::new(5, 1, Method::Random, vec![]).unwrap_err().to_string().contains("no key"));
+        let bad = Distribution::Normal { mean: 5.0, sigma: -1.0 };
+        let refusal = Draws::new(5, 1, Method::Random, of(bad)).unwrap_err().to_string();
+        assert!(refusal.starts_with("`load.mass`: the standard deviation -1"), "{refusal}");
+    }
+}
