@@ -7,8 +7,7 @@ const KEPT: libc::c_int = 64 << 20;
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const PIECE: libc::c_int = 32 << 20;
 
-/// Keeps what is freed for the next run. Otherwise it goes back to the system after each one, and comes again page by page, which takes a
-/// tenth of the time of a suite.
+/// Keeps what is freed for the next run. Otherwise it goes back to the system after each one, and comes again page by page.
 pub(crate) fn keep_freed() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[expect(unsafe_code, reason = "the allocator of the C library has no other door")]

@@ -59,18 +59,15 @@ const OF_A_MODE: [Name; 5] = [
 /// The definitions are in `docs/metrics.md`.
 #[must_use]
 pub fn measure(recording: &Recording, question: &Question) -> Metrics {
-    measure_only(recording, question, &|_| true)
+    measured(recording, question, Search::of(question.mode))
 }
 
 /// The same of the metrics that are `wanted`: neither present nor absent are any others, and a mode that only they need is not looked
 /// for.
 #[must_use]
 pub fn measure_only(recording: &Recording, question: &Question, wanted: &dyn Fn(Name) -> bool) -> Metrics {
-    let search = match question.mode {
-        _ if !OF_A_MODE.into_iter().any(wanted) => Search::Nowhere,
-        None => Search::Everywhere,
-        Some(frequency) => Search::Near(frequency),
-    };
+    let needs_a_mode = OF_A_MODE.into_iter().any(wanted);
+    let search = if needs_a_mode { Search::of(question.mode) } else { Search::Nowhere };
     let mut metrics = measured(recording, question, search);
     for set in metrics.moves.iter_mut().map(|made| &mut made.metrics).chain([&mut metrics.run]) {
         set.retain(wanted);

@@ -24,6 +24,13 @@ pub(crate) enum Search {
     Near(f64),
 }
 
+impl Search {
+    /// Near `mode` (Hz), or everywhere without one.
+    pub(crate) fn of(mode: Option<f64>) -> Self {
+        mode.map_or(Self::Everywhere, Self::Near)
+    }
+}
+
 /// Vibration over one stretch of the recording.
 #[derive(Debug, Clone)]
 pub(crate) struct Residual {
@@ -102,5 +109,44 @@ impl Residual {
         set.note(Name::ResidualVibrationFrequency, "Hz", of_mode(|mode| mode.frequency));
         set.note(Name::ResidualVibrationDamping, "", of_mode(|mode| mode.damping));
         set.note(Name::ResidualVibrationShare, "", of_mode(|mode| mode.share));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::span::phases;
+    use crate::synthetic::{Build, planned};
+    use core::f64::consts::TAU;
+
+    /// 1 µm at 20 Hz, and 50 µm at 40 Hz once no mode is looked for any more.
+    #[test]
+    fn a_mode_is_of_the_first_minute_and_the_peaks_are_of_all() {
+        let rate = 16_000;
+        let late = HEARD as f64 / f64::from(rate) + 0.01;
+        let position = move |t: f64| {
+            let (size, frequency) = if t < late { (1e-6, 20.0) } else { (50e-6, 40.0) };
+            1.0 + size * (TAU * frequency * t).sin()
+        };
+        let made = planned(0.0, 0.01, 0.0, 1.0).made();
+        let recording = Build::new(rate, HEARD + 8_000).channel(LOAD, "m", position).moves([made]).finish();
+        let residual = Residual::after(&Checked::of(&recording), &phases(&recording)[0], Search::Everywhere);
+        let mode = residual.mode().unwrap();
+        assert!((mode.frequency - 20.0).abs() < 1e-3 && (mode.amplitude - 1e-6).abs() < 1e-9, "{mode:?}");
+        assert!((residual.peak_to_peak.unwrap() - 100e-6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn where_nobody_wants_a_mode_none_is_noted() {
+        let made = planned(0.0, 0.01, 0.0, 1.0).made();
+        let position = |t: f64| 1.0 + 1e-6 * (TAU * 20.0 * t).sin();
+        let recording = Build::new(1_000, 2_000).channel(LOAD, "m", position).moves([made]).finish();
+        let checked = Checked::of(&recording);
+        let noted = |search| {
+            let mut set = MetricSet::default();
+            Residual::after(&checked, &phases(&recording)[0], search).note(&mut set, &checked);
+            (set.get(Name::ResidualVibrationPp).is_some(), set.get(Name::ResidualVibrationFrequency).is_some())
+        };
+        assert_eq!([Search::Nowhere, Search::Near(20.0)].map(noted), [(true, false), (true, true)]);
     }
 }

@@ -61,4 +61,4 @@ pub use scenario::{
 };
 pub use schema::json_schema;
 pub use source::{SourceId, Sources};
-pub use sweep_file::{SweepRequest, load_sweep, parse_sweep, sweep_schema};
+pub use sweep_file::{SweepRequest, load_sweep, parse_sweep};

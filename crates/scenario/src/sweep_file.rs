@@ -236,15 +236,6 @@ pub fn parse_sweep(name: &str, text: &str, folder: &Path) -> Result<SweepRequest
     }
 }
 
-/// JSON Schema of a sweep file.
-#[must_use]
-pub fn sweep_schema() -> Json {
-    let mut schema = SweepFile::schema(&());
-    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
-    schema["title"] = json!("servobench sweep");
-    schema
-}
-
 fn request(file: &SweepFile, folder: &Path, report: &mut Report) -> Result<SweepRequest, Reported> {
     let scenario = file.scenario.given().map(|path| folder.join(path));
     let (axes, drawn) = varied(file, report)?;

@@ -107,6 +107,10 @@ fn mistakes_have_their_places() {
     assert!(metric.contains("there is no metric `settling_tim`") && metric.contains("settling_time"), "{metric}");
     let twice = of("[[vary]]\nkey = \"a\"\nvalues = 1\n[[vary]]\nkey = \"a\"\nvalues = 2\n").join("\n");
     assert!(twice.contains("`a` varies twice"), "{twice}");
+    for number in ["nan", "inf", "-inf", "\"1e400 kg\""] {
+        let wrong = vary(&format!("range = {{ from = {number}, to = 1, count = 2 }}"));
+        assert!(wrong.contains("sweep.toml:4"), "{number}: {wrong}");
+    }
     // Several at once.
     assert!(of("engine = \"exakt\"\narrangement = \"gird\"\n[[vary]]\nkey = \"a\"\nvalues = []\n").len() >= 3);
 }

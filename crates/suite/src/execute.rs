@@ -7,7 +7,7 @@ use crate::worker::{RunLimits, Workers};
 use servobench_isolation::Stopwatch;
 use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only};
 use servobench_plant::{Engine, MechanicsError};
-use servobench_scenario::{Scenario, Step};
+use servobench_scenario::Scenario;
 use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
 use servobench_trace::Recording;
 use std::ops::ControlFlow;
@@ -83,7 +83,9 @@ pub fn execute(
     let requirements = judge_requirements(&recording, &rules(&job.scenario, ended));
     let record = &job.scenario.record;
     let recording = selected(recording, &record.channels);
-    let mut metrics = measure_only(&recording, &job.scenario.measure, &|name| job.wants(name));
+    let wanted = job.metrics();
+    let is_wanted = |name| wanted.as_ref().is_none_or(|wanted| wanted.contains(&name));
+    let mut metrics = measure_only(&recording, &job.scenario.measure, &is_wanted);
     // What is measured does not depend on how much of it is kept.
     let recording = match thinned(recording, record.rate) {
         Ok(recording) => recording,
@@ -92,7 +94,7 @@ pub fn execute(
     if let Some(failure) = failure {
         return Err(broken(failure, Some((recording, metrics))));
     }
-    let of_moves: Vec<&[Limit]> = job.scenario.program.iter().filter_map(limits_of_move).collect();
+    let of_moves: Vec<&[Limit]> = job.limits_of_moves().collect();
     let limits = metrics.judge(&job.scenario.limits).and(metrics.judge_moves(&of_moves));
     Ok(Run { verdict: limits.and(requirements), recording, metrics })
 }
@@ -171,11 +173,4 @@ pub(crate) fn run_here(
         if is_late { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     Ok((outcome.recording, outcome.failure))
-}
-
-fn limits_of_move(step: &Step) -> Option<&[Limit]> {
-    match step {
-        Step::Move(step) => Some(&step.metric_limits),
-        Step::Wait(_) => None,
-    }
 }

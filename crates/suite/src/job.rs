@@ -1,10 +1,10 @@
 //! One scenario on one engine.
-use servobench_metrics::Name;
+use servobench_metrics::{Limit, Name};
 use servobench_plant::{EngineName, ModelKind};
 use servobench_scenario::{AxisMechanics, Scenario, Step};
 use servobench_sim::{Program, RECORDING_LIMIT, most_channels};
 use servobench_trace::IN_MEMORY;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// One scenario on one engine.
 #[derive(Debug, Clone)]
@@ -53,15 +53,18 @@ impl Job {
         self.wanted = Some(metrics.to_vec());
     }
 
-    /// Whether a metric is wanted or limited.
-    pub(crate) fn wants(&self, metric: Name) -> bool {
-        let Some(wanted) = &self.wanted else { return true };
-        let of_moves = self.scenario.program.iter().filter_map(|step| match step {
-            Step::Move(step) => Some(&step.metric_limits),
+    /// Metrics that are wanted or limited; `None`: all.
+    pub(crate) fn metrics(&self) -> Option<HashSet<Name>> {
+        let limits = self.limits_of_moves().flatten().chain(&self.scenario.limits);
+        Some(self.wanted.as_ref()?.iter().copied().chain(limits.map(|limit| limit.metric)).collect())
+    }
+
+    /// The limits of each move.
+    pub(crate) fn limits_of_moves(&self) -> impl Iterator<Item = &[Limit]> {
+        self.scenario.program.iter().filter_map(|step| match step {
+            Step::Move(step) => Some(step.metric_limits.as_slice()),
             Step::Wait(_) => None,
-        });
-        let mut limited = self.scenario.limits.iter().chain(of_moves.flatten());
-        wanted.contains(&metric) || limited.any(|limit| limit.metric == metric)
+        })
     }
 
     /// Whether all signals are recorded that the scenario asks for.

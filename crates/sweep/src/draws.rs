@@ -88,9 +88,14 @@ impl Draws {
         let within = random::between(random::number(stream(self.seed, key, Purpose::Value), index.into()));
         match self.parts.get(key) {
             None => within,
-            Some(parts) => (f64::from(parts[index as usize]) + within) / f64::from(self.count),
+            Some(parts) => in_part(parts[index as usize], within, self.count),
         }
     }
+}
+
+/// So far within the `part`th of `count` equal parts. The last number of the last part would be rounded to 1, beyond which nothing is.
+fn in_part(part: u32, within: f64, count: u32) -> f64 {
+    ((f64::from(part) + within) / f64::from(count)).min(1.0 - f64::EPSILON / 2.0)
 }
 
 /// What a stream of random numbers is for.
@@ -147,6 +152,17 @@ mod tests {
         for (part, x) in found.iter().enumerate() {
             let (low, high) = (part as f64 / f64::from(COUNT), (part + 1) as f64 / f64::from(COUNT));
             assert!((low..=high).contains(x), "{part}: {x}");
+        }
+    }
+
+    #[test]
+    fn the_last_number_of_the_last_part_is_below_1() {
+        let last = 1.0 - f64::EPSILON / 2.0;
+        let normal = Distribution::Normal { mean: 0.0, sigma: 1.0 };
+        for count in [1, 2, 3, 1_000, 10_000_000, u32::MAX] {
+            let share = in_part(count - 1, last, count);
+            assert!(share < 1.0 && normal.quantile(share).is_finite(), "{count}: {share}");
+            assert!(in_part(0, f64::EPSILON / 2.0, count) > 0.0);
         }
     }
 

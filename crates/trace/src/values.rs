@@ -153,11 +153,15 @@ impl GrowingValues {
     ///
     /// # Errors
     /// As [`extend`](Self::extend).
-    pub fn extend_from(&mut self, values: impl Iterator<Item = f64>) -> io::Result<()> {
-        for value in values {
-            self.extend(&[value])?;
+    pub fn extend_from(&mut self, mut values: impl Iterator<Item = f64>) -> io::Result<()> {
+        loop {
+            let (before, room) = (self.tail.len(), self.most.saturating_sub(self.tail.len()) + 1);
+            self.tail.extend(values.by_ref().take(room));
+            if self.tail.len() == before {
+                return Ok(());
+            }
+            self.extend(&[])?;
         }
-        Ok(())
     }
 
     /// Drops what is there from `count` on.

@@ -203,6 +203,19 @@ mod tests {
         bytes
     }
 
+    /// What is said beside the channels may be longer than what is collected of them, wherever that ends.
+    #[test]
+    fn a_long_footer_is_written_whole() {
+        for rows in (0..32_000).step_by(2_000) {
+            let mut recording = recording(rows);
+            let message = "a long word ".repeat(100);
+            recording.events =
+                (0..1_000).map(|k| crate::Event::new(f64::from(k), 1e3, "test", message.as_str())).collect();
+            let bytes = recording.encode(Vec::new()).unwrap();
+            assert!(bytes.len() > 1 << 20 && bytes == by_the_library(&recording), "{rows} rows");
+        }
+    }
+
     #[test]
     fn the_bytes_are_those_of_the_library() {
         for rows in [0, 1, 17, 1_023, 20_479, 20_480, 20_481, 45_678, ROW_GROUP, ROW_GROUP + 1] {
