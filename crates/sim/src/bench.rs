@@ -22,7 +22,7 @@ use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
 const TAIL: f64 = 0.5;
-/// Memory granted to the recording of every tick (GB). It is the same on every machine, since what is measured depends on it: a recording
+/// What the recording of every tick may take (GB), in memory or in files. It is the same on every machine, since what is measured depends on it: a recording
 /// that needs more has `record.rate`.
 pub const RECORDING_LIMIT: f64 = 4.0;
 
@@ -288,10 +288,10 @@ fn writer_rates(scenario: &Scenario) -> Rates {
 }
 
 /// The rate of the rows, and every how many ticks there is one: every tick, so that what is measured does not depend on
-/// `record.rate`; at `record.rate` where that would not fit in memory.
+/// `record.rate`; at `record.rate` where that would be too much.
 ///
 /// # Errors
-/// [`BuildError::TooMuchMemory`] when that does not fit, either.
+/// [`BuildError::RecordingTooLarge`] when that does not fit, either.
 fn recorded_rate(scenario: &Scenario, channels: usize, ticks: u64, duration: f64) -> Result<(Rate, u32), BuildError> {
     let (base_rate, rate) = (scenario.base_rate, scenario.record.rate);
     let gigabytes = |every: u32| channels as f64 * ticks.div_ceil(u64::from(every)) as f64 * 8e-9;
@@ -303,7 +303,7 @@ fn recorded_rate(scenario: &Scenario, channels: usize, ticks: u64, duration: f64
     if gigabytes <= RECORDING_LIMIT {
         return Ok((rate, every));
     }
-    Err(BuildError::TooMuchMemory { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
+    Err(BuildError::RecordingTooLarge { channels, rate: rate.hertz(), duration, gigabytes, limit: RECORDING_LIMIT })
 }
 
 fn thinned_event(rate: Rate, duration: f64) -> Event {
@@ -328,6 +328,6 @@ mod tests {
         let rate_of = |seconds: u32| recorded_rate(&scenario, 40, 16_000 * u64::from(seconds), f64::from(seconds));
         assert_eq!(rate_of(780).map(|(rate, every)| (rate.hertz(), every)), Ok((16_000, 1)));
         assert_eq!(rate_of(790).map(|(rate, every)| (rate.hertz(), every)), Ok((1_000, 16)));
-        assert!(matches!(rate_of(13_000), Err(BuildError::TooMuchMemory { rate: 1_000, .. })));
+        assert!(matches!(rate_of(13_000), Err(BuildError::RecordingTooLarge { rate: 1_000, .. })));
     }
 }

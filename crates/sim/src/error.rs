@@ -174,21 +174,21 @@ pub enum BuildError {
         /// Last instant of the run (s).
         end_of_run: f64,
     },
-    /// The recording would not fit in memory.
+    /// The recording would be larger than one may be.
     #[error(
         "recording {channels} channels at {rate} Hz for {duration} s takes {gigabytes:.1} GB, more than {limit} GB; \
          lower `record.rate` or name fewer `record.channels`"
     )]
-    TooMuchMemory {
+    RecordingTooLarge {
         /// Channels.
         channels: usize,
         /// Recording rate (Hz).
         rate: u32,
         /// Length of the run (s).
         duration: f64,
-        /// Memory it would take.
+        /// What it would take (GB).
         gigabytes: f64,
-        /// Memory that is granted.
+        /// What it may take (GB).
         limit: f64,
     },
     /// A channel that the recording does not have.

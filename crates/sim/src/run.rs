@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// Everything up to the end, or up to the failure: every tick, whatever `record.rate` says ([`thinned`](crate::thinned)),
-    /// unless that would not fit in memory.
+    /// unless that would be more than a recording may have.
     pub recording: Recording,
     /// Why the run ended early.
     pub failure: Option<Failure>,

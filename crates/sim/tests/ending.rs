@@ -118,7 +118,7 @@ fn a_recording_that_does_not_fit_is_refused() {
     let mut scenario = weak();
     scenario.duration = Some(0.5 * LONGEST_RUN);
     let refusal = Bench::new(&scenario, &Exact).err();
-    assert!(matches!(refusal, Some(BuildError::TooMuchMemory { .. })), "{refusal:?}");
+    assert!(matches!(refusal, Some(BuildError::RecordingTooLarge { .. })), "{refusal:?}");
 }
 
 #[test]

@@ -123,7 +123,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
         BuildError::UnknownChannel { .. } => "record.channels".to_owned(),
         BuildError::IdleDisturbance { index, .. } => format!("disturbance.{index}"),
         BuildError::TooLong { step: None, .. } | BuildError::TooManyTicks { .. } => "run.duration".to_owned(),
-        BuildError::TooMuchMemory { .. } => "record".to_owned(),
+        BuildError::RecordingTooLarge { .. } => "record".to_owned(),
         BuildError::Rate(_) => "drive".to_owned(),
         BuildError::Objects(_) => "drive.objects".to_owned(),
         BuildError::Units(_) => "bus.units".to_owned(),
