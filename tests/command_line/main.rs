@@ -29,6 +29,7 @@ mod plan_points;
 mod plc;
 mod run;
 mod standard_input;
+mod sweep;
 mod timing;
 #[cfg(unix)]
 mod view;

@@ -1,9 +1,11 @@
 //! Arguments.
 mod choice;
 mod mistakes;
+mod suite;
 
 pub(crate) use choice::choice;
 pub(crate) use mistakes::parse;
+pub(crate) use suite::{FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
@@ -38,6 +40,11 @@ const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the
                          A run with signals (of function blocks, axis, link and drive) leaves a timing diagram beside \
                          its recording, RUN.timing.svg; servobench timing draws other stretches of it.";
 
+const AFTER_SWEEP: &str = "A sweep file names a scenario and the keys that vary: values or a range one after the other, or a distribution \
+                           that is drawn from (tolerances). docs/sweep.md describes it. Each run is a row of sweep.csv \
+                           and sweep.parquet; servobench run with the keys of a row as --set gives its very numbers.\n\n\
+                           Call sweep files NAME.sweep.toml: a folder of scenarios may then hold them too.";
+
 const AFTER_COMPLETIONS: &str = "For bash: servobench completions bash > ~/.local/share/bash-completion/completions/servobench. For fish: … fish > \
                                  ~/.config/fish/completions/servobench.fish. For zsh: into _servobench in a folder of $fpath. A shell \
                                  that is started afterwards reads it.";
@@ -50,10 +57,13 @@ pub(crate) enum Command {
     /// Run scenarios and judge them; without a file, run the demo.
     #[command(after_help = AFTER_RUN)]
     Run(RunArgs),
+    /// Run a scenario over many values of its keys, and say what they cost: tables, heat maps, the Pareto front.
+    #[command(after_help = AFTER_SWEEP)]
+    Sweep(SweepArgs),
     /// Validate scenario files without running them: every mistake in one go.
     Check(CheckArgs),
-    /// Print the JSON Schema of a scenario file.
-    Schema,
+    /// Print the JSON Schema of a scenario or sweep file.
+    Schema(SchemaArgs),
     /// Plan a move of any family: duration, segments, peaks against limits.
     #[command(after_help = PLAN_EXAMPLES)]
     Plan(Box<PlanArgs>),
@@ -181,61 +191,6 @@ pub(crate) struct FmuExportArgs {
     pub(crate) output: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct RunArgs {
-    /// Scenario files, or folders of them; - is standard input.
-    pub(crate) scenarios: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) with: OverrideArgs,
-    /// Folder for results.json and the recordings [default: servobench-out; of the demo servobench-out/demo].
-    #[arg(long, value_name = "DIR", value_parser = file())]
-    pub(crate) out: Option<PathBuf>,
-    /// Run what is left of the suite in this folder, which was ended before its time; scenarios and options are those that it was
-    /// begun with.
-    #[arg(long, value_name = "DIR", value_parser = file(),
-          conflicts_with_all = ["scenarios", "overrides", "root", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
-    pub(crate) resume: Option<PathBuf>,
-    /// Engine to use instead of the scenarios' own; may be given several times.
-    #[arg(long, value_name = "NAME", value_parser = engine())]
-    pub(crate) engine: Vec<EngineName>,
-    /// Recordings that stay, with their timing diagrams and .rrd.
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Keep::All)]
-    pub(crate) keep: Keep,
-    /// Write each recording that stays for the Rerun viewer too.
-    #[arg(long)]
-    pub(crate) rrd: bool,
-    /// Write a JUnit report.
-    #[arg(long, value_name = "FILE", value_parser = file())]
-    pub(crate) junit: Option<PathBuf>,
-    /// Scenarios to run at once [default: one for each core].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(crate) jobs: Option<u16>,
-    /// End the process of an isolated engine that makes no progress for this long.
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
-    pub(crate) worker_timeout: Duration,
-    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    pub(crate) time_limit: Option<Duration>,
-    #[command(flatten)]
-    pub(crate) memory: MemoryArgs,
-    /// Print failures only, a line each, and the count.
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-    /// Show all metrics of every run, as of a single one.
-    #[arg(long, short, conflicts_with = "quiet")]
-    pub(crate) verbose: bool,
-    #[command(flatten)]
-    pub(crate) fmus: FmuTrustArgs,
-}
-
-/// Which code of FMUs may run where.
-#[derive(Debug, Clone, Copy, Args)]
-pub(crate) struct FmuTrustArgs {
-    /// Let FMUs whose scenario says isolation = "none" run inside of servobench, with all that it may do and nothing that contains them.
-    #[arg(long)]
-    pub(crate) allow_unisolated_fmus: bool,
-}
-
 /// The arguments of this process, for a command that is to be given again; none when one of them is no text.
 pub(crate) fn command_line() -> Vec<String> {
     let words = std::env::args_os().skip(1).map(|word| word.into_string().ok());
@@ -248,17 +203,6 @@ pub(crate) fn of(words: &[String]) -> Option<Command> {
     Cli::try_parse_from(program.chain(words.iter().map(String::as_str))).ok().map(|cli| cli.command)
 }
 
-/// Which recordings a run leaves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Keep {
-    /// Those of all runs.
-    All,
-    /// Those of runs that failed or ended with an error; an unjudged one has nothing that failed.
-    Failed,
-    /// No recording, only results.json.
-    None,
-}
-
 /// How scenario files are read.
 #[derive(Debug, Args)]
 pub(crate) struct OverrideArgs {
@@ -269,15 +213,6 @@ pub(crate) struct OverrideArgs {
     /// Folder that the scenario and every file it names must be in [default: the nearest folder above it with a .git, or else its own].
     #[arg(long, value_name = "DIR", value_parser = file())]
     pub(crate) root: Option<PathBuf>,
-}
-
-/// Memory of runs.
-#[derive(Debug, Args)]
-pub(crate) struct MemoryArgs {
-    /// Memory of all recordings under way together, and of each process that is isolated, as "2 GB" [default: half of what machine and
-    /// control group have].
-    #[arg(long, value_name = "SIZE", value_parser = memory)]
-    pub(crate) memory_limit: Option<u64>,
 }
 
 #[derive(Debug, Args)]
@@ -399,6 +334,22 @@ pub(crate) struct CompletionsArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// The kind of file.
+    #[arg(value_enum, default_value_t = SchemaOf::Scenario)]
+    pub(crate) of: SchemaOf,
+}
+
+/// A kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SchemaOf {
+    /// A scenario.
+    Scenario,
+    /// A sweep.
+    Sweep,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ManArgs {
     /// Write the pages of the program and of each command into this folder.
     #[arg(long, value_name = "DIR", value_parser = file())]
@@ -482,7 +433,7 @@ mod tests {
         for (name, engine, _) in EngineName::ALL {
             let cli = Cli::try_parse_from(["servobench", "run", "--engine", name]).unwrap();
             let Command::Run(args) = cli.command else { panic!("run") };
-            assert_eq!(args.engine, [*engine]);
+            assert_eq!(args.suite.engine, [*engine]);
         }
     }
 
@@ -490,7 +441,7 @@ mod tests {
     fn times_have_units() {
         let timeout = |text| Cli::try_parse_from(["servobench", "run", "--worker-timeout", text]);
         let Command::Run(args) = timeout("90 s").unwrap().command else { panic!("run") };
-        assert_eq!(args.worker_timeout, Duration::from_secs(90));
+        assert_eq!(args.suite.worker_timeout, Duration::from_secs(90));
         for wrong in ["90", "90 m", "0 s", "-1 s", "1e30 s"] {
             assert!(timeout(wrong).is_err(), "{wrong}");
         }

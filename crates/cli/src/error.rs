@@ -63,6 +63,14 @@ pub(crate) enum CliError {
     #[error("the suite in `{}` cannot go on: its scenarios, a file that they name, or the program are not those it was begun \
              with; run it again", .0.display())]
     OtherSuite(PathBuf),
+    #[error("name a sweep file")]
+    NoSweep,
+    #[error(
+        "no point of the sweep that was tried ({checked}) is a valid scenario, not even the first, with {point}:\n{why}"
+    )]
+    NoValidPoint { checked: usize, point: String, why: String },
+    #[error("`{}` holds a suite of `{command}`: resume it with `servobench {command} --resume`", .folder.display())]
+    OtherCommand { folder: PathBuf, command: &'static str },
     #[error("--resume: this suite was begun with `--allow-unisolated-fmus`; give it again if you trust its FMUs")]
     TrustAgain,
     #[error("--rrd: with `--keep none` no recording is left for the viewer; leave one of them out")]
@@ -185,6 +193,9 @@ impl CliError {
             | Self::NothingToResume(_)
             | Self::Folder(FolderError::NotOurs { .. })
             | Self::OtherSuite(_)
+            | Self::OtherCommand { .. }
+            | Self::NoValidPoint { .. }
+            | Self::NoSweep
             | Self::TrustAgain
             | Self::NothingForTheViewer
             | Self::ReadRecording(_)

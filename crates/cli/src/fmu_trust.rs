@@ -27,7 +27,8 @@ impl FmuTrust {
     /// What `command` allows.
     pub(crate) const fn of(command: &Command) -> Self {
         match command {
-            Command::Run(args) => Self::running(args.fmus),
+            Command::Run(args) => Self::running(args.suite.fmus),
+            Command::Sweep(args) => Self::running(args.suite.fmus),
             Command::Compare(args) => Self::running(args.fmus),
             Command::Check(CheckArgs { load_fmus: true, fmus, .. }) => Self::running(*fmus),
             _ => Self::Describe,

@@ -17,6 +17,7 @@ mod outputs;
 mod progress;
 mod resources;
 mod sources;
+mod suite;
 mod workers;
 
 use args::Command;
@@ -42,8 +43,9 @@ fn dispatch(command: &Command) -> Exit {
     FmuTrust::of(command).settle();
     let done = match command {
         Command::Run(args) => commands::run(args),
+        Command::Sweep(args) => commands::sweep(args),
         Command::Check(args) => commands::check(args),
-        Command::Schema => commands::schema(),
+        Command::Schema(args) => commands::schema(args),
         Command::Plan(args) => commands::plan(args),
         Command::Compare(args) => commands::compare(args),
         Command::View(args) => commands::view(args),

@@ -13,7 +13,8 @@ const STEPS: f64 = 1000.0;
 /// Shows how far the runs are; on standard error, so that results can be piped.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    lines: bool,
+    /// Runs from one line to the next one; 0: there are none.
+    lines: u64,
     quiet: bool,
     done: AtomicU64,
     runs: usize,
@@ -34,7 +35,12 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_prefix(format!("0/{runs}"));
-        Self { bar, lines: !quiet && !terminal, quiet, done: AtomicU64::new(0), runs, start: Instant::now() }
+        Self { bar, lines: u64::from(!quiet && !terminal), quiet, done: AtomicU64::new(0), runs, start: Instant::now() }
+    }
+
+    /// The same with a line for each percent of the runs and not for each of them.
+    pub(crate) fn by_percent(self) -> Self {
+        Self { lines: self.lines * (self.runs as u64).div_ceil(100), ..self }
     }
 
     /// A listener for the run `id`: is told the share that is done, from 0 to 1. A run that takes longer than `slow` is named, and again
@@ -69,7 +75,8 @@ impl Progress {
     pub(crate) fn ended(&self, id: &str, words: &str) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_prefix(format!("{done}/{}", self.runs));
-        if self.lines {
+        let is_told = self.lines > 0 && (done.is_multiple_of(self.lines) || done == self.runs as u64);
+        if is_told {
             let elapsed = self.start.elapsed();
             let left = left(elapsed, done, self.runs as u64);
             say(&format!("[{done}/{}] {id}: {words} ({}{left})\n", self.runs, seconds(elapsed)));

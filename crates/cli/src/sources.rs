@@ -7,7 +7,7 @@ use crate::fmu_trust::trusted;
 use crate::outputs::{reads, reads_stdin};
 use miette::Severity;
 use servobench_files::FileId;
-use servobench_scenario::{LoadError, Loaded, MOST_OF_A_SCENARIO, load_within, parse_within, root_of};
+use servobench_scenario::{LoadError, Loaded, MOST_OF_A_SCENARIO, Override, load_within, parse_within, root_of};
 use servobench_suite::Source;
 use std::collections::HashSet;
 use std::ffi::OsStr;
@@ -20,6 +20,9 @@ use std::sync::OnceLock;
 const STDIN: &str = "-";
 /// What a scenario from there is called, and its text in messages.
 const NAME_OF_STDIN: &str = "stdin";
+
+/// How the names of sweep files end, which stand beside scenarios.
+pub(crate) const SWEEP: &str = ".sweep.toml";
 
 /// What came in on standard input, or is taken to have: it can be read once.
 static TEXT_OF_STDIN: OnceLock<String> = OnceLock::new();
@@ -68,6 +71,11 @@ pub(crate) fn files(paths: &[PathBuf], root: Option<&Path>) -> Result<Vec<PathBu
     Ok(files)
 }
 
+/// Whether the file at `path` is a sweep, by its name.
+fn is_sweep(path: &Path) -> bool {
+    path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.ends_with(SWEEP))
+}
+
 /// Folders that were searched: a link may lead back to one of them.
 struct Searched {
     /// Nothing outside is searched.
@@ -97,7 +105,7 @@ impl Searched {
                         "`{entry}` is not searched: it leads out of `{root}`; `--root DIR` allows a folder that holds both\n"
                     ));
                 }
-            } else if entry.extension() == Some(OsStr::new("toml")) {
+            } else if entry.extension() == Some(OsStr::new("toml")) && !is_sweep(&entry) {
                 files.push(entry);
             }
         }
@@ -129,10 +137,15 @@ pub(crate) struct Unusable {
 impl Unusable {
     /// What is wrong with it, a line each.
     pub(crate) fn reasons(&self) -> Vec<String> {
-        match &self.error {
-            LoadError::Invalid(invalid) => invalid.lines(),
-            error @ LoadError::Read { .. } => vec![error.to_string()],
-        }
+        reasons(&self.error)
+    }
+}
+
+/// Why a scenario could not be loaded, a line for each mistake.
+pub(crate) fn reasons(error: &LoadError) -> Vec<String> {
+    match error {
+        LoadError::Invalid(invalid) => invalid.lines(),
+        error @ LoadError::Read { .. } => vec![error.to_string()],
     }
 }
 
@@ -164,6 +177,22 @@ pub(crate) fn each(
 /// A file that was read before, once more: it was noted, and what is doubtful in it was said.
 pub(crate) fn again(path: &Path, with: &OverrideArgs) -> Result<Source, LoadError> {
     parsed(path, with).and_then(trusted).map(source)
+}
+
+/// The scenario at `path`, whose text is at hand, with the values of `overrides`; it and all that it names are below `root`.
+pub(crate) fn varied(path: &Path, text: &str, overrides: &[Override], root: &Path) -> Result<Source, LoadError> {
+    let mut loaded = parse_within(&path.display().to_string(), text, path.parent(), overrides, Some(root))?;
+    loaded.scenario.path = Some(path.to_owned());
+    trusted(loaded).map(source)
+}
+
+/// The same from its file, when it is read for the first time: it is noted, and what is doubtful in it is said.
+pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<Source, LoadError> {
+    reads(path, format_args!("the scenario {}", path.display()));
+    let loaded = load_within(path, overrides, Some(root)).and_then(trusted)?;
+    note_files(&loaded, path, Some(root));
+    warn(&loaded);
+    Ok(source(loaded))
 }
 
 fn source(loaded: Loaded) -> Source {

@@ -177,7 +177,7 @@ mod tests {
     fn timed(results: Results, times: [u32; 7]) -> Kept {
         let unfinished =
             |run: &RunResult| Unfinished { name: run.name.clone(), file: None, engine: run.engine.clone() };
-        let mut kept = Kept::new(None, results.scenarios.iter().map(unfinished).collect());
+        let mut kept = Kept::new(None, results.scenarios.iter().map(unfinished).collect::<Vec<_>>());
         for ((index, result), time) in results.scenarios.into_iter().enumerate().zip(times) {
             kept.note(Finished { index, seconds: f64::from(time) * 1e-3, result }).unwrap();
         }

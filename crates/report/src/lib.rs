@@ -30,4 +30,4 @@ pub use plan::{PlannedMove, PointChoice, Unsent};
 pub use style::{Style, painted, shown};
 pub use text::{elided, wrapped};
 pub use timing::{TimingOptions, timing_diagram};
-pub use verdict_table::{brief, verdict_table};
+pub use verdict_table::{brief, run_count, verdict_table};

@@ -72,7 +72,7 @@ pub fn verdict_table(runs: &dyn Runs, style: Style, all_metrics: bool) -> impl I
     for (k, part) in wrapped(&overridden(runs), style.width.saturating_sub(2)).iter().enumerate() {
         line(&mut end, &format!("{}{part}", if k == 0 { "" } else { "  " }));
     }
-    line(&mut end, &summary(runs, style));
+    line(&mut end, &run_count(runs, style));
     once(start).chain(rows).chain(once(Ok(end)))
 }
 
@@ -120,7 +120,7 @@ pub fn brief(runs: &dyn Runs) -> impl Iterator<Item = Part> {
     if !overridden.is_empty() {
         line(&mut end, &overridden);
     }
-    line(&mut end, &summary(runs, Style::default()));
+    line(&mut end, &run_count(runs, Style::default()));
     rows.chain(once(Ok(end)))
 }
 
@@ -198,7 +198,9 @@ impl Columns {
     }
 }
 
-fn summary(runs: &dyn Runs, style: Style) -> String {
+/// How many runs there are, and what came of them: `31 runs: 30 passed, 1 failed`.
+#[must_use]
+pub fn run_count(runs: &dyn Runs, style: Style) -> String {
     let parts = ORDER.into_iter().map(|outcome| (outcome, runs.count_of(outcome))).filter(|(_, count)| *count > 0);
     let mut parts: Vec<_> =
         parts.map(|(outcome, count)| style.paint(shown(outcome).1, &format!("{count} {}", outcome.word()))).collect();

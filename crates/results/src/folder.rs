@@ -18,6 +18,17 @@ pub const JOURNAL: &str = "results.journal";
 /// What `compare` leaves beside its recording.
 pub const COMPARISON: &str = "comparison.json";
 
+/// The table that `sweep` leaves, for spreadsheets.
+pub const TABLE_CSV: &str = "sweep.csv";
+/// The same, for data tools.
+pub const TABLE_PARQUET: &str = "sweep.parquet";
+/// The drawing of what varies against what was measured that `sweep` leaves.
+pub const SWEEP_MAP: &str = "sweep.svg";
+/// The drawing of time against vibration that `sweep` leaves.
+pub const SWEEP_FRONT: &str = "sweep-front.svg";
+/// All that `sweep` leaves beside results and recordings.
+pub const OF_A_SWEEP: [&str; 4] = [TABLE_CSV, TABLE_PARQUET, SWEEP_MAP, SWEEP_FRONT];
+
 /// Ends of the names of files that a run may leave.
 const KINDS: [&str; 3] = [".parquet", ".timing.svg", ".rrd"];
 
@@ -126,6 +137,9 @@ impl Folder {
         let mut former = Former { lists: vec![list], ..Former::default() };
         if list == RESULTS {
             former.lists.push(JOURNAL);
+            if path.exists() {
+                former.lists.extend(OF_A_SWEEP);
+            }
             if let Ok(file) = servobench_files::open(&self.journal(), u64::MAX)
                 && let Ok(suite) = journal::read(file, &self.journal(), |one, _| {
                     names.extend(one.result.files.into_iter().filter(|name| is_left_by_a_run(name)));

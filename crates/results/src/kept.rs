@@ -1,9 +1,9 @@
 //! The results of a suite as they come.
 use crate::journal::{Finished, Journal, JournalError, Place, Suite};
+use crate::planned::Planned;
 use crate::results::{Outcome, Unfinished};
 use crate::run::RunResult;
 use crate::runs::{RunHead, Runs};
-use indexmap::IndexSet;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,10 +13,11 @@ use std::time::Duration;
 #[derive(Debug)]
 pub struct Kept {
     journal: Option<Journal>,
-    planned: Vec<Unfinished>,
+    planned: Planned,
     /// By the place of the run in the suite.
     ended: BTreeMap<usize, Ended>,
-    overrides: IndexSet<String>,
+    /// Those that every run has until now; `None`: there was none.
+    overrides: Option<Vec<String>>,
 }
 
 /// What is known of a run that ended.
@@ -50,8 +51,9 @@ impl Ended {
 impl Kept {
     /// Those of the runs `planned`, none of which has ended. Without a journal they are in memory.
     #[must_use]
-    pub fn new(journal: Option<Journal>, planned: Vec<Unfinished>) -> Self {
-        Self { journal, planned, ended: BTreeMap::new(), overrides: IndexSet::new() }
+    pub fn new(journal: Option<Journal>, planned: impl Into<Planned>) -> Self {
+        let planned = planned.into();
+        Self { journal, planned, ended: BTreeMap::new(), overrides: None }
     }
 
     /// Those that the journal at `path` holds, and what suite it is of. Only runs that `counts` have ended; which runs there are is still
@@ -60,27 +62,28 @@ impl Kept {
     /// # Errors
     /// [`JournalError`]
     pub fn resume(path: PathBuf, counts: impl Fn(&Finished) -> bool) -> Result<(Self, Suite), JournalError> {
-        let (mut ended, mut overrides) = (BTreeMap::new(), IndexSet::new());
+        let (mut ended, mut overrides) = (BTreeMap::new(), None);
         let (journal, suite) = Journal::resume(path, |finished, place| {
             if counts(&finished) {
-                overrides.extend(finished.result.overrides.iter().cloned());
+                keep_common(&mut overrides, &finished.result);
                 ended.insert(finished.index, Ended::new(finished, Some(place)));
             } else {
                 ended.remove(&finished.index);
             }
         })?;
-        Ok((Self { journal: Some(journal), planned: Vec::new(), ended, overrides }, suite))
+        Ok((Self { journal: Some(journal), planned: Planned::default(), ended, overrides }, suite))
     }
 
     /// The runs are these.
-    pub fn plan(&mut self, planned: Vec<Unfinished>) {
+    pub fn plan(&mut self, planned: impl Into<Planned>) {
+        let planned = planned.into();
         self.ended.retain(|index, _| *index < planned.len());
         self.planned = planned;
     }
 
     /// The runs, ended or not.
     #[must_use]
-    pub fn planned(&self) -> &[Unfinished] {
+    pub const fn planned(&self) -> &Planned {
         &self.planned
     }
 
@@ -102,11 +105,7 @@ impl Kept {
     /// [`JournalError`], when the journal does not hold it: it is kept in memory then.
     pub fn note(&mut self, finished: Finished) -> Result<(), JournalError> {
         let noted = self.journal.as_mut().map(|journal| journal.append(&finished)).transpose();
-        for one in &finished.result.overrides {
-            if !self.overrides.contains(one) {
-                self.overrides.insert(one.clone());
-            }
-        }
+        keep_common(&mut self.overrides, &finished.result);
         let (place, refusal) = noted.map_or_else(|error| (None, Some(error)), |place| (place, None));
         self.ended.insert(finished.index, Ended::new(finished, place));
         refusal.map_or(Ok(()), Err)
@@ -118,6 +117,14 @@ impl Kept {
     /// [`JournalError::Io`]
     pub fn sync(&mut self) -> Result<(), JournalError> {
         self.journal.as_mut().map_or(Ok(()), Journal::sync)
+    }
+}
+
+/// Leaves those overrides that `run` has too.
+fn keep_common(overrides: &mut Option<Vec<String>>, run: &RunResult) {
+    match overrides {
+        None => *overrides = Some(run.overrides.clone()),
+        Some(all) => all.retain(|one| run.overrides.contains(one)),
     }
 }
 
@@ -141,12 +148,12 @@ impl Runs for Kept {
     }
 
     fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_> {
-        let planned = self.planned.iter().enumerate();
-        Box::new(planned.filter(|(index, _)| !self.has(*index)).map(|(_, planned)| planned))
+        let missing = (0..self.planned.len()).filter(|index| !self.has(*index));
+        Box::new(missing.filter_map(|index| self.planned.get(index)))
     }
 
     fn overrides(&self) -> Vec<&str> {
-        self.overrides.iter().map(String::as_str).collect()
+        self.overrides.iter().flatten().map(String::as_str).collect()
     }
 }
 

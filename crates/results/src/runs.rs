@@ -19,7 +19,7 @@ pub trait Runs {
     /// The runs that did not end, in that order.
     fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_>;
 
-    /// Keys with another value than the files give them, each once: `setpoint.jerk=200 m/s3`.
+    /// Keys that have another value than the files give them in every run: `setpoint.jerk=200 m/s3`.
     fn overrides(&self) -> Vec<&str>;
 }
 
@@ -77,12 +77,10 @@ impl Runs for Results {
     }
 
     fn overrides(&self) -> Vec<&str> {
-        let mut all: Vec<&str> = Vec::new();
-        for one in self.scenarios.iter().flat_map(|run| &run.overrides) {
-            if !all.contains(&one.as_str()) {
-                all.push(one);
-            }
-        }
+        let mut runs = self.scenarios.iter();
+        let first = runs.next().map(|run| run.overrides.iter().map(String::as_str)).into_iter().flatten();
+        let mut all: Vec<&str> = first.collect();
+        runs.for_each(|run| all.retain(|one| run.overrides.iter().any(|other| other == one)));
         all
     }
 }

@@ -59,6 +59,6 @@ pub use scenario::{
     InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc, Record, Requirements,
     Scenario, Step,
 };
-pub use schema::json_schema;
+pub use schema::{json_schema, sweep_schema};
 pub use source::{SourceId, Sources};
 pub use sweep_file::{SweepRequest, load_sweep, parse_sweep};

@@ -1,14 +1,24 @@
-//! JSON Schema of a scenario file, from the description of its tables.
+//! JSON Schemas of scenario and sweep files, from the description of their tables.
 use crate::field::Field;
 use crate::file::File;
+use crate::sweep_file::SweepFile;
 use serde_json::{Value as Json, json};
 
 /// JSON Schema (draft 7, which TOML editors understand) of a scenario file. What only `check` can judge, dimensions
 /// and combinations, it leaves open.
 #[must_use]
 pub fn json_schema() -> Json {
-    let mut schema = File::schema(&());
+    titled(File::schema(&()), "servobench scenario")
+}
+
+/// The same of a sweep file.
+#[must_use]
+pub fn sweep_schema() -> Json {
+    titled(SweepFile::schema(&()), "servobench sweep")
+}
+
+fn titled(mut schema: Json, title: &str) -> Json {
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
-    schema["title"] = json!("servobench scenario");
+    schema["title"] = json!(title);
     schema
 }

@@ -26,6 +26,8 @@ use std::path::{Path, PathBuf};
 /// A sweep, as its file asks for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepRequest {
+    /// The file, as it was read.
+    pub text: String,
     /// The scenario that is varied.
     pub scenario: PathBuf,
     /// What it shows, in a sentence; empty where the file does not say.
@@ -63,6 +65,8 @@ table! {
     pub(crate) struct Vary requires ["key"] {
         /// The key of the scenario, as `--set` has it: "setpoint.jerk", "program[0].move_to".
         key: String = (),
+        /// Other keys that have the same value in each run: "measure.mode".
+        also: OneOrMany<String> = (),
         /// The values that it takes one after the other.
         values: OneOrMany<Amount> = (),
         /// Values from one end to the other, both among them.
@@ -228,7 +232,7 @@ pub fn parse_sweep(name: &str, text: &str, folder: &Path) -> Result<SweepRequest
     let broken: Vec<(SourceId, Bytes<usize>)> = parsed.broken.drain(..).map(|line| (id, line)).collect();
     let root = Node { value: TreeValue::Table(parsed.table), span: Span::new(id, &(0..0)) };
     let request =
-        SweepFile::decode("", &root, &(), &mut report).and_then(|file| request(&file, folder, &mut report).ok());
+        SweepFile::decode("", &root, &(), &mut report).and_then(|file| request(&file, text, folder, &mut report).ok());
     let diagnostics = all_errors(syntax, &mut report, &broken);
     match request {
         Some(request) if diagnostics.is_empty() => Ok(request),
@@ -236,21 +240,35 @@ pub fn parse_sweep(name: &str, text: &str, folder: &Path) -> Result<SweepRequest
     }
 }
 
-fn request(file: &SweepFile, folder: &Path, report: &mut Report) -> Result<SweepRequest, Reported> {
+fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> Result<SweepRequest, Reported> {
     let scenario = file.scenario.given().map(|path| folder.join(path));
     let (axes, drawn) = varied(file, report)?;
     let draws = draws(file, drawn, report)?;
     let arrangement = file.arrangement.optional()?.copied().unwrap_or_default();
     let place = file.vary.span().unwrap_or(file.span);
     let sweep = Sweep::new(axes, arrangement, draws).map_err(|error| refuse(report, place, &error))?;
+    let sweep = followed(sweep, file, report)?;
     let all = |list: Option<&OneOrMany<WantedMetric>>| list.map(|list| list.0.iter().map(|at| at.value.0).collect());
     Ok(SweepRequest {
+        text: text.to_owned(),
         scenario: scenario.ok_or(Reported)?,
         description: file.description.optional()?.cloned().unwrap_or_default(),
         engines: file.engine.optional()?.map(|list| list.0.iter().map(|at| at.value).collect()).unwrap_or_default(),
         metrics: all(file.metrics.optional()?).unwrap_or_default(),
         sweep,
     })
+}
+
+/// With the keys that follow others.
+fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<Sweep, Reported> {
+    for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
+        if let (Some(key), Some(also)) = (vary.key.given(), vary.also.optional()?) {
+            let others: Vec<String> = also.0.iter().map(|at| at.value.clone()).collect();
+            let place = vary.also.span().unwrap_or(file.span);
+            sweep = sweep.followed(key, &others).map_err(|error| refuse(report, place, &error))?;
+        }
+    }
+    Ok(sweep)
 }
 
 fn refuse(report: &mut Report, place: Span, error: &SweepError) -> Reported {

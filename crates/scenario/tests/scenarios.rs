@@ -1,9 +1,11 @@
 //! The files of the repository: every scenario and model loads, and the schema and its reference describe them.
 //!
-//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` writes `docs/scenario.schema.json` and the tables of
-//! `docs/scenario.md` anew.
+//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` writes `docs/scenario.schema.json`, `docs/sweep.schema.json` and the
+//! tables of `docs/scenario.md` and `docs/sweep.md` anew.
 use serde_json::{Value as Json, json};
-use servobench_scenario::{Actuator, AxisMechanics, Step, embedded_demo, embedded_models, json_schema, load, parse};
+use servobench_scenario::{
+    Actuator, AxisMechanics, Step, embedded_demo, embedded_models, json_schema, load, parse, sweep_schema,
+};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -24,11 +26,16 @@ fn scenarios() -> Vec<PathBuf> {
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
     let mut all: Vec<PathBuf> = files
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml") && !is_sweep(path))
         .collect();
     all.sort();
     assert!(all.len() >= 14, "{all:?}");
     all
+}
+
+/// Sweep files stand beside the scenarios that they vary.
+fn is_sweep(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(".sweep.toml")
 }
 
 #[test]
@@ -155,13 +162,15 @@ fn modes_of_the_published_axes() {
 }
 
 #[test]
-fn the_schema_in_the_repository_is_that_of_the_program() {
-    let path = repository().join("docs/scenario.schema.json");
-    if std::env::var_os(WRITE_DOCS).is_some() {
-        std::fs::write(&path, serde_json::to_string_pretty(&json_schema()).unwrap() + "\n").unwrap();
+fn the_schemas_in_the_repository_are_those_of_the_program() {
+    for (file, schema) in [("scenario", json_schema()), ("sweep", sweep_schema())] {
+        let path = repository().join(format!("docs/{file}.schema.json"));
+        if std::env::var_os(WRITE_DOCS).is_some() {
+            std::fs::write(&path, serde_json::to_string_pretty(&schema).unwrap() + "\n").unwrap();
+        }
+        let written: Json = serde_json::from_str(&read(&path)).unwrap();
+        assert!(written == schema, "{file}: run the tests of this crate with {WRITE_DOCS}=1");
     }
-    let written: Json = serde_json::from_str(&read(&path)).unwrap();
-    assert!(written == json_schema(), "run the tests of this crate with {WRITE_DOCS}=1");
 }
 
 #[test]
@@ -225,20 +234,24 @@ const BEGIN: &str = "<!-- generated: keys -->\n";
 const END: &str = "<!-- end of generated keys -->\n";
 
 #[test]
-fn the_reference_lists_every_key() {
-    let path = repository().join("docs/scenario.md");
-    let text = read(&path);
-    let (before, rest) = text.split_once(BEGIN).unwrap();
-    let (written, after) = rest.split_once(END).unwrap();
-    let mut tables = String::new();
-    describe("", &json_schema(), &mut tables);
-    describe_conditions(&json_schema(), &mut tables);
-    describe_blocks(&json_schema(), &mut tables);
-    describe_channels(&json_schema(), &mut tables);
-    if std::env::var_os(WRITE_DOCS).is_some() {
-        std::fs::write(&path, format!("{before}{BEGIN}{tables}{END}{after}")).unwrap();
-    } else {
-        assert!(written == tables, "run the tests of this crate with {WRITE_DOCS}=1");
+fn the_references_list_every_key() {
+    let (scenario, sweep) = (json_schema(), sweep_schema());
+    let (mut of_scenarios, mut of_sweeps) = (String::new(), String::new());
+    describe("", &scenario, &mut of_scenarios);
+    describe_conditions(&scenario, &mut of_scenarios);
+    describe_blocks(&scenario, &mut of_scenarios);
+    describe_channels(&scenario, &mut of_scenarios);
+    describe("", &sweep, &mut of_sweeps);
+    for (file, tables) in [("scenario", of_scenarios), ("sweep", of_sweeps)] {
+        let path = repository().join(format!("docs/{file}.md"));
+        let text = read(&path);
+        let (before, rest) = text.split_once(BEGIN).unwrap();
+        let (written, after) = rest.split_once(END).unwrap();
+        if std::env::var_os(WRITE_DOCS).is_some() {
+            std::fs::write(&path, format!("{before}{BEGIN}{tables}{END}{after}")).unwrap();
+        } else {
+            assert!(written == tables, "{file}: run the tests of this crate with {WRITE_DOCS}=1");
+        }
     }
 }
 
@@ -346,6 +359,9 @@ fn kind(value: &Json) -> String {
             let more = if all.iter().any(|one| one["type"] == "array") { ", or a list" } else { "" };
             return if kinds.len() > 12 { format!("a name{more}") } else { format!("{}{more}", kinds.join(", ")) };
         }
+    }
+    if value["enum"].is_array() {
+        return "a name".into();
     }
     match value["type"].as_str().unwrap() {
         "boolean" => "`true`, `false`".into(),

@@ -42,6 +42,8 @@ pub struct Sweep {
     arrangement: Arrangement,
     draws: Option<Draws>,
     points: usize,
+    /// Keys that have the value of another one: that one, and the follower.
+    followers: Vec<(String, String)>,
 }
 
 impl Sweep {
@@ -63,13 +65,69 @@ impl Sweep {
         let draws_of_each = draws.as_ref().map_or(1, |draws| draws.count() as usize);
         let points = combinations.checked_mul(draws_of_each).filter(|points| *points <= MOST_POINTS);
         let points = points.ok_or(SweepError::TooMany { most: MOST_POINTS })?;
-        Ok(Self { axes, arrangement, draws, points })
+        Ok(Self { axes, arrangement, draws, points, followers: Vec::new() })
+    }
+
+    /// With `followers`, which have the value of `key` in every run: the mode that is measured follows the frequency of the load.
+    ///
+    /// # Errors
+    /// [`SweepError::Twice`], when one of them varies already.
+    pub fn followed(mut self, key: &str, followers: &[String]) -> Result<Self, SweepError> {
+        for follower in followers {
+            let taken = self.keys().map(|(key, _)| key);
+            if taken.chain(self.followers.iter().map(|(_, other)| other.as_str())).any(|taken| taken == follower) {
+                return Err(SweepError::Twice { key: follower.clone() });
+            }
+            self.followers.push((key.to_owned(), follower.clone()));
+        }
+        Ok(self)
+    }
+
+    /// What the scenario of point `index` has as on the command line: `setpoint.jerk=50 m/s3`; followers behind all others.
+    #[must_use]
+    pub fn overrides(&self, index: usize) -> Vec<String> {
+        let settings = self.point(index);
+        let following = self.followers.iter().filter_map(|(key, follower)| {
+            let value = settings.iter().find(|setting| setting.key == key)?.value.clone();
+            Some(Setting { key: follower, value }.written())
+        });
+        settings.iter().map(Setting::written).chain(following).collect()
     }
 
     /// How many points it has.
     #[must_use]
     pub const fn points(&self) -> usize {
         self.points
+    }
+
+    /// The keys that take values one after the other.
+    #[must_use]
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// How their values are combined.
+    #[must_use]
+    pub const fn arrangement(&self) -> Arrangement {
+        self.arrangement
+    }
+
+    /// What is drawn in each combination of the axes, if anything is.
+    #[must_use]
+    pub const fn draws(&self) -> Option<&Draws> {
+        self.draws.as_ref()
+    }
+
+    /// How many draws each combination has: 1 where nothing is drawn.
+    #[must_use]
+    pub fn draws_of_each(&self) -> usize {
+        self.draws.as_ref().map_or(1, |draws| draws.count() as usize)
+    }
+
+    /// How many combinations of the axes there are: 1 without axes.
+    #[must_use]
+    pub fn combinations(&self) -> usize {
+        self.points / self.draws_of_each()
     }
 
     /// The keys that vary with the units of their values, axes first, in the order of the settings of a point. The unit is empty of pure
@@ -86,26 +144,47 @@ impl Sweep {
         if index >= self.points {
             return Vec::new();
         }
-        let draws_of_each = self.draws.as_ref().map_or(1, |draws| draws.count() as usize);
-        let (combination, draw) = (index / draws_of_each, index % draws_of_each);
-        let mut settings = Vec::with_capacity(self.axes.len());
-        let mut rest = combination;
-        for axis in self.axes.iter().rev() {
-            let count = axis.values.len();
-            let at = match self.arrangement {
-                Arrangement::Grid => rest % count,
-                Arrangement::Zip => rest,
-            };
-            if self.arrangement == Arrangement::Grid {
-                rest /= count;
-            }
-            settings.push(Setting { key: &axis.key, value: axis.values[at].clone() });
-        }
-        settings.reverse();
+        let (combination, draw) = (index / self.draws_of_each(), index % self.draws_of_each());
+        let mut settings = self.combination(combination);
         if let (Some(draws), Ok(draw)) = (&self.draws, u32::try_from(draw)) {
             settings.extend(draws.settings(draw));
         }
         settings
+    }
+
+    /// What the axes are at combination `index`, without what is drawn; nothing beyond the last one.
+    #[must_use]
+    pub fn combination(&self, index: usize) -> Vec<Setting<'_>> {
+        let places = self.places(index);
+        self.axes
+            .iter()
+            .zip(places)
+            .map(|(axis, at)| Setting { key: &axis.key, value: axis.values[at].clone() })
+            .collect()
+    }
+
+    /// Which of its values each axis has at combination `index`, counted from 0; nothing beyond the last one.
+    #[must_use]
+    pub fn places(&self, index: usize) -> Vec<usize> {
+        if index >= self.combinations() {
+            return Vec::new();
+        }
+        let mut rest = index;
+        let mut places: Vec<usize> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| match self.arrangement {
+                Arrangement::Zip => index,
+                Arrangement::Grid => {
+                    let at = rest % axis.values.len();
+                    rest /= axis.values.len();
+                    at
+                }
+            })
+            .collect();
+        places.reverse();
+        places
     }
 }
 
@@ -154,7 +233,8 @@ mod tests {
         let sweep = Sweep::new(axes, Arrangement::Grid, None).unwrap();
         let all: Vec<_> = (0..sweep.points()).map(|index| written(&sweep, index)).collect();
         assert_eq!(all, ["a=1 m b=3 m", "a=1 m b=4 m", "a=1 m b=5 m", "a=2 m b=3 m", "a=2 m b=4 m", "a=2 m b=5 m"]);
-        assert!(sweep.point(6).is_empty());
+        assert!(sweep.point(6).is_empty() && sweep.combination(6).is_empty() && sweep.places(6).is_empty());
+        assert_eq!((sweep.places(4), sweep.combinations()), (vec![1, 1], 6));
     }
 
     #[test]
@@ -181,9 +261,23 @@ mod tests {
             assert_eq!(one[1], other[1]);
         }
         assert_eq!(sweep.keys().collect::<Vec<_>>(), [("a", "m"), ("mass", "kg")]);
+        assert_eq!((sweep.combinations(), sweep.draws_of_each(), sweep.combination(1).len()), (2, 7, 1));
         let alone = Sweep::new(vec![], Arrangement::Grid, Some(draws(7))).unwrap();
         assert_eq!(alone.points(), 7);
         assert_eq!(alone.point(3)[0], sweep.point(3)[1]);
+    }
+
+    #[test]
+    fn a_follower_has_the_value_of_its_key() {
+        let sweep = Sweep::new(vec![axis("a", &[1.0, 2.0])], Arrangement::Grid, Some(draws(2))).unwrap();
+        let sweep = sweep.followed("a", &["b".into(), "c".into()]).unwrap();
+        let found = sweep.overrides(2);
+        assert_eq!((found[0].as_str(), &found[2..]), ("a=2 m", &["b=2 m".to_owned(), "c=2 m".to_owned()][..]));
+        assert!(found[1].starts_with("mass="), "{found:?}");
+        for taken in ["a", "mass", "c"] {
+            let refusal = sweep.clone().followed("a", &[taken.into()]).unwrap_err().to_string();
+            assert!(refusal.contains("varies twice"), "{refusal}");
+        }
     }
 
     #[test]

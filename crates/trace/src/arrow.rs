@@ -18,17 +18,25 @@ const CONTINUATION: [u8; 4] = [0xff; 4];
 
 /// The schema of `recording`, as the value of [`KEY`]; `None` if it were longer than a message can be.
 pub(crate) fn schema(recording: &Recording) -> Option<String> {
-    let column = |name: &str, metadata: &[(&str, String)]| {
-        let metadata: HashMap<_, _> = metadata.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
-        Field::new(name, DataType::Float64, false).with_metadata(metadata)
-    };
-    let time = column(TIME, &[("unit", "s".to_owned())]);
+    let time = field(TIME, DataType::Float64, false, &[("unit", "s".to_owned())]);
     let channels = recording.channels.iter().map(|channel| {
         let spec = &channel.spec;
         let rate = format!("{} Hz", spec.rate.hertz());
-        column(&spec.name, &[("unit", spec.unit.clone()), ("writer", spec.writer.clone()), ("rate", rate)])
+        let metadata = [("unit", spec.unit.clone()), ("writer", spec.writer.clone()), ("rate", rate)];
+        field(&spec.name, DataType::Float64, false, &metadata)
     });
-    let schema = Schema::new(std::iter::once(time).chain(channels).collect::<Vec<_>>());
+    encoded(std::iter::once(time).chain(channels).collect())
+}
+
+/// A column with what is known of it.
+pub(crate) fn field(name: &str, kind: DataType, may_be_missing: bool, metadata: &[(&str, String)]) -> Field {
+    let metadata: HashMap<_, _> = metadata.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+    Field::new(name, kind, may_be_missing).with_metadata(metadata)
+}
+
+/// A schema of these columns, as the value of [`KEY`]; `None` if it were longer than a message can be.
+pub(crate) fn encoded(fields: Vec<Field>) -> Option<String> {
+    let schema = Schema::new(fields);
     let (mut dictionaries, options) = (DictionaryTracker::new(true), IpcWriteOptions::default());
     let message =
         IpcDataGenerator::default().schema_to_bytes_with_dictionary_tracker(&schema, &mut dictionaries, &options);

@@ -17,6 +17,7 @@ mod read;
 mod recorder;
 mod recording;
 mod seal;
+mod table;
 mod values;
 mod whole_file;
 mod write;
@@ -29,6 +30,7 @@ pub use recorder::{BLOCK, Column, Mark, Recorder, Row, SignalId};
 pub use recording::{About, BoundLimit, Call, CallFate, Event, LimitReversals, Move, Recording, Signal};
 pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;
+pub use table::{Cells, Table, TableColumn};
 pub use values::{GrowingValues, IN_MEMORY, Values};
 pub use whole_file::{stream_durably, stream_whole, unfinished_by, write_whole};
 

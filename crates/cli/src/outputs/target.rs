@@ -79,21 +79,24 @@ impl Output {
     }
 
     /// Writes what `write` gives out, the whole file or nothing: for what is larger than memory.
-    pub(crate) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+    pub(crate) fn stream(
+        &self,
+        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
         self.streamed(write, false)
     }
 
     /// The same, and makes sure that it is on the disk before it takes the place of what was there.
     pub(crate) fn stream_durably(
         &self,
-        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
     ) -> Result<(), CliError> {
         self.streamed(write, true)
     }
 
     fn streamed(
         &self,
-        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
         is_durable: bool,
     ) -> Result<(), CliError> {
         match &self.to {
@@ -120,7 +123,7 @@ impl Output {
     fn whole(
         &self,
         path: &Path,
-        write: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
         is_durable: bool,
     ) -> Result<(), CliError> {
         // What the system says of the file and what `write` says have one way out.

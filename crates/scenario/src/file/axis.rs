@@ -5,8 +5,8 @@ use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Coordinate;
 use servobench_config::Kind::{Axis as InAxis, Plain};
-use servobench_config::quantities::{INERTIA, LEAD, MASS, POSITION, RATIO};
-use servobench_config::{any, positive};
+use servobench_config::quantities::{FREQUENCY, INERTIA, LEAD, MASS, POSITION, RATIO};
+use servobench_config::{any, not_negative, positive};
 use servobench_plant::{ChainParameter, EndStopParameter, FrictionParameter};
 
 table! {
@@ -104,7 +104,11 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.005 kg m2"),
         /// default: rigid.
         stiffness: f64 = ChainParameter::STIFFNESS,
+        /// Natural frequency of the body on its coupling, the one before it held: another way to say `stiffness`, m·(2πf)².
+        frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         damping: f64 = ChainParameter::DAMPING,
+        /// Damping ratio of the body on its coupling, the one before it held: another way to say `damping`, 2ζ·√(stiffness·m).
+        damping_ratio: f64 = not_negative(Plain(&RATIO), "0.02"),
         /// against the ground.
         viscous: f64 = FrictionParameter::VISCOUS,
         /// against the ground.

@@ -1,15 +1,16 @@
 //! `[axis]` to bodies: transmission, rigid couplings merged, the rotor added.
 use crate::access::Refused;
 use crate::diagnostic::Report;
-use crate::field::Slot;
+use crate::field::{Reported, Slot};
 use crate::file;
 use crate::file::MotorKind;
 use crate::mjcf_files;
 use crate::models::read_beside;
+use crate::quantity::objection;
 use crate::resolve::fmu::Mechanics;
-use crate::resolve::{end_stops, friction, need};
+use crate::resolve::{Alternative, end_stops, friction, need, one_of};
 use crate::scenario::{Axis, AxisMechanics};
-use crate::source::{Sources, Span};
+use crate::source::{At, Sources, Span};
 use servobench_base::Coordinate;
 use servobench_files::FileRole;
 use servobench_plant::{Body, Chain, Friction, Link, MjcfModel, Switches};
@@ -270,21 +271,52 @@ fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, repor
         return None;
     }
     let friction = motion.and_then(|motion| friction::resolve(&body.friction(), motion, report));
-    if let (Slot::Absent, Some(span)) = (&body.stiffness, body.damping.span()) {
-        report.error(
-            span,
-            "`damping` belongs to a coupling that has no `stiffness`",
-            "without one the coupling is rigid",
-        );
-        return None;
-    }
-    let damping = or_zero(&body.damping);
-    let stiffness = body.stiffness.optional().ok()?;
-    let link = stiffness.zip(damping).map(|(stiffness, damping)| Link { stiffness: *stiffness, damping });
-    damping?;
+    let link = coupling(body, inertia, report);
     let (bias, friction) = (or_zero(&body.bias)?, friction?);
     let span = body.breakaway.at().map_or(body.span, |at| at.span);
-    Some(Placed { body: Body { friction, bias, ..free(name, motion?, inertia?) }, link, span })
+    Some(Placed { body: Body { friction, bias, ..free(name, motion?, inertia?) }, link: link.ok()?, span })
+}
+
+/// What couples a body to the one before it, by its own keys or by the mode in which it swings on that; `None`: it is rigid.
+fn coupling(body: &file::Body, inertia: Option<f64>, report: &mut Report) -> Result<Option<Link>, Reported> {
+    let stiffness = one_of(&[("stiffness", body.stiffness.span()), ("frequency", body.frequency.span())], report);
+    let damping = one_of(&[("damping", body.damping.span()), ("damping_ratio", body.damping_ratio.span())], report);
+    let stiffness = match stiffness {
+        Alternative::Contradiction => return Err(Reported),
+        Alternative::None => {
+            let of_damping = [("damping", body.damping.span()), ("damping_ratio", body.damping_ratio.span())];
+            let Some((key, span)) = of_damping.into_iter().find_map(|(key, span)| Some((key, span?))) else {
+                return Ok(None);
+            };
+            let message = format!("`{key}` belongs to a coupling that has no `stiffness`");
+            report.error(span, message, "without one the coupling is rigid");
+            return Err(Reported);
+        }
+        Alternative::Use(0) => *body.stiffness.given().ok_or(Reported)?,
+        Alternative::Use(_) => {
+            let At { value: frequency, span } = body.frequency.at().ok_or(Reported)?;
+            let stiffness = inertia.ok_or(Reported)? * (TAU * frequency) * (TAU * frequency);
+            derived("stiffness", stiffness, *span, report)?
+        }
+    };
+    let damping = match damping {
+        Alternative::Contradiction => return Err(Reported),
+        Alternative::None => 0.0,
+        Alternative::Use(0) => *body.damping.given().ok_or(Reported)?,
+        Alternative::Use(_) => {
+            let At { value: ratio, span } = body.damping_ratio.at().ok_or(Reported)?;
+            let damping = 2.0 * ratio * stiffness.sqrt() * inertia.ok_or(Reported)?.sqrt();
+            derived("damping", damping, *span, report)?
+        }
+    };
+    Ok(Some(Link { stiffness, damping }))
+}
+
+/// What follows from the key at `span`, if it is of a magnitude that a key could have.
+fn derived(what: &str, value: f64, span: Span, report: &mut Report) -> Result<f64, Reported> {
+    let Some(objection) = objection(value, value == 0.0) else { return Ok(value) };
+    report.error(span, format!("the {what} that follows from it: {objection}"), "correct its unit");
+    Err(Reported)
 }
 
 /// A body without friction, in the axis coordinate.

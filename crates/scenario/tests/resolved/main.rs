@@ -1,4 +1,5 @@
 //! What a scenario becomes: derived gains, merged bodies, overridden models.
+mod coupling;
 mod files;
 mod loops;
 mod motors;

@@ -1,19 +1,20 @@
 //! What is to be run: runs, and files that cannot be used, in the order of the files.
-use super::ledger::Ledger;
 use crate::args::{Keep, RunArgs};
 use crate::error::CliError;
 use crate::output;
 use crate::sources::{self, Unusable};
+use crate::suite::{Ledger, NotReady, Plan};
 use servobench_plant::EngineName;
 use servobench_results::{Digest, Digester, Finished, RunIdentity, RunResult, Unfinished};
 use servobench_suite::{Engines, Job, JobIds, Source};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// What is to be run. Every file was read, and is read again when its turn has come: how many there are makes next to no difference to
 /// memory.
-pub(super) struct Wanted {
+pub(super) struct Wanted<'a> {
+    args: &'a RunArgs,
     /// By their places in the suite.
     entries: Vec<Entry>,
     /// What they are called.
@@ -29,7 +30,7 @@ enum Entry {
 }
 
 /// A run that is to be made.
-pub(super) struct PlannedRun {
+struct PlannedRun {
     id: String,
     origin: Origin,
     engine: EngineName,
@@ -44,58 +45,69 @@ enum Origin {
     Demo(Arc<Source>),
 }
 
-/// Why a run cannot be made any more.
-#[derive(Debug, Error)]
-#[error("the scenario, or a file that it names, has changed since the suite began: run the suite again")]
-pub(super) struct Changed;
-
 impl PlannedRun {
-    /// Name of the run.
-    pub(super) fn id(&self) -> &str {
-        &self.id
-    }
-
-    /// What it is made of.
-    pub(super) const fn inputs(&self) -> Digest {
-        self.inputs
-    }
-
     /// The run, as it was when the suite began.
-    pub(super) fn job(&self, args: &RunArgs) -> Result<Job, Changed> {
+    fn job(&self, args: &RunArgs) -> Result<Job, NotReady> {
         let source = match &self.origin {
-            Origin::File(path) => sources::again(path, &args.with).map_err(|_| Changed)?,
+            Origin::File(path) => sources::again(path, &args.suite.with).map_err(|_| NotReady::Changed)?,
             Origin::Demo(source) => source.as_ref().clone(),
         };
         let mut job = Job::new(self.id.clone(), source, self.engine);
         if args.keep == Keep::None {
             job.leave_recording_out();
         }
-        if output::inputs_of(&job) == self.inputs { Ok(job) } else { Err(Changed) }
+        if output::inputs_of(&job) == self.inputs { Ok(job) } else { Err(NotReady::Changed) }
     }
 }
 
-impl Wanted {
+impl Plan for Wanted<'_> {
+    fn places(&self) -> Box<dyn Iterator<Item = usize> + '_> {
+        Box::new((0..self.len()).filter(|index| self.run(*index).is_some()))
+    }
+
+    fn id(&self, index: usize) -> Cow<'_, str> {
+        self.run(index).map_or("", |run| &run.id).into()
+    }
+
+    fn job(&self, index: usize) -> Result<Job, NotReady> {
+        self.run(index).ok_or(NotReady::Changed)?.job(self.args)
+    }
+
+    fn identity(&self, index: usize) -> RunIdentity {
+        let inputs = self.run(index).map(|run| run.inputs).unwrap_or_default();
+        RunIdentity { inputs, overrides: self.overrides.clone(), ..RunIdentity::default() }
+    }
+
+    fn is_sweep(&self) -> bool {
+        false
+    }
+}
+
+impl<'a> Wanted<'a> {
     /// The scenarios that are named, or the demo.
-    pub(super) fn of(args: &RunArgs, engines: &Engines) -> Result<Self, CliError> {
-        let overrides = args.with.overrides.iter().map(ToString::to_string).collect();
-        let mut wanted = Self { entries: Vec::new(), planned: Vec::new(), overrides };
+    pub(super) fn of(args: &'a RunArgs, engines: &Engines) -> Result<Self, CliError> {
+        let overrides = args.suite.with.overrides.iter().map(ToString::to_string).collect();
+        let mut wanted = Self { args, entries: Vec::new(), planned: Vec::new(), overrides };
         let mut ids = JobIds::default();
         if args.scenarios.is_empty() {
             // The demo names engines that this build may lack; an FMU it has none of.
             let there = engines.names();
-            for source in sources::demo(&args.with)? {
+            for source in sources::demo(&args.suite.with)? {
                 let own = source.scenario.engines.iter().copied().filter(|engine| there.contains(engine)).collect();
-                let engines: Vec<_> = if args.engine.is_empty() { own } else { args.engine.clone() };
+                let engines: Vec<_> = if args.suite.engine.is_empty() { own } else { args.suite.engine.clone() };
                 let origin = Origin::Demo(Arc::new(source.clone()));
                 wanted.add(source, &origin, &engines, &mut ids);
             }
             return Ok(wanted);
         }
-        for found in sources::each(&args.scenarios, &args.with)? {
+        for found in sources::each(&args.scenarios, &args.suite.with)? {
             match found? {
                 Ok(source) => {
-                    let engines =
-                        if args.engine.is_empty() { source.scenario.engines.clone() } else { args.engine.clone() };
+                    let engines = if args.suite.engine.is_empty() {
+                        source.scenario.engines.clone()
+                    } else {
+                        args.suite.engine.clone()
+                    };
                     let path = source.scenario.path.clone().unwrap_or_default();
                     wanted.add(source, &Origin::File(path.into()), &engines, &mut ids);
                 }
@@ -146,14 +158,18 @@ impl Wanted {
 
     /// What runs when nobody names a file.
     pub(super) fn demo(&self, out: &Path) -> String {
-        let ids: Vec<&str> = self.runs().map(|(_, run)| run.id()).collect();
+        let ids: Vec<&str> = self.ids().collect();
         format!("no file is named: running the demo that is built in ({}) into {}\n", ids.join(", "), out.display())
     }
 
-    /// Each run with its place in the suite: that of its file, what is invalid counted.
-    pub(super) fn runs(&self) -> impl Iterator<Item = (usize, &PlannedRun)> {
-        let entries = self.entries.iter().enumerate();
-        entries.filter_map(|(index, entry)| if let Entry::Run(run) = entry { Some((index, run)) } else { None })
+    fn run(&self, index: usize) -> Option<&PlannedRun> {
+        self.entries.get(index).and_then(|entry| if let Entry::Run(run) = entry { Some(run) } else { None })
+    }
+
+    /// Names of the runs.
+    pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
+        let entries = self.entries.iter();
+        entries.filter_map(|entry| if let Entry::Run(run) = entry { Some(run.id.as_str()) } else { None })
     }
 
     /// How many runs and files that cannot be used there are.
@@ -168,12 +184,12 @@ impl Wanted {
 
     /// Stems of the files that the runs leave.
     pub(super) fn stems(&self) -> Vec<String> {
-        self.runs().map(|(_, run)| run.id.clone()).collect()
+        self.ids().map(str::to_owned).collect()
     }
 
     /// Digest of the runs in their order, and of what they are to leave.
-    pub(super) fn digest(&self, args: &RunArgs) -> Digest {
-        let start = Digester::default().with(format!("{:?} {}", args.keep, args.rrd));
+    pub(super) fn digest(&self) -> Digest {
+        let start = Digester::default().with(format!("{:?} {}", self.args.keep, self.args.suite.rrd));
         let all = self.entries.iter().fold(start, |digester, entry| match entry {
             Entry::Run(run) => digester.with(run.inputs.to_string()),
             Entry::Unusable(unusable) => digester.with(unusable.reasons().join("\n")),

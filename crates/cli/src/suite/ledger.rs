@@ -1,17 +1,18 @@
 //! What came of each run, kept where nothing that has ended is lost: in the journal while the suite runs, in `results.json` and
 //! JUnit at its end, whichever end that is.
-use super::Files;
+use super::files::Files;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::outputs::{Output, OutputFolder};
 use servobench_report::junit;
 use servobench_results::{
-    Digest, Finished, Folder, Journal, Kept, Outcome, RESULTS, ResultsError, Runs, Suite, Unfinished, write_results,
+    Digest, Finished, Folder, Journal, Kept, Outcome, Planned, RESULTS, ResultsError, Runs, Suite, Unfinished,
+    write_results,
 };
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The results of a suite as they come. One thread after the other notes its runs; the last word is that of whoever closes it.
-pub(super) struct Ledger {
+pub(crate) struct Ledger {
     folder: Folder,
     files: Files,
     suite: Digest,
@@ -27,19 +28,19 @@ struct State {
 }
 
 /// What a closed ledger holds.
-pub(super) struct Closed {
+pub(crate) struct Closed {
     /// The results, as they are in `results.json`.
-    pub(super) kept: Kept,
+    pub(crate) kept: Kept,
     /// What could not be written.
-    pub(super) troubles: Vec<CliError>,
+    pub(crate) troubles: Vec<CliError>,
 }
 
 impl Ledger {
     /// Begins the journal of `suite`, and says in `results.json` that it is under way.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         folder: Folder,
         files: Files,
-        planned: Vec<Unfinished>,
+        planned: impl Into<Planned>,
         suite: &Suite,
     ) -> Result<Self, CliError> {
         let kept = Kept::new(Some(Journal::create(folder.journal(), suite)?), planned);
@@ -49,7 +50,7 @@ impl Ledger {
     }
 
     /// Goes on with what was kept of a suite.
-    pub(super) fn resume(folder: Folder, files: Files, kept: Kept, suite: &Suite) -> Self {
+    pub(crate) fn resume(folder: Folder, files: Files, kept: Kept, suite: &Suite) -> Self {
         Self::new(folder, files, kept, suite)
     }
 
@@ -59,27 +60,27 @@ impl Ledger {
     }
 
     /// The folder of the results.
-    pub(super) const fn folder(&self) -> &Folder {
+    pub(crate) const fn folder(&self) -> &Folder {
         &self.folder
     }
 
     /// The same for what runs leave there.
-    pub(super) const fn out(&self) -> &OutputFolder {
+    pub(crate) const fn out(&self) -> &OutputFolder {
         &self.files.out
     }
 
     /// Whether the run at `index` has ended.
-    pub(super) fn has(&self, index: usize) -> bool {
+    pub(crate) fn has(&self, index: usize) -> bool {
         self.state().kept.as_ref().is_some_and(|kept| kept.has(index))
     }
 
     /// What the run at `index` is called.
-    pub(super) fn planned(&self, index: usize) -> Option<Unfinished> {
+    pub(crate) fn planned(&self, index: usize) -> Option<Unfinished> {
         self.state().kept.as_ref().and_then(|kept| kept.planned().get(index).cloned())
     }
 
     /// A run has ended. What ends because the program is being ended is not noted.
-    pub(super) fn note(&self, finished: Finished) {
+    pub(crate) fn note(&self, finished: Finished) {
         let mut state = self.state();
         let State { kept: Some(kept), troubles } = &mut *state else { return };
         if interrupt::is_ending() {
@@ -96,7 +97,7 @@ impl Ledger {
 
     /// Writes results and JUnit; the journal goes when every run has a verdict, since nothing is then left for
     /// `--resume`. Whoever comes second finds it closed.
-    pub(super) fn close(&self) -> Option<Closed> {
+    pub(crate) fn close(&self) -> Option<Closed> {
         let mut state = self.state();
         let mut kept = state.kept.take()?;
         let mut troubles = std::mem::take(&mut state.troubles);
@@ -129,7 +130,7 @@ impl Ledger {
 }
 
 /// Writes the JUnit report of `runs`.
-pub(super) fn write_junit(runs: &dyn Runs, output: &Output) -> Result<(), CliError> {
+pub(crate) fn write_junit(runs: &dyn Runs, output: &Output) -> Result<(), CliError> {
     output.stream(|out| {
         for part in junit(runs) {
             out.write_all(part?.as_bytes()).map_err(|error| output.failed(error))?;

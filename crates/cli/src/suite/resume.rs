@@ -1,5 +1,5 @@
-//! `servobench run --resume`: the rest of a suite that was ended before its time.
-use crate::args::{self, Command, RunArgs};
+//! `--resume`: the rest of a suite that was ended before its time.
+use crate::args::{self, Command, SuiteArgs};
 use crate::error::CliError;
 use crate::sources;
 use servobench_results::{
@@ -10,24 +10,24 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// A suite that can go on.
-pub(super) struct Begun {
-    pub(super) folder: Folder,
-    pub(super) suite: Suite,
+pub(crate) struct Begun {
+    pub(crate) folder: Folder,
+    pub(crate) suite: Suite,
     /// The runs whose results and files are there.
-    pub(super) kept: Kept,
-    /// What it was started with; how much runs at a time and what is printed are what is asked for now.
-    pub(super) args: RunArgs,
+    pub(crate) kept: Kept,
+    /// The command that began it.
+    pub(crate) command: Command,
 }
 
 /// What is in a folder that is to be resumed.
-pub(super) enum Found {
+pub(crate) enum Found {
     Begun(Box<Begun>),
     /// Nothing is left to run.
     Complete(Results),
 }
 
 /// The suite in `folder`, as far as it came. From now on relative paths are those of the command that began it.
-pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> {
+pub(crate) fn suite_in(folder: &Path, now: &SuiteArgs) -> Result<Found, CliError> {
     if !folder.is_dir() {
         return Err(CliError::NothingToResume(folder.to_owned()));
     }
@@ -41,12 +41,21 @@ pub(super) fn suite_in(folder: &Path, now: &RunArgs) -> Result<Found, CliError> 
         }
         Err(error) => return Err(error.into()),
     };
-    let args = arguments(&suite, now, absolute)?;
+    let Some(command) = args::of(&suite.command) else { return Err(CliError::NothingToResume(absolute)) };
+    let began = match &command {
+        Command::Run(began) => &began.suite,
+        Command::Sweep(began) => &began.suite,
+        _ => return Err(CliError::NothingToResume(absolute)),
+    };
+    // Trust is what is given now: the journal is a file.
+    if began.fmus.allow_unisolated_fmus && !now.fmus.allow_unisolated_fmus {
+        return Err(CliError::TrustAgain);
+    }
     std::env::set_current_dir(&suite.folder).map_err(|error| CliError::Read { path: suite.folder.clone(), error })?;
     if let Some(text) = &suite.standard_input {
         sources::give_stdin(text.clone());
     }
-    Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, args })))
+    Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, command })))
 }
 
 /// Results of a suite that has ended.
@@ -55,26 +64,6 @@ fn complete(folder: &Path) -> Result<Results, CliError> {
     let text = read_results(&path).map_err(|_| CliError::NothingToResume(folder.to_owned()))?;
     let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path, error })?;
     if results.status == Status::Complete { Ok(results) } else { Err(CliError::NothingToResume(folder.to_owned())) }
-}
-
-fn arguments(suite: &Suite, now: &RunArgs, out: std::path::PathBuf) -> Result<RunArgs, CliError> {
-    let Some(Command::Run(began)) = args::of(&suite.command) else {
-        return Err(CliError::NothingToResume(out));
-    };
-    // Trust is what is given now: the journal is a file.
-    if began.fmus.allow_unisolated_fmus && !now.fmus.allow_unisolated_fmus {
-        return Err(CliError::TrustAgain);
-    }
-    Ok(RunArgs {
-        fmus: now.fmus,
-        out: Some(out),
-        jobs: now.jobs.or(began.jobs),
-        quiet: now.quiet,
-        verbose: now.verbose,
-        junit: began.junit,
-        resume: None,
-        ..began
-    })
 }
 
 /// Whether the run has a verdict. One that could not be carried out is tried again: its process may have been ended from outside, or

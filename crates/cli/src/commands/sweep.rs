@@ -1,0 +1,79 @@
+//! `servobench sweep`: a scenario over many values of its keys, as a suite; tables and pictures of what came of it.
+mod outcome;
+mod points;
+
+use crate::args::{self, Command, Keep, SweepArgs};
+use crate::console::{print, say, style};
+use crate::engines;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::sources;
+use crate::suite::{Begun, Carrying, Files, Found, Ledger, exit_of, suite_in};
+use points::Points;
+use servobench_report::run_count;
+use servobench_results::{Folder, OF_A_SWEEP, RESULTS, Runs, Suite};
+use std::path::Path;
+
+/// Runs every point of a sweep, judges it and says what the values cost; or goes on with a sweep that was ended before its time.
+pub(crate) fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
+    match (&args.resume, &args.sweep) {
+        (Some(folder), _) => match suite_in(folder, &args.suite)? {
+            Found::Begun(suite) => resumed(*suite, args),
+            Found::Complete(results) => {
+                print(&(run_count(&results, style()) + "\n"))?;
+                Ok(exit_of(&results))
+            }
+        },
+        (None, Some(path)) => begun(path, args),
+        (None, None) => Err(CliError::NoSweep),
+    }
+}
+
+/// A sweep from its beginning.
+fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
+    if args.suite.rrd && args.keep == Keep::None {
+        return Err(CliError::NothingForTheViewer);
+    }
+    let points = Points::of(path, args)?;
+    let out = args.out.clone().unwrap_or_else(|| points::default_folder(path));
+    let files = files(args, &out, &points)?;
+    let folder = Folder::open(&out)?;
+    folder.remove(&folder.former(RESULTS)?);
+    let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
+    let suite = Suite::new(points.digest(), args::command_line(), here, sources::stdin(), points.stems());
+    let ledger = Ledger::begin(folder, files, points.planned(), &suite)?;
+    carried_out(args, &points, ledger)
+}
+
+/// The rest of a sweep: the same points, of which those that ended are not run again.
+fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
+    let Begun { folder, suite, mut kept, command } = begun;
+    let Command::Sweep(began) = command else {
+        return Err(CliError::OtherCommand { folder: folder.path().to_owned(), command: "run" });
+    };
+    let args = SweepArgs { suite: began.suite.resumed(&now.suite), ..began };
+    let path = args.sweep.clone().ok_or(CliError::NoSweep)?;
+    let points = Points::of(&path, &args)?;
+    if points.digest() != suite.suite {
+        return Err(CliError::OtherSuite(folder.path().to_owned()));
+    }
+    let files = files(&args, folder.path(), &points)?;
+    if !args.suite.quiet {
+        say(&format!("{} of {} runs had ended; running the others\n", kept.ended(), points.len()));
+    }
+    kept.plan(points.planned());
+    let ledger = Ledger::resume(folder, files, kept, &suite);
+    carried_out(&args, &points, ledger)
+}
+
+/// Runs what has not ended yet, writes tables and pictures, and says what came of all.
+fn carried_out(args: &SweepArgs, points: &Points<'_>, ledger: Ledger) -> Result<Exit, CliError> {
+    let engines = engines::installed();
+    let carrying = Carrying { plan: points, args: &args.suite, keep: args.keep, engines: &engines };
+    let files = ledger.out().clone();
+    carrying.out(ledger, |_| {}, |runs: &dyn Runs, _| outcome::say_what_came(runs, args, points, &files))
+}
+
+fn files(args: &SweepArgs, out: &Path, points: &Points<'_>) -> Result<Files, CliError> {
+    Files::named(out, args.suite.junit.as_deref(), |id| points.has_id(id), &OF_A_SWEEP)
+}

@@ -1,0 +1,128 @@
+//! What came of a sweep: its table as files, its pictures, and in words.
+use super::points::Points;
+use crate::args::SweepArgs;
+use crate::console::{print, style};
+use crate::error::CliError;
+use crate::outputs::OutputFolder;
+use crate::suite::how_to_resume;
+use servobench_report::{Style, run_count, wrapped};
+fn sweep_front(_: &Table<'_>) -> Option<String> {
+    None
+}
+fn sweep_map(_: &Table<'_>) -> Option<String> {
+    None
+}
+fn sweep_table(_: &Table<'_>, _: Style) -> String {
+    String::new()
+}
+
+use servobench_results::{Columns, Outcome as Ended, Runs, SWEEP_FRONT, SWEEP_MAP, TABLE_CSV, TABLE_PARQUET};
+use servobench_sweep::{Column, Outcome, Sweep, Table};
+use servobench_trace::{Cells, Table as File, TableColumn};
+use std::borrow::Cow;
+
+/// Writes tables and pictures into the folder of the results, and says what the values cost. Of a sweep that was ended before its time
+/// there are results only.
+pub(super) fn say_what_came(
+    runs: &dyn Runs,
+    args: &SweepArgs,
+    points: &Points<'_>,
+    out: &OutputFolder,
+) -> Result<(), CliError> {
+    let resume = how_to_resume(runs, "sweep", &args.suite, out.path());
+    if runs.unfinished().next().is_some() {
+        return print(&[run_count(runs, style()), "\n".into(), resume].concat());
+    }
+    let columns = Columns::of(runs, points.len())?;
+    let file = file_of(points, &columns);
+    let csv = out.file(TABLE_CSV)?;
+    csv.stream(|to| file.write_csv(to).map_err(|error| csv.failed(error)))?;
+    let parquet = out.file(TABLE_PARQUET)?;
+    parquet.stream(|to| file.write_parquet(to).map_err(|error| parquet.failed(error)))?;
+    drop(file);
+
+    let engines = points.engines();
+    let table = table_of(points.sweep(), &engines, columns);
+    let mut written = vec![TABLE_CSV, TABLE_PARQUET];
+    for (name, drawing) in [(SWEEP_MAP, sweep_map(&table)), (SWEEP_FRONT, sweep_front(&table))] {
+        if let Some(drawing) = drawing {
+            out.file(name)?.write(drawing)?;
+            written.push(name);
+        }
+    }
+    let style = style();
+    let count = run_count(runs, style) + "\n";
+    if args.suite.quiet {
+        return print(&count);
+    }
+    let described = match points.description() {
+        "" => String::new(),
+        words => wrapped(words, style.width).join("\n") + "\n\n",
+    };
+    let folder = out.path().display();
+    let where_it_is = format!("results.json, {}: {folder}\n{resume}", written.join(", "));
+    print(&[described, sweep_table(&table, style), "\n".into(), count, where_it_is].concat())
+}
+
+/// The runs as the crate of sweeps counts them.
+fn table_of<'a>(sweep: &'a Sweep, engines: &'a [String], columns: Columns) -> Table<'a> {
+    let outcome = |outcome: Option<Ended>| match outcome {
+        Some(outcome) if outcome.is_good() => Outcome::Good,
+        Some(Ended::Failed) => Outcome::Failed,
+        Some(_) | None => Outcome::NoVerdict,
+    };
+    let outcomes = columns.outcomes.into_iter().map(outcome).collect();
+    let metrics = columns.metrics.into_iter();
+    let columns = metrics.map(|of| Column { name: of.metric.to_string(), unit: of.unit, values: of.values }).collect();
+    Table { sweep, engines, columns, outcomes }
+}
+
+/// A row for each run: its number, its engine, what varies, its verdict, what was measured.
+fn file_of<'a>(points: &'a Points<'_>, columns: &'a Columns) -> File<'a> {
+    let count = points.sweep().points();
+    let engines = points.engines();
+    let numbers = |name: &str, unit: &str, cell: Box<dyn Fn(usize) -> f64 + 'a>| TableColumn {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        cells: Cells::Numbers(cell),
+    };
+    let texts = |name: &str, cell: Box<dyn Fn(usize) -> Cow<'a, str> + 'a>| TableColumn {
+        name: name.to_owned(),
+        unit: String::new(),
+        cells: Cells::Texts(cell),
+    };
+    let mut all = vec![
+        numbers("point", "", Box::new(move |row| (row % count + 1) as f64)),
+        texts("engine", Box::new(move |row| engines[row / count].clone().into())),
+    ];
+    for (k, key) in points.sweep().columns().enumerate() {
+        let value = move |row: usize| points.sweep().value(row % count, k);
+        all.push(match key.unit {
+            Some(unit) => {
+                let cell = move |row| value(row).and_then(|value| value.number()).unwrap_or(f64::NAN);
+                numbers(key.key, unit, Box::new(cell))
+            }
+            None => texts(key.key, Box::new(move |row| value(row).map_or_else(String::new, |v| v.written()).into())),
+        });
+    }
+    let word = |outcome: &Option<Ended>| outcome.map_or("", verdict);
+    all.push(texts("verdict", Box::new(move |row| Cow::Borrowed(word(&columns.outcomes[row])))));
+    all.extend(
+        columns
+            .metrics
+            .iter()
+            .map(|column| numbers(column.metric.as_str(), &column.unit, Box::new(|row| column.values[row]))),
+    );
+    File { rows: points.len(), columns: all }
+}
+
+/// As `results.json` has it.
+const fn verdict(outcome: Ended) -> &'static str {
+    match outcome {
+        Ended::Passed => "passed",
+        Ended::Unjudged => "unjudged",
+        Ended::Failed => "failed",
+        Ended::Invalid => "invalid",
+        Ended::Error => "error",
+    }
+}

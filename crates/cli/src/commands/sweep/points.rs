@@ -1,0 +1,202 @@
+//! The points of a sweep as runs of a suite.
+use crate::args::{Keep, SweepArgs};
+use crate::build_id;
+use crate::console::say;
+use crate::error::CliError;
+use crate::outputs::reads;
+use crate::sources::{self, SWEEP};
+use crate::suite::{NotReady, Plan};
+use servobench_config::Choice as _;
+use servobench_plant::EngineName;
+use servobench_results::{Digest, Digester, Planned, RunIdentity, Unfinished, printable, printable_lines};
+use servobench_scenario::{LoadError, Override, SweepRequest, load_sweep, root_of};
+use servobench_suite::{Job, Source, file_name};
+use servobench_sweep::Sweep;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Combinations that are all read before anything runs; of more of them each value is read once.
+const MOST_CHECKED: usize = 1_000;
+
+/// The points of a sweep: on the first engine, then on the next one.
+pub(super) struct Points<'a> {
+    args: &'a SweepArgs,
+    request: SweepRequest,
+    engines: Vec<EngineName>,
+    /// The scenario as it is without the sweep.
+    base: Source,
+    root: PathBuf,
+    /// Names of the runs begin with it.
+    stem: String,
+    /// Digests of the files that scenarios name, as they were when they were first read.
+    files: Mutex<HashMap<String, String>>,
+}
+
+impl<'a> Points<'a> {
+    /// Those of the sweep file at `path`.
+    pub(super) fn of(path: &Path, args: &'a SweepArgs) -> Result<Self, CliError> {
+        reads(path, format_args!("the sweep {}", path.display()));
+        let request = load_sweep(path)?;
+        let given = args.suite.with.root.as_deref();
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        let root =
+            root_of(folder, given).map_err(|error| CliError::Read { path: given.unwrap_or(path).to_owned(), error })?;
+        let base = sources::base(&request.scenario, &args.suite.with.overrides, &root)?;
+        let engines = [&args.suite.engine, &request.engines, &base.scenario.engines];
+        let engines = engines.into_iter().find(|engines| !engines.is_empty()).cloned().unwrap_or_default();
+        let stem = file_name(&base.scenario.name);
+        let points = Self { args, request, engines, base, root, stem, files: Mutex::default() };
+        points.check()?;
+        Ok(points)
+    }
+
+    pub(super) const fn sweep(&self) -> &Sweep {
+        &self.request.sweep
+    }
+
+    pub(super) fn description(&self) -> &str {
+        &self.request.description
+    }
+
+    pub(super) fn engines(&self) -> Vec<String> {
+        self.engines.iter().map(|engine| engine.name().to_owned()).collect()
+    }
+
+    /// How many runs there are.
+    pub(super) fn len(&self) -> usize {
+        self.sweep().points() * self.engines.len()
+    }
+
+    /// What the runs are called.
+    pub(super) fn planned(&self) -> Planned {
+        let scenario = &self.base.scenario;
+        let file = scenario.path.as_ref().map(|path| path.display().to_string());
+        let of = |engine: &EngineName| Unfinished {
+            name: scenario.name.clone(),
+            file: file.clone(),
+            engine: engine.name().to_owned(),
+        };
+        Planned::repeated(self.engines.iter().map(of).collect(), self.sweep().points())
+    }
+
+    /// Stems of the files that the runs leave.
+    pub(super) fn stems(&self) -> Vec<String> {
+        let leaves_any = self.args.keep != Keep::None;
+        (0..self.len()).filter(|_| leaves_any).map(|index| self.id(index).into_owned()).collect()
+    }
+
+    /// Whether a run is called `id`.
+    pub(super) fn has_id(&self, id: &str) -> bool {
+        let number = || id.strip_prefix(&self.stem)?.strip_prefix('-')?.split_once('.')?.0.parse::<usize>().ok();
+        number().is_some_and(|number| (1..=self.sweep().points()).contains(&number))
+    }
+
+    /// Digest of the runs in their order, and of what they are to leave.
+    pub(super) fn digest(&self) -> Digest {
+        let start = Digester::default().with(build_id::program()).with(format!("{:?}", self.args.keep));
+        let start = start.with(format!("{}", self.args.suite.rrd)).with(&self.request.text).with(&self.base.text);
+        let overrides = &self.args.suite.with.overrides;
+        let start = overrides.iter().fold(start, |digester, one| digester.with(one.to_string()));
+        let start = self.engines.iter().fold(start, |digester, engine| digester.with(engine.name()));
+        self.base.scenario.made_of.iter().fold(start, |digester, file| digester.with(&file.sha256)).finish()
+    }
+
+    /// What varies in the run at `index`, as on the command line.
+    fn settings(&self, index: usize) -> Vec<String> {
+        self.sweep().overrides(index % self.sweep().points())
+    }
+
+    /// The engine of the run at `index`.
+    fn engine(&self, index: usize) -> EngineName {
+        self.engines.get(index / self.sweep().points()).copied().unwrap_or_default()
+    }
+
+    /// The scenario of the run at `index`.
+    fn source(&self, index: usize) -> Result<Source, NotReady> {
+        let mut overrides = self.args.suite.with.overrides.clone();
+        for written in self.settings(index) {
+            let parsed = written.parse::<Override>();
+            overrides.push(parsed.map_err(|error| NotReady::Invalid(vec![format!("`{written}`: {error}")]))?);
+        }
+        let scenario = &self.request.scenario;
+        let source = sources::varied(scenario, &self.base.text, &overrides, &self.root).map_err(NotReady::from)?;
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        for file in &source.scenario.made_of {
+            if let Some(known) = files.get(&file.path) {
+                if *known != file.sha256 {
+                    return Err(NotReady::Changed);
+                }
+            } else {
+                files.insert(file.path.clone(), file.sha256.clone());
+            }
+        }
+        Ok(source)
+    }
+
+    /// Reads combinations before anything runs. One that is invalid does not keep the others from being run; that all are is a mistake of
+    /// the sweep.
+    fn check(&self) -> Result<(), CliError> {
+        let places = self.sweep().cover(MOST_CHECKED);
+        let refusals: Vec<(usize, NotReady)> =
+            places.iter().filter_map(|index| Some((*index, self.source(*index).err()?))).collect();
+        let Some((index, first)) = refusals.first() else { return Ok(()) };
+        let point = self.settings(*index);
+        let why = first.to_string();
+        if refusals.len() == places.len() {
+            return Err(CliError::NoValidPoint { checked: places.len(), point: point.join(", "), why });
+        }
+        let of = format!("{} of the {} points that were tried are invalid", refusals.len(), places.len());
+        let first = format!("the first with {}:\n{}", printable(&point.join(", ")), printable_lines(&why));
+        say(&format!("servobench: {of}, {first}\n"));
+        Ok(())
+    }
+}
+
+impl From<LoadError> for NotReady {
+    fn from(error: LoadError) -> Self {
+        Self::Invalid(sources::reasons(&error))
+    }
+}
+
+impl Plan for Points<'_> {
+    fn places(&self) -> Box<dyn Iterator<Item = usize> + '_> {
+        Box::new(0..self.len())
+    }
+
+    fn id(&self, index: usize) -> Cow<'_, str> {
+        let number = index % self.sweep().points() + 1;
+        format!("{}-{number}.{}", self.stem, self.engine(index)).into()
+    }
+
+    fn job(&self, index: usize) -> Result<Job, NotReady> {
+        let mut job = Job::new(self.id(index).into_owned(), self.source(index)?, self.engine(index));
+        if self.args.keep == Keep::None {
+            job.leave_recording_out();
+        }
+        if !self.request.metrics.is_empty() {
+            job.measure_only(&self.request.metrics);
+        }
+        Ok(job)
+    }
+
+    fn identity(&self, index: usize) -> RunIdentity {
+        let own = &self.args.suite.with.overrides;
+        let overrides = own.iter().map(ToString::to_string);
+        let overrides = overrides.chain(self.settings(index)).collect();
+        RunIdentity { overrides, ..RunIdentity::default() }
+    }
+
+    fn is_sweep(&self) -> bool {
+        true
+    }
+}
+
+/// Where a sweep's results go unless somebody says so: by the name of its file.
+pub(super) fn default_folder(path: &Path) -> PathBuf {
+    let name = path.file_name().and_then(OsStr::to_str).unwrap_or("sweep");
+    let name = name.strip_suffix(SWEEP).or_else(|| name.strip_suffix(".toml")).unwrap_or(name);
+    Path::new("servobench-out").join(file_name(name))
+}
