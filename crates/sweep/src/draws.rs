@@ -78,9 +78,14 @@ impl Draws {
     /// The values of draw `index`.
     pub(crate) fn settings(&self, index: u32) -> impl Iterator<Item = Setting<'_>> {
         self.keys.iter().enumerate().map(move |(key, drawn)| {
-            let number = drawn.distribution.quantile(self.share(key, index));
+            let number = self.value(key, index);
             Setting { key: &drawn.key, value: Value::Number(number, drawn.unit.clone()) }
         })
+    }
+
+    /// The value of key `key` in draw `index`, in the unit of the key.
+    pub(crate) fn value(&self, key: usize, index: u32) -> f64 {
+        self.keys[key].distribution.quantile(self.share(key, index))
     }
 
     /// Where in the distribution of key `key` draw `index` is, between 0 and 1.

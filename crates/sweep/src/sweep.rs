@@ -72,6 +72,36 @@ impl Sweep {
         self.points
     }
 
+    /// The keys that take values one after the other.
+    #[must_use]
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// How their values are combined.
+    #[must_use]
+    pub const fn arrangement(&self) -> Arrangement {
+        self.arrangement
+    }
+
+    /// What is drawn in each combination of the axes, if anything is.
+    #[must_use]
+    pub const fn draws(&self) -> Option<&Draws> {
+        self.draws.as_ref()
+    }
+
+    /// How many draws each combination has: 1 where nothing is drawn.
+    #[must_use]
+    pub fn draws_of_each(&self) -> usize {
+        self.draws.as_ref().map_or(1, |draws| draws.count() as usize)
+    }
+
+    /// How many combinations of the axes there are: 1 without axes.
+    #[must_use]
+    pub fn combinations(&self) -> usize {
+        self.points / self.draws_of_each()
+    }
+
     /// The keys that vary with the units of their values, axes first, in the order of the settings of a point. The unit is empty of pure
     /// numbers and of what is none.
     pub fn keys(&self) -> impl Iterator<Item = (&str, &str)> {
@@ -86,26 +116,47 @@ impl Sweep {
         if index >= self.points {
             return Vec::new();
         }
-        let draws_of_each = self.draws.as_ref().map_or(1, |draws| draws.count() as usize);
-        let (combination, draw) = (index / draws_of_each, index % draws_of_each);
-        let mut settings = Vec::with_capacity(self.axes.len());
-        let mut rest = combination;
-        for axis in self.axes.iter().rev() {
-            let count = axis.values.len();
-            let at = match self.arrangement {
-                Arrangement::Grid => rest % count,
-                Arrangement::Zip => rest,
-            };
-            if self.arrangement == Arrangement::Grid {
-                rest /= count;
-            }
-            settings.push(Setting { key: &axis.key, value: axis.values[at].clone() });
-        }
-        settings.reverse();
+        let (combination, draw) = (index / self.draws_of_each(), index % self.draws_of_each());
+        let mut settings = self.combination(combination);
         if let (Some(draws), Ok(draw)) = (&self.draws, u32::try_from(draw)) {
             settings.extend(draws.settings(draw));
         }
         settings
+    }
+
+    /// What the axes are at combination `index`, without what is drawn; nothing beyond the last one.
+    #[must_use]
+    pub fn combination(&self, index: usize) -> Vec<Setting<'_>> {
+        let places = self.places(index);
+        self.axes
+            .iter()
+            .zip(places)
+            .map(|(axis, at)| Setting { key: &axis.key, value: axis.values[at].clone() })
+            .collect()
+    }
+
+    /// Which of its values each axis has at combination `index`, counted from 0; nothing beyond the last one.
+    #[must_use]
+    pub fn places(&self, index: usize) -> Vec<usize> {
+        if index >= self.combinations() {
+            return Vec::new();
+        }
+        let mut rest = index;
+        let mut places: Vec<usize> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| match self.arrangement {
+                Arrangement::Zip => index,
+                Arrangement::Grid => {
+                    let at = rest % axis.values.len();
+                    rest /= axis.values.len();
+                    at
+                }
+            })
+            .collect();
+        places.reverse();
+        places
     }
 }
 
@@ -154,7 +205,8 @@ mod tests {
         let sweep = Sweep::new(axes, Arrangement::Grid, None).unwrap();
         let all: Vec<_> = (0..sweep.points()).map(|index| written(&sweep, index)).collect();
         assert_eq!(all, ["a=1 m b=3 m", "a=1 m b=4 m", "a=1 m b=5 m", "a=2 m b=3 m", "a=2 m b=4 m", "a=2 m b=5 m"]);
-        assert!(sweep.point(6).is_empty());
+        assert!(sweep.point(6).is_empty() && sweep.combination(6).is_empty() && sweep.places(6).is_empty());
+        assert_eq!((sweep.places(4), sweep.combinations()), (vec![1, 1], 6));
     }
 
     #[test]
@@ -181,6 +233,7 @@ mod tests {
             assert_eq!(one[1], other[1]);
         }
         assert_eq!(sweep.keys().collect::<Vec<_>>(), [("a", "m"), ("mass", "kg")]);
+        assert_eq!((sweep.combinations(), sweep.draws_of_each(), sweep.combination(1).len()), (2, 7, 1));
         let alone = Sweep::new(vec![], Arrangement::Grid, Some(draws(7))).unwrap();
         assert_eq!(alone.points(), 7);
         assert_eq!(alone.point(3)[0], sweep.point(3)[1]);

@@ -1,0 +1,70 @@
+//! What nothing else is better than in both of two respects.
+
+/// The places of those `points` that no other one dominates, by the first number ascending. Of two numbers the smaller one is better; a
+/// point dominates another that it is not worse than in either and better than in one. So of equal points each is there; a point with
+/// NaN never is.
+#[must_use]
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> =
+        (0..points.len()).filter(|place| !(points[*place].0.is_nan() || points[*place].1.is_nan())).collect();
+    // Zeros of either sign are equal: 0 is added.
+    let key = |place: &usize| (points[*place].0 + 0.0, points[*place].1 + 0.0);
+    order.sort_unstable_by(|one, other| {
+        let ((x, y), (u, v)) = (key(one), key(other));
+        x.total_cmp(&u).then(y.total_cmp(&v)).then(one.cmp(other))
+    });
+    let mut last: Option<(f64, f64)> = None;
+    order.retain(|place| {
+        let here = key(place);
+        let is_better = last.is_none_or(|best| here.1 < best.1 || here == best);
+        if is_better {
+            last = Some(here);
+        }
+        is_better
+    });
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn neither_ties_nor_what_is_no_number_confuse_it() {
+        let nan = f64::NAN;
+        let points = [(2.0, 1.0), (1.0, 2.0), (1.0, 2.0), (1.0, 3.0), (2.0, 1.5), (nan, 0.0), (0.0, nan), (3.0, 1.0)];
+        assert_eq!(front(&points), [1, 2, 0]);
+        assert_eq!(front(&[(0.0, -0.0), (-0.0, 0.0), (0.0, 1.0)]), [0, 1]);
+        assert_eq!(front(&[(1.0, f64::INFINITY), (f64::NEG_INFINITY, f64::INFINITY)]), [1]);
+        assert!(front(&[]).is_empty() && front(&[(nan, nan)]).is_empty());
+    }
+
+    /// Numbers of which many are equal.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            8 => (0..6_i32).prop_map(f64::from),
+            4 => -1e300..1e300_f64,
+            1 => Just(f64::NAN),
+            1 => Just(-0.0),
+            1 => Just(f64::INFINITY),
+        ]
+    }
+
+    proptest! {
+        /// Oracle: the definition, each against each.
+        #[test]
+        fn it_is_what_each_against_each_leaves(points in prop::collection::vec((number(), number()), 0..40)) {
+            let dominates = |(x, y): (f64, f64), (u, v): (f64, f64)| x <= u && y <= v && (x < u || y < v);
+            let is_number = |place: &usize| !points[*place].0.is_nan() && !points[*place].1.is_nan();
+            let expected: Vec<usize> = (0..points.len())
+                .filter(is_number)
+                .filter(|place| !points.iter().any(|other| dominates(*other, points[*place])))
+                .collect();
+            let mut found = front(&points);
+            prop_assert!(found.windows(2).all(|pair| points[pair[0]].0 <= points[pair[1]].0));
+            found.sort_unstable();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Which key costs how much.
+//!
+//! ```text
+//! share of a key = Var(E(y | key)) / Var(y)                                                               (1)
+//! between = Σ n_b (ȳ_b − ȳ)²,   within = Σ (y − ȳ_b)²   over bins b of equal count                        (2)
+//! share ≈ (between − (K − 1)·within/(n − K)) / (between + within)                                         (3)
+//! ```
+//! (1) is the first-order index of I. Sobol', *Sensitivity estimates for nonlinear mathematical models*, Mathematical Modelling and
+//! Computational Experiment 1 (1993), which is the correlation ratio of K. Pearson. (2) estimates it from draws that were made anyway: A.
+//! Saltelli et al., *Global Sensitivity Analysis: The Primer*, 2008, section 1.2. The means of K bins scatter even where the key does
+//! nothing, by what (3) takes off: T. Kelley, *An unbiased correlation ratio measure*, PNAS 21 (1935). What the mean changes within a bin
+//! is lost, 1/K² of the share where it changes evenly.
+use crate::axis::Value;
+use crate::draws::Draws;
+use crate::sweep::Arrangement;
+use crate::table::{Column, Table};
+use std::collections::BTreeMap;
+
+/// Draws that an end of a key has at least, and as a part of all: a tenth of them.
+const FEWEST: usize = 5;
+const PART: usize = 10;
+/// Draws below which bins tell nothing.
+const FEWEST_DRAWS: usize = 12;
+
+/// Which key costs how much of a metric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivity {
+    /// The keys, that with the largest share first.
+    pub keys: Vec<Influence>,
+    /// The share of the variance that no key explains alone, 0 to 1: keys that matter together, and chance.
+    pub rest: f64,
+    /// The standard deviation that is explained, in the unit of the metric (SI).
+    pub deviation: f64,
+}
+
+/// What a key does to a metric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Influence {
+    /// The key; of axes that go side by side, all of them: `a, b`; of several engines `engine`.
+    pub key: String,
+    /// Share of the variance that it explains alone (3), 0 to 1.
+    pub share: f64,
+    /// Standard deviation that the share would have about 0 if the key did nothing; 0 of an axis, whose values all were run.
+    pub chance: f64,
+    /// The metric where the key is low. Of names: where the metric is smallest.
+    pub low: End,
+    /// The metric where the key is high. Of names: where the metric is largest.
+    pub high: End,
+    /// Standard error of the difference of both ends, in the unit of the metric (SI); 0 of an axis.
+    pub error: f64,
+}
+
+/// An end of a key.
+#[derive(Debug, Clone, PartialEq)]
+pub struct End {
+    /// What the key is there; of a drawn one the mean of the draws there, of which there are a tenth of all.
+    pub at: Value,
+    /// Mean of the metric there (SI).
+    pub mean: f64,
+}
+
+impl Influence {
+    /// How much more the metric is at the high end than at the low one (SI).
+    #[must_use]
+    pub fn difference(&self) -> f64 {
+        self.high.mean - self.low.mean
+    }
+}
+
+impl Sensitivity {
+    /// What the drawn keys do to `column`: shares of its scatter about the mean of each group. A key does in the first order what it does on
+    /// average of all groups; what it does to one of them alone is in the rest. `None` where nothing is drawn, the column does not scatter,
+    /// or it was measured in fewer than 12 draws.
+    #[must_use]
+    pub fn of_draws(table: &Table<'_>, column: &Column) -> Option<Self> {
+        let draws = table.sweep.draws()?;
+        let scatter = Scatter::of(table, column)?;
+        let mut keys: Vec<Influence> = (0..draws.keys().len()).map(|key| scatter.influence(draws, key)).collect();
+        Some(Self::sorted(&mut keys, scatter.variance))
+    }
+
+    /// What axes and engines with more than one value do to `column`: shares of the variance of the means of the groups. `None` where there is
+    /// no such axis or the column is the same everywhere.
+    #[must_use]
+    pub fn of_axes(table: &Table<'_>, column: &Column) -> Option<Self> {
+        let groups: Vec<(usize, f64)> =
+            (0..table.groups()).filter_map(|group| Some((group, mean(table.values(column, group))?))).collect();
+        let n = groups.len() as f64;
+        let average = groups.iter().map(|(_, mean)| mean / n).sum::<f64>();
+        let variance = groups.iter().map(|(_, mean)| square(mean - average) / n).sum::<f64>();
+        if !is_scattered(variance, average) {
+            return None;
+        }
+        let mut keys: Vec<Influence> =
+            factors(table).iter().filter_map(|factor| factor.influence(&groups, average, variance)).collect();
+        (!keys.is_empty()).then(|| Self::sorted(&mut keys, variance))
+    }
+
+    fn sorted(keys: &mut Vec<Influence>, variance: f64) -> Self {
+        keys.sort_by(|one, other| other.share.total_cmp(&one.share));
+        let explained: f64 = keys.iter().map(|key| key.share).sum();
+        Self { keys: std::mem::take(keys), rest: (1.0 - explained).clamp(0.0, 1.0), deviation: variance.sqrt() }
+    }
+}
+
+const fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// Whether a variance about this `mean` is more than what the numbers are rounded by, and a number.
+fn is_scattered(variance: f64, mean: f64) -> bool {
+    variance > square(8.0 * f64::EPSILON * mean) && variance.is_finite()
+}
+
+/// The mean of what was measured of `values`.
+fn mean(values: &[f64]) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for value in values.iter().filter(|value| value.is_finite()) {
+        sum += value;
+        count += 1.0;
+    }
+    (count > 0.0).then(|| sum / count)
+}
+
+/// How a metric scatters about the means of the groups.
+struct Scatter {
+    /// Draws in which it was measured, each with its mean deviation over the groups.
+    draws: Vec<(u32, f64)>,
+    /// Mean of all.
+    mean: f64,
+    /// Variance of the deviations, and the part of it that is of their means over the groups.
+    variance: f64,
+    of_means: f64,
+}
+
+impl Scatter {
+    fn of(table: &Table<'_>, column: &Column) -> Option<Self> {
+        let mut sums = vec![(0.0, 0.0_f64); table.sweep.draws_of_each()];
+        let (mut squares, mut total, mut count) = (0.0, 0.0, 0.0);
+        for group in 0..table.groups() {
+            let values = table.values(column, group);
+            let Some(mean) = mean(values) else { continue };
+            for (sum, value) in sums.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
+                let off = value - mean;
+                *sum = (sum.0 + off, sum.1 + 1.0);
+                squares += square(off);
+                total += value;
+                count += 1.0;
+            }
+        }
+        let (variance, mean) = (squares / count, total / count);
+        let measured = (0..).zip(sums).filter(|(_, (_, count))| *count > 0.0);
+        let draws: Vec<(u32, f64)> = measured.map(|(draw, (sum, count))| (draw, sum / count)).collect();
+        let n = draws.len() as f64;
+        let middle = draws.iter().map(|(_, off)| off / n).sum::<f64>();
+        let of_means = draws.iter().map(|(_, off)| square(off - middle) / n).sum::<f64>() / variance;
+        let tells = is_scattered(variance, mean) && of_means > 0.0 && draws.len() >= FEWEST_DRAWS;
+        tells.then_some(Self { draws, mean, variance, of_means: of_means.min(1.0) })
+    }
+
+    /// What key `key` of `draws` does.
+    fn influence(&self, draws: &Draws, key: usize) -> Influence {
+        let mut pairs: Vec<(f64, f64)> = self.draws.iter().map(|(draw, off)| (draws.value(key, *draw), *off)).collect();
+        pairs.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+        let ratio = Ratio::of(&pairs);
+        let ends = (pairs.len() / PART).max(FEWEST);
+        let (low, high) = (&pairs[..ends], &pairs[pairs.len() - ends..]);
+        let drawn = &draws.keys()[key];
+        let end = |pairs: &[(f64, f64)]| {
+            let n = pairs.len() as f64;
+            let (at, mean) = pairs.iter().fold((0.0, 0.0), |(at, mean), pair| (at + pair.0 / n, mean + pair.1 / n));
+            let variance = pairs.iter().map(|pair| square(pair.1 - mean)).sum::<f64>() / (n - 1.0);
+            (End { at: Value::Number(at, drawn.unit.clone()), mean: self.mean + mean }, variance / n)
+        };
+        let ((low, low_error), (high, high_error)) = (end(low), end(high));
+        Influence {
+            key: drawn.key.clone(),
+            share: (ratio.share * self.of_means).clamp(0.0, 1.0),
+            chance: ratio.chance * self.of_means,
+            low,
+            high,
+            error: (low_error + high_error).sqrt(),
+        }
+    }
+}
+
+/// The correlation ratio (3) of what is ordered by the key.
+struct Ratio {
+    share: f64,
+    chance: f64,
+}
+
+impl Ratio {
+    /// Of pairs in the order of their first numbers; as many bins as draws in each of them.
+    fn of(pairs: &[(f64, f64)]) -> Self {
+        let count = pairs.len();
+        let bins = count.isqrt();
+        let n = count as f64;
+        let average = pairs.iter().map(|pair| pair.1 / n).sum::<f64>();
+        let (mut between, mut within, mut fourth) = (0.0, 0.0, 0.0);
+        for bin in 0..bins {
+            let pairs = &pairs[bin * count / bins..(bin + 1) * count / bins];
+            let size = pairs.len() as f64;
+            let mean = pairs.iter().map(|pair| pair.1 / size).sum::<f64>();
+            between += size * square(mean - average);
+            let squares = pairs.iter().map(|pair| square(pair.1 - mean)).sum::<f64>();
+            within += squares;
+            // The fourth power of the scatter within the bin, without bias of normal numbers.
+            fourth += square(squares) / ((size - 1.0) * (size + 1.0));
+        }
+        let (k, total) = (bins as f64, between + within);
+        let share = (between - (k - 1.0) * within / (n - k)) / total;
+        // Of numbers whose mean is the same in each bin but not their scatter σ_b, `between` has the variance 2 Σ σ_b⁴.
+        let chance = (2.0 * fourth * (1.0 - 1.0 / k) * (n - 1.0) / (n - k)).sqrt() / total;
+        Self { share, chance }
+    }
+}
+
+/// An axis, axes that go side by side, or the engines.
+struct Factor {
+    key: String,
+    /// Its values, and which of them each group has.
+    values: Vec<Value>,
+    of_group: Vec<usize>,
+}
+
+fn factors(table: &Table<'_>) -> Vec<Factor> {
+    let groups = table.groups();
+    let places: Vec<Vec<usize>> =
+        (0..table.sweep.combinations()).map(|combination| table.sweep.places(combination)).collect();
+    let axes = table.sweep.axes();
+    let of_axis = |axis: usize| {
+        let of_group = (0..groups).map(|group| places[table.combination(group)][axis]).collect();
+        Factor { key: axes[axis].key.clone(), values: axes[axis].values.clone(), of_group }
+    };
+    let mut factors: Vec<Factor> = match table.sweep.arrangement() {
+        // What goes side by side cannot be told apart: they are one, with the values of the first.
+        Arrangement::Zip if axes.len() > 1 => {
+            let all: Vec<&str> = axes.iter().map(|axis| axis.key.as_str()).collect();
+            vec![Factor { key: all.join(", "), ..of_axis(0) }]
+        }
+        Arrangement::Zip | Arrangement::Grid => (0..axes.len()).map(of_axis).collect(),
+    };
+    factors.push(Factor {
+        key: "engine".to_owned(),
+        values: table.engines.iter().map(|name| Value::Text(name.clone())).collect(),
+        of_group: (0..groups).map(|group| group / table.sweep.combinations()).collect(),
+    });
+    factors.retain(|factor| factor.values.len() > 1);
+    factors
+}
+
+impl Factor {
+    /// What it does to the means of `groups` with this `average` and `variance`; nothing where it was measured at a single value.
+    fn influence(&self, groups: &[(usize, f64)], average: f64, variance: f64) -> Option<Influence> {
+        let mut of_value: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for (group, mean) in groups {
+            of_value.entry(self.of_group[*group]).or_default().push(*mean);
+        }
+        let means: Vec<(usize, f64, f64)> = of_value
+            .into_iter()
+            .filter_map(|(value, means)| Some((value, mean(&means)?, means.len() as f64 / groups.len() as f64)))
+            .collect();
+        let between: f64 = means.iter().map(|(_, mean, part)| part * square(mean - average)).sum();
+        let is_of_numbers = self.values.iter().all(|value| value.number().is_some());
+        // Numbers by themselves, names by what the metric is there.
+        let order = |place: &(usize, f64, f64)| match self.values[place.0].number() {
+            Some(number) if is_of_numbers => number,
+            _ => place.1,
+        };
+        let low = means.iter().min_by(|one, other| order(one).total_cmp(&order(other)))?;
+        let high = means.iter().max_by(|one, other| order(one).total_cmp(&order(other)))?;
+        let end = |place: &(usize, f64, f64)| End { at: self.values[place.0].clone(), mean: place.1 };
+        (means.len() > 1).then(|| Influence {
+            key: self.key.clone(),
+            share: (between / variance).clamp(0.0, 1.0),
+            chance: 0.0,
+            low: end(low),
+            high: end(high),
+            error: 0.0,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random;
+
+    /// Of noise the corrected ratio is 0 on average and scatters as it says: over 400 seeds, within three standard errors of a mean, 1/√400, and
+    /// of a standard deviation, 1/√800, of it. Uncorrected the mean would be (K − 1)/(n − 1), which is four times the scatter.
+    #[test]
+    fn noise_has_no_share() {
+        for count in [50_u32, 1000] {
+            let ratios: Vec<Ratio> = (0..400)
+                .map(|seed| {
+                    let number = |k: u32| random::between(random::number(random::stream(seed, 7), k.into()));
+                    Ratio::of(&(0..count).map(|k| (f64::from(k), number(k))).collect::<Vec<_>>())
+                })
+                .collect();
+            let n = ratios.len() as f64;
+            let chance = ratios.iter().map(|ratio| ratio.chance / n).sum::<f64>();
+            let mean = ratios.iter().map(|ratio| ratio.share / n).sum::<f64>();
+            let deviation = (ratios.iter().map(|ratio| square(ratio.share - mean) / n).sum::<f64>()).sqrt();
+            assert!(mean.abs() < 3.0 * chance / 20.0, "{count}: {mean} ± {chance}");
+            assert!((deviation / chance - 1.0).abs() < 3.0 / 800_f64.sqrt(), "{count}: {deviation}, not {chance}");
+        }
+    }
+}

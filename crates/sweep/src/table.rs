@@ -1,0 +1,134 @@
+//! What the runs of a sweep gave.
+use crate::sweep::{Setting, Sweep};
+use std::ops::Range;
+
+/// What a sweep gave: a row for each run, engines slowest, then combinations of the axes, then draws.
+///
+/// The rows of an engine with a combination are a *group*: the draws of one machine, which follow each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table<'a> {
+    /// What varied.
+    pub sweep: &'a Sweep,
+    /// Names of the engines, in the order of the rows; none stands for a single one without a name.
+    pub engines: &'a [String],
+    /// What was measured.
+    pub columns: Vec<Column>,
+    /// How each run ended.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// A metric of every run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name of the metric: `settling_time`.
+    pub name: String,
+    /// Its unit (SI); empty of a pure number.
+    pub unit: String,
+    /// Its value in each row (SI); NaN where it was not measured.
+    pub values: Vec<f64>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// All limits are kept, or there are none.
+    Good,
+    /// A limit is not kept.
+    Failed,
+    /// Nothing can be said: the run was invalid, ended in an error, or did not take place.
+    NoVerdict,
+}
+
+impl<'a> Table<'a> {
+    /// How many groups there are: engines times combinations of the axes.
+    #[must_use]
+    pub fn groups(&self) -> usize {
+        self.engines.len().max(1) * self.sweep.combinations()
+    }
+
+    /// The rows of group `group`, as far as there are some: its draws.
+    #[must_use]
+    pub fn rows(&self, group: usize) -> Range<usize> {
+        let draws = self.sweep.draws_of_each();
+        let end = self.outcomes.len();
+        (group * draws).min(end)..((group + 1) * draws).min(end)
+    }
+
+    /// The engine of group `group`; empty where it has no name.
+    #[must_use]
+    pub fn engine(&self, group: usize) -> &'a str {
+        self.engines.get(group / self.sweep.combinations()).map_or("", String::as_str)
+    }
+
+    /// Which combination of the axes group `group` is, counted from 0.
+    #[must_use]
+    pub fn combination(&self, group: usize) -> usize {
+        group % self.sweep.combinations()
+    }
+
+    /// The engine of group `group` and what its axes are, without what is drawn.
+    #[must_use]
+    pub fn settings(&self, group: usize) -> (&'a str, Vec<Setting<'a>>) {
+        let sweep: &'a Sweep = self.sweep;
+        (self.engine(group), sweep.combination(self.combination(group)))
+    }
+
+    /// The column of the metric `name`.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// What `column` has in the rows of group `group`.
+    #[must_use]
+    pub fn values<'c>(&self, column: &'c Column, group: usize) -> &'c [f64] {
+        let (rows, end) = (self.rows(group), column.values.len());
+        &column.values[rows.start.min(end)..rows.end.min(end)]
+    }
+
+    /// How many rows of group `group` ended as `outcome`.
+    #[must_use]
+    pub fn count_of(&self, outcome: Outcome, group: usize) -> usize {
+        self.outcomes[self.rows(group)].iter().filter(|one| **one == outcome).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Arrangement, Axis, Distribution, Drawn, Draws, Method, Value};
+
+    #[test]
+    fn rows_are_engines_then_combinations_then_draws() {
+        let axis = |key: &str, count: u32| {
+            let values = (0..count).map(|k| Value::Number(k.into(), String::new())).collect();
+            Axis { key: key.into(), values }
+        };
+        let drawn = Drawn {
+            key: "mass".into(),
+            unit: "kg".into(),
+            distribution: Distribution::Uniform { low: 0.0, high: 1.0 },
+        };
+        let draws = Draws::new(4, 1, Method::Random, vec![drawn]).unwrap();
+        let sweep = Sweep::new(vec![axis("a", 2), axis("b", 3)], Arrangement::Grid, Some(draws)).unwrap();
+        let engines = ["exact".to_owned(), "mujoco".to_owned()];
+        let rows = engines.len() * sweep.points();
+        let mut outcomes = vec![Outcome::Good; rows];
+        outcomes[29] = Outcome::Failed;
+        let values = (0..rows).map(|row| row as f64).collect();
+        let column = Column { name: "move_time".into(), unit: "s".into(), values };
+        let table = Table { sweep: &sweep, engines: &engines, columns: vec![column], outcomes };
+        assert_eq!((table.groups(), table.rows(7), table.engine(7)), (12, 28..32, "mujoco"));
+        let (engine, settings) = table.settings(7);
+        let written: Vec<String> = settings.iter().map(Setting::written).collect();
+        assert_eq!((engine, written), ("mujoco", vec!["a=0".to_owned(), "b=1".to_owned()]));
+        let column = table.column("move_time").unwrap();
+        assert_eq!(table.values(column, 7), [28.0, 29.0, 30.0, 31.0]);
+        assert_eq!((table.count_of(Outcome::Failed, 7), table.count_of(Outcome::Good, 7)), (1, 3));
+        assert!(table.column("speed").is_none());
+        // The point of each row is the one that its settings are of.
+        for row in table.rows(7) {
+            assert_eq!(sweep.point(row % sweep.points())[..2], settings);
+        }
+    }
+}
