@@ -68,15 +68,21 @@ impl Influence {
 }
 
 impl Sensitivity {
-    /// What the drawn keys do to `column`: shares of its scatter about the mean of each group. A key does in the first order what it does on
-    /// average of all groups; what it does to one of them alone is in the rest. `None` where nothing is drawn, the column does not scatter,
-    /// or it was measured in fewer than 12 draws.
+    /// What the drawn keys do to `column`: shares of its scatter within a group, about the mean of that, averaged over the groups. So a key that
+    /// lengthens the time with one value of an axis and shortens it with another has its share, while the difference of its ends, an
+    /// average too, may be small. `None` where nothing is drawn, or where no group scatters and was measured in 12 draws or more.
     #[must_use]
     pub fn of_draws(table: &Table<'_>, column: &Column) -> Option<Self> {
         let draws = table.sweep.draws()?;
-        let scatter = Scatter::of(table, column)?;
-        let mut keys: Vec<Influence> = (0..draws.keys().len()).map(|key| scatter.influence(draws, key)).collect();
-        Some(Self::sorted(&mut keys, scatter.variance))
+        let groups: Vec<Group<'_>> =
+            (0..table.groups()).filter_map(|group| Group::of(table.values(column, group))).collect();
+        let (squares, count) = groups.iter().fold((0.0, 0.0), |sum, one| (sum.0 + one.squares, sum.1 + one.count));
+        if !(squares > 0.0 && squares.is_finite()) {
+            return None;
+        }
+        let mut keys: Vec<Influence> =
+            (0..draws.keys().len()).map(|key| influence(&groups, draws, key, squares)).collect();
+        Some(Self::sorted(&mut keys, squares / count))
     }
 
     /// What axes and engines with more than one value do to `column`: shares of the variance of the means of the groups. `None` where there is
@@ -122,66 +128,64 @@ fn mean(values: &[f64]) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// How a metric scatters about the means of the groups.
-struct Scatter {
-    /// Draws in which it was measured, each with its mean deviation over the groups.
-    draws: Vec<(u32, f64)>,
-    /// Mean of all.
-    mean: f64,
-    /// Variance of the deviations, and the part of it that is of their means over the groups.
-    variance: f64,
-    of_means: f64,
+/// The draws of a group in which a metric was measured.
+struct Group<'c> {
+    values: &'c [f64],
+    count: f64,
+    /// Sum of the squares about the mean.
+    squares: f64,
 }
 
-impl Scatter {
-    fn of(table: &Table<'_>, column: &Column) -> Option<Self> {
-        let mut sums = vec![(0.0, 0.0_f64); table.sweep.draws_of_each()];
-        let (mut squares, mut total, mut count) = (0.0, 0.0, 0.0);
-        for group in 0..table.groups() {
-            let values = table.values(column, group);
-            let Some(mean) = mean(values) else { continue };
-            for (sum, value) in sums.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-                let off = value - mean;
-                *sum = (sum.0 + off, sum.1 + 1.0);
-                squares += square(off);
-                total += value;
-                count += 1.0;
-            }
-        }
-        let (variance, mean) = (squares / count, total / count);
-        let measured = (0..).zip(sums).filter(|(_, (_, count))| *count > 0.0);
-        let draws: Vec<(u32, f64)> = measured.map(|(draw, (sum, count))| (draw, sum / count)).collect();
-        let n = draws.len() as f64;
-        let middle = draws.iter().map(|(_, off)| off / n).sum::<f64>();
-        let of_means = draws.iter().map(|(_, off)| square(off - middle) / n).sum::<f64>() / variance;
-        let tells = is_scattered(variance, mean) && of_means > 0.0 && draws.len() >= FEWEST_DRAWS;
-        tells.then_some(Self { draws, mean, variance, of_means: of_means.min(1.0) })
+impl<'c> Group<'c> {
+    /// A group that scatters, with enough draws for bins.
+    fn of(values: &'c [f64]) -> Option<Self> {
+        let mean = mean(values)?;
+        let measured = || values.iter().filter(|value| value.is_finite());
+        let squares: f64 = measured().map(|value| square(value - mean)).sum();
+        let count = measured().count();
+        let tells = count >= FEWEST_DRAWS && is_scattered(squares / count as f64, mean);
+        tells.then_some(Self { values, count: count as f64, squares })
     }
+}
 
-    /// What key `key` of `draws` does.
-    fn influence(&self, draws: &Draws, key: usize) -> Influence {
-        let mut pairs: Vec<(f64, f64)> = self.draws.iter().map(|(draw, off)| (draws.value(key, *draw), *off)).collect();
-        pairs.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+/// What key `key` of `draws` does to `groups`, whose squares about their means are `total`.
+fn influence(groups: &[Group<'_>], draws: &Draws, key: usize, total: f64) -> Influence {
+    let mut order: Vec<(f64, usize)> = (0..draws.count()).map(|draw| draws.value(key, draw)).zip(0..).collect();
+    order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let drawn = &draws.keys()[key];
+    let n = groups.len() as f64;
+    let (mut share, mut chance, mut error) = (0.0, 0.0, 0.0);
+    let mut ends = [(0.0, 0.0); 2];
+    for group in groups {
+        let value = |(at, draw): &(f64, usize)| Some((*at, *group.values.get(*draw)?));
+        let pairs: Vec<(f64, f64)> = order.iter().filter_map(value).filter(|pair| pair.1.is_finite()).collect();
         let ratio = Ratio::of(&pairs);
-        let ends = (pairs.len() / PART).max(FEWEST);
-        let (low, high) = (&pairs[..ends], &pairs[pairs.len() - ends..]);
-        let drawn = &draws.keys()[key];
-        let end = |pairs: &[(f64, f64)]| {
-            let n = pairs.len() as f64;
-            let (at, mean) = pairs.iter().fold((0.0, 0.0), |(at, mean), pair| (at + pair.0 / n, mean + pair.1 / n));
-            let variance = pairs.iter().map(|pair| square(pair.1 - mean)).sum::<f64>() / (n - 1.0);
-            (End { at: Value::Number(at, drawn.unit.clone()), mean: self.mean + mean }, variance / n)
-        };
-        let ((low, low_error), (high, high_error)) = (end(low), end(high));
-        Influence {
-            key: drawn.key.clone(),
-            share: (ratio.share * self.of_means).clamp(0.0, 1.0),
-            chance: ratio.chance * self.of_means,
-            low,
-            high,
-            error: (low_error + high_error).sqrt(),
+        share += ratio.share * group.squares / total;
+        // The groups have the same draws: what is by chance in one of them may be in all.
+        chance += ratio.chance * group.squares / total;
+        let size = (pairs.len() / PART).max(FEWEST);
+        let [low, high] = [&pairs[..size], &pairs[pairs.len() - size..]].map(end_of);
+        for (sum, end) in ends.iter_mut().zip([&low, &high]) {
+            *sum = (sum.0 + end.at / n, sum.1 + end.mean / n);
         }
+        error += (low.variance + high.variance).sqrt() / n;
     }
+    let [low, high] = ends.map(|(at, mean)| End { at: Value::Number(at, drawn.unit.clone()), mean });
+    Influence { key: drawn.key.clone(), share: share.clamp(0.0, 1.0), chance, low, high, error }
+}
+
+/// Means of the key and of the metric in some draws, and the variance of the second one.
+struct Means {
+    at: f64,
+    mean: f64,
+    variance: f64,
+}
+
+fn end_of(pairs: &[(f64, f64)]) -> Means {
+    let n = pairs.len() as f64;
+    let (at, mean) = pairs.iter().fold((0.0, 0.0), |(at, mean), pair| (at + pair.0 / n, mean + pair.1 / n));
+    let squares: f64 = pairs.iter().map(|pair| square(pair.1 - mean)).sum();
+    Means { at, mean, variance: squares / (n - 1.0) / n }
 }
 
 /// The correlation ratio (3) of what is ordered by the key.
