@@ -203,6 +203,26 @@ fn shares_of_axes_are_those_by_hand() {
     with_table(&sweep, &[], |_, _| 7.0, |table| assert!(Sensitivity::of_axes(table, &table.columns[0]).is_none()));
 }
 
+/// A slow value of one axis is not measured with the high value of the other: that is no merit of the other one. Oracle: the function.
+#[test]
+fn combinations_that_are_missing_do_not_confound_the_axes() {
+    let axes = vec![axis("i", &[0.0, 1.0, 2.0, 3.0]), axis("j", &[0.0, 1.0, 2.0])];
+    let sweep = Sweep::new(axes, Arrangement::Grid, None).unwrap();
+    let sum = |x: &[f64]| if x[0] > 1.5 && x[1] > 0.5 { f64::NAN } else { 100.0 * x[0] + x[1] };
+    with_table(
+        &sweep,
+        &[],
+        |_, x| sum(x),
+        |table| {
+            let found = Sensitivity::of_axes(table, &table.columns[0]).unwrap();
+            let difference = |key: &str| found.keys.iter().find(|one| one.key == key).unwrap().difference();
+            // Turns end at 1e-12 of the deviation, which is 100, and each leaves a part of what was left.
+            assert!((difference("i") - 300.0).abs() < 1e-8 && (difference("j") - 2.0).abs() < 1e-8, "{found:?}");
+            assert!(found.rest < 1e-12 && found.keys[0].key == "i" && found.keys[1].share < 1e-3, "{found:?}");
+        },
+    );
+}
+
 #[test]
 fn keys_that_go_side_by_side_are_one_and_names_have_ends_too() {
     let names =
