@@ -1,5 +1,5 @@
 //! What a person or a machine reads of a run: tables, comparison in words, JUnit, the drawing of a plan,
-//! the timing diagram of a run, the object dictionary of a drive, what is inside an FMU.
+//! the timing diagram of a run, what a sweep gave, the object dictionary of a drive, what is inside an FMU.
 //!
 //! What is said of runs is made from [`Results`](servobench_results::Results), which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
@@ -17,6 +17,7 @@ mod plan;
 mod row_notes;
 mod said;
 mod style;
+mod sweep;
 mod text;
 mod timing;
 mod verdict_table;
@@ -28,6 +29,7 @@ pub use junit::junit;
 pub use object_table::object_table;
 pub use plan::{PlannedMove, PointChoice, Unsent};
 pub use style::{Style, painted, shown};
+pub use sweep::{SweepOptions, sweep_front, sweep_map, sweep_table};
 pub use text::{elided, wrapped};
 pub use timing::{TimingOptions, timing_diagram};
 pub use verdict_table::{brief, run_count, verdict_table};

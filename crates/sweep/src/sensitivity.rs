@@ -14,11 +14,14 @@ use crate::axis::Value;
 use crate::draws::Draws;
 use crate::sweep::Arrangement;
 use crate::table::{Column, Table};
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 /// Draws that an end of a key has at least, and as a part of all: a tenth of them.
 const FEWEST: usize = 5;
 const PART: usize = 10;
+/// Turns of the least squares at most, and changes that are none, in standard deviations.
+const MOST_TURNS: usize = 200;
+const NO_MORE: f64 = 1e-12;
 /// Draws below which bins tell nothing.
 const FEWEST_DRAWS: usize = 12;
 
@@ -68,19 +71,25 @@ impl Influence {
 }
 
 impl Sensitivity {
-    /// What the drawn keys do to `column`: shares of its scatter about the mean of each group. A key does in the first order what it does on
-    /// average of all groups; what it does to one of them alone is in the rest. `None` where nothing is drawn, the column does not scatter,
-    /// or it was measured in fewer than 12 draws.
+    /// What the drawn keys do to `column`: shares of its scatter within a group, about the mean of that, averaged over the groups. So a key that
+    /// lengthens the time with one value of an axis and shortens it with another has its share, while the difference of its ends, an
+    /// average too, may be small. `None` where nothing is drawn, or where no group scatters and was measured in 12 draws or more.
     #[must_use]
     pub fn of_draws(table: &Table<'_>, column: &Column) -> Option<Self> {
         let draws = table.sweep.draws()?;
-        let scatter = Scatter::of(table, column)?;
-        let mut keys: Vec<Influence> = (0..draws.keys().len()).map(|key| scatter.influence(draws, key)).collect();
-        Some(Self::sorted(&mut keys, scatter.variance))
+        let groups: Vec<Group<'_>> =
+            (0..table.groups()).filter_map(|group| Group::of(table.values(column, group))).collect();
+        let (squares, count) = groups.iter().fold((0.0, 0.0), |sum, one| (sum.0 + one.squares, sum.1 + one.count));
+        if !(squares > 0.0 && squares.is_finite()) {
+            return None;
+        }
+        let keys: Vec<Influence> = (0..draws.keys().len()).map(|key| influence(&groups, draws, key, squares)).collect();
+        let explained: f64 = keys.iter().map(|key| key.share).sum();
+        Some(Self::sorted(keys, 1.0 - explained, squares / count))
     }
 
-    /// What axes and engines with more than one value do to `column`: shares of the variance of the means of the groups. `None` where there is
-    /// no such axis or the column is the same everywhere.
+    /// What axes and engines with more than one value do to `column`: shares of the variance of the means of the groups. Where all were
+    /// measured they and the rest are all of it. `None` where there is no such axis or the column is the same everywhere.
     #[must_use]
     pub fn of_axes(table: &Table<'_>, column: &Column) -> Option<Self> {
         let groups: Vec<(usize, f64)> =
@@ -91,15 +100,17 @@ impl Sensitivity {
         if !is_scattered(variance, average) {
             return None;
         }
-        let mut keys: Vec<Influence> =
-            factors(table).iter().filter_map(|factor| factor.influence(&groups, average, variance)).collect();
-        (!keys.is_empty()).then(|| Self::sorted(&mut keys, variance))
+        let factors = factors(table);
+        let (effects, rest) = effects(&groups, &factors, average, variance);
+        let each = factors.iter().zip(&effects);
+        let keys: Vec<Influence> =
+            each.filter_map(|(factor, effects)| factor.influence(&groups, effects, average, variance)).collect();
+        (!keys.is_empty()).then(|| Self::sorted(keys, rest / variance, variance))
     }
 
-    fn sorted(keys: &mut Vec<Influence>, variance: f64) -> Self {
+    fn sorted(mut keys: Vec<Influence>, rest: f64, variance: f64) -> Self {
         keys.sort_by(|one, other| other.share.total_cmp(&one.share));
-        let explained: f64 = keys.iter().map(|key| key.share).sum();
-        Self { keys: std::mem::take(keys), rest: (1.0 - explained).clamp(0.0, 1.0), deviation: variance.sqrt() }
+        Self { keys, rest: rest.clamp(0.0, 1.0), deviation: variance.sqrt() }
     }
 }
 
@@ -122,66 +133,64 @@ fn mean(values: &[f64]) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// How a metric scatters about the means of the groups.
-struct Scatter {
-    /// Draws in which it was measured, each with its mean deviation over the groups.
-    draws: Vec<(u32, f64)>,
-    /// Mean of all.
-    mean: f64,
-    /// Variance of the deviations, and the part of it that is of their means over the groups.
-    variance: f64,
-    of_means: f64,
+/// The draws of a group in which a metric was measured.
+struct Group<'c> {
+    values: &'c [f64],
+    count: f64,
+    /// Sum of the squares about the mean.
+    squares: f64,
 }
 
-impl Scatter {
-    fn of(table: &Table<'_>, column: &Column) -> Option<Self> {
-        let mut sums = vec![(0.0, 0.0_f64); table.sweep.draws_of_each()];
-        let (mut squares, mut total, mut count) = (0.0, 0.0, 0.0);
-        for group in 0..table.groups() {
-            let values = table.values(column, group);
-            let Some(mean) = mean(values) else { continue };
-            for (sum, value) in sums.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-                let off = value - mean;
-                *sum = (sum.0 + off, sum.1 + 1.0);
-                squares += square(off);
-                total += value;
-                count += 1.0;
-            }
-        }
-        let (variance, mean) = (squares / count, total / count);
-        let measured = (0..).zip(sums).filter(|(_, (_, count))| *count > 0.0);
-        let draws: Vec<(u32, f64)> = measured.map(|(draw, (sum, count))| (draw, sum / count)).collect();
-        let n = draws.len() as f64;
-        let middle = draws.iter().map(|(_, off)| off / n).sum::<f64>();
-        let of_means = draws.iter().map(|(_, off)| square(off - middle) / n).sum::<f64>() / variance;
-        let tells = is_scattered(variance, mean) && of_means > 0.0 && draws.len() >= FEWEST_DRAWS;
-        tells.then_some(Self { draws, mean, variance, of_means: of_means.min(1.0) })
+impl<'c> Group<'c> {
+    /// A group that scatters, with enough draws for bins.
+    fn of(values: &'c [f64]) -> Option<Self> {
+        let mean = mean(values)?;
+        let measured = || values.iter().filter(|value| value.is_finite());
+        let squares: f64 = measured().map(|value| square(value - mean)).sum();
+        let count = measured().count();
+        let tells = count >= FEWEST_DRAWS && is_scattered(squares / count as f64, mean);
+        tells.then_some(Self { values, count: count as f64, squares })
     }
+}
 
-    /// What key `key` of `draws` does.
-    fn influence(&self, draws: &Draws, key: usize) -> Influence {
-        let mut pairs: Vec<(f64, f64)> = self.draws.iter().map(|(draw, off)| (draws.value(key, *draw), *off)).collect();
-        pairs.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+/// What key `key` of `draws` does to `groups`, whose squares about their means are `total`.
+fn influence(groups: &[Group<'_>], draws: &Draws, key: usize, total: f64) -> Influence {
+    let mut order: Vec<(f64, usize)> = (0..draws.count()).map(|draw| draws.value(key, draw)).zip(0..).collect();
+    order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let drawn = &draws.keys()[key];
+    let n = groups.len() as f64;
+    let (mut share, mut chance, mut error) = (0.0, 0.0, 0.0);
+    let mut ends = [(0.0, 0.0); 2];
+    for group in groups {
+        let value = |(at, draw): &(f64, usize)| Some((*at, *group.values.get(*draw)?));
+        let pairs: Vec<(f64, f64)> = order.iter().filter_map(value).filter(|pair| pair.1.is_finite()).collect();
         let ratio = Ratio::of(&pairs);
-        let ends = (pairs.len() / PART).max(FEWEST);
-        let (low, high) = (&pairs[..ends], &pairs[pairs.len() - ends..]);
-        let drawn = &draws.keys()[key];
-        let end = |pairs: &[(f64, f64)]| {
-            let n = pairs.len() as f64;
-            let (at, mean) = pairs.iter().fold((0.0, 0.0), |(at, mean), pair| (at + pair.0 / n, mean + pair.1 / n));
-            let variance = pairs.iter().map(|pair| square(pair.1 - mean)).sum::<f64>() / (n - 1.0);
-            (End { at: Value::Number(at, drawn.unit.clone()), mean: self.mean + mean }, variance / n)
-        };
-        let ((low, low_error), (high, high_error)) = (end(low), end(high));
-        Influence {
-            key: drawn.key.clone(),
-            share: (ratio.share * self.of_means).clamp(0.0, 1.0),
-            chance: ratio.chance * self.of_means,
-            low,
-            high,
-            error: (low_error + high_error).sqrt(),
+        share += ratio.share * group.squares / total;
+        // The groups have the same draws: what is by chance in one of them may be in all.
+        chance += ratio.chance * group.squares / total;
+        let size = (pairs.len() / PART).max(FEWEST);
+        let [low, high] = [&pairs[..size], &pairs[pairs.len() - size..]].map(end_of);
+        for (sum, end) in ends.iter_mut().zip([&low, &high]) {
+            *sum = (sum.0 + end.at / n, sum.1 + end.mean / n);
         }
+        error += (low.variance + high.variance).sqrt() / n;
     }
+    let [low, high] = ends.map(|(at, mean)| End { at: Value::Number(at, drawn.unit.clone()), mean });
+    Influence { key: drawn.key.clone(), share: share.clamp(0.0, 1.0), chance, low, high, error }
+}
+
+/// Means of the key and of the metric in some draws, and the variance of the second one.
+struct Means {
+    at: f64,
+    mean: f64,
+    variance: f64,
+}
+
+fn end_of(pairs: &[(f64, f64)]) -> Means {
+    let n = pairs.len() as f64;
+    let (at, mean) = pairs.iter().fold((0.0, 0.0), |(at, mean), pair| (at + pair.0 / n, mean + pair.1 / n));
+    let squares: f64 = pairs.iter().map(|pair| square(pair.1 - mean)).sum();
+    Means { at, mean, variance: squares / (n - 1.0) / n }
 }
 
 /// The correlation ratio (3) of what is ordered by the key.
@@ -251,35 +260,59 @@ fn factors(table: &Table<'_>) -> Vec<Factor> {
 }
 
 impl Factor {
-    /// What it does to the means of `groups` with this `average` and `variance`; nothing where it was measured at a single value.
-    fn influence(&self, groups: &[(usize, f64)], average: f64, variance: f64) -> Option<Influence> {
-        let mut of_value: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for (group, mean) in groups {
-            of_value.entry(self.of_group[*group]).or_default().push(*mean);
-        }
-        let means: Vec<(usize, f64, f64)> = of_value
-            .into_iter()
-            .filter_map(|(value, means)| Some((value, mean(&means)?, means.len() as f64 / groups.len() as f64)))
-            .collect();
-        let between: f64 = means.iter().map(|(_, mean, part)| part * square(mean - average)).sum();
+    /// What it does, by what each of its values adds to the `average`; nothing where it was measured at a single value.
+    fn influence(&self, groups: &[(usize, f64)], effects: &[f64], average: f64, variance: f64) -> Option<Influence> {
+        let squares: f64 = groups.iter().map(|(group, _)| square(effects[self.of_group[*group]])).sum();
+        let measured: BTreeSet<usize> = groups.iter().map(|(group, _)| self.of_group[*group]).collect();
         let is_of_numbers = self.values.iter().all(|value| value.number().is_some());
         // Numbers by themselves, names by what the metric is there.
-        let order = |place: &(usize, f64, f64)| match self.values[place.0].number() {
+        let order = |value: &usize| match self.values[*value].number() {
             Some(number) if is_of_numbers => number,
-            _ => place.1,
+            _ => effects[*value],
         };
-        let low = means.iter().min_by(|one, other| order(one).total_cmp(&order(other)))?;
-        let high = means.iter().max_by(|one, other| order(one).total_cmp(&order(other)))?;
-        let end = |place: &(usize, f64, f64)| End { at: self.values[place.0].clone(), mean: place.1 };
-        (means.len() > 1).then(|| Influence {
+        let low = measured.iter().min_by(|one, other| order(one).total_cmp(&order(other)))?;
+        let high = measured.iter().max_by(|one, other| order(one).total_cmp(&order(other)))?;
+        let end = |value: usize| End { at: self.values[value].clone(), mean: average + effects[value] };
+        (measured.len() > 1).then(|| Influence {
             key: self.key.clone(),
-            share: (between / variance).clamp(0.0, 1.0),
+            share: (squares / groups.len() as f64 / variance).clamp(0.0, 1.0),
             chance: 0.0,
-            low: end(low),
-            high: end(high),
+            low: end(*low),
+            high: end(*high),
             error: 0.0,
         })
     }
+}
+
+/// What each value of each of the `factors` adds to the mean of all `groups`, and the mean square of what is left. It is what the groups with a
+/// value have on average beyond all of them, where each has been measured; where some are missing, the other factors are not as often
+/// the same with each value, and what they add is taken off first: least squares by turns (*backfitting*, L. Breiman & J. Friedman,
+/// Journal of the American Statistical Association 80, 1985).
+fn effects(groups: &[(usize, f64)], factors: &[Factor], average: f64, variance: f64) -> (Vec<Vec<f64>>, f64) {
+    let mut effects: Vec<Vec<f64>> = factors.iter().map(|factor| vec![0.0; factor.values.len()]).collect();
+    let mut rest: Vec<f64> = groups.iter().map(|(_, mean)| mean - average).collect();
+    for _ in 0..MOST_TURNS {
+        let mut largest = 0.0_f64;
+        for (factor, effects) in factors.iter().zip(&mut effects) {
+            let mut sums = vec![(0.0, 0.0); factor.values.len()];
+            for ((group, _), rest) in groups.iter().zip(&rest) {
+                let sum = &mut sums[factor.of_group[*group]];
+                *sum = (sum.0 + rest, sum.1 + 1.0);
+            }
+            let more: Vec<f64> = sums.iter().map(|(sum, count)| if *count > 0.0 { sum / count } else { 0.0 }).collect();
+            for ((group, _), rest) in groups.iter().zip(&mut rest) {
+                *rest -= more[factor.of_group[*group]];
+            }
+            for (effect, more) in effects.iter_mut().zip(&more) {
+                *effect += more;
+                largest = largest.max(more.abs());
+            }
+        }
+        if largest <= NO_MORE * variance.sqrt() {
+            break;
+        }
+    }
+    (effects, rest.iter().map(|rest| square(*rest)).sum::<f64>() / groups.len() as f64)
 }
 
 #[cfg(test)]

@@ -91,7 +91,7 @@ const PLAN: [(&str, May); 35] = [
         "report",
         May::On(&[
             "base", "config", "cia402", "fieldbus", "motion", "planner", "fmi", "signals", "trace", "metrics",
-            "results",
+            "results", "sweep",
         ]),
     ),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),

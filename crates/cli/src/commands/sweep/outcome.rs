@@ -5,17 +5,7 @@ use crate::console::{print, style};
 use crate::error::CliError;
 use crate::outputs::OutputFolder;
 use crate::suite::how_to_resume;
-use servobench_report::{Style, run_count, wrapped};
-fn sweep_front(_: &Table<'_>) -> Option<String> {
-    None
-}
-fn sweep_map(_: &Table<'_>) -> Option<String> {
-    None
-}
-fn sweep_table(_: &Table<'_>, _: Style) -> String {
-    String::new()
-}
-
+use servobench_report::{SweepOptions, run_count, sweep_front, sweep_map, sweep_table, wrapped};
 use servobench_results::{Columns, Outcome as Ended, Runs, SWEEP_FRONT, SWEEP_MAP, TABLE_CSV, TABLE_PARQUET};
 use servobench_sweep::{Column, Outcome, Sweep, Table};
 use servobench_trace::{Cells, Table as File, TableColumn};
@@ -43,8 +33,9 @@ pub(super) fn say_what_came(
 
     let engines = points.engines();
     let table = table_of(points.sweep(), &engines, columns);
+    let options = SweepOptions { title: points.description(), judged: points.is_judged(), ..SweepOptions::default() };
     let mut written = vec![TABLE_CSV, TABLE_PARQUET];
-    for (name, drawing) in [(SWEEP_MAP, sweep_map(&table)), (SWEEP_FRONT, sweep_front(&table))] {
+    for (name, drawing) in [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(&table, &options))] {
         if let Some(drawing) = drawing {
             out.file(name)?.write(drawing)?;
             written.push(name);
@@ -61,7 +52,7 @@ pub(super) fn say_what_came(
     };
     let folder = out.path().display();
     let where_it_is = format!("results.json, {}: {folder}\n{resume}", written.join(", "));
-    print(&[described, sweep_table(&table, style), "\n".into(), count, where_it_is].concat())
+    print(&[described, sweep_table(&table, style, &options), "\n".into(), count, where_it_is].concat())
 }
 
 /// The runs as the crate of sweeps counts them.

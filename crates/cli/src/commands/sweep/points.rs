@@ -9,7 +9,7 @@ use crate::suite::{NotReady, Plan};
 use servobench_config::Choice as _;
 use servobench_plant::EngineName;
 use servobench_results::{Digest, Digester, Planned, RunIdentity, Unfinished, printable, printable_lines};
-use servobench_scenario::{LoadError, Override, SweepRequest, load_sweep, root_of};
+use servobench_scenario::{LoadError, Override, Step, SweepRequest, load_sweep, root_of};
 use servobench_suite::{Job, Source, file_name};
 use servobench_sweep::Sweep;
 use std::borrow::Cow;
@@ -59,6 +59,13 @@ impl<'a> Points<'a> {
 
     pub(super) fn description(&self) -> &str {
         &self.request.description
+    }
+
+    /// Whether a run can fail by what was measured: the scenario has limits.
+    pub(super) fn is_judged(&self) -> bool {
+        let of_moves = |step: &Step| matches!(step, Step::Move(step) if !step.metric_limits.is_empty());
+        let scenario = &self.base.scenario;
+        !scenario.limits.is_empty() || scenario.program.iter().any(of_moves)
     }
 
     pub(super) fn engines(&self) -> Vec<String> {

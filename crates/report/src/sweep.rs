@@ -1,0 +1,79 @@
+//! What a sweep gave: tables, and drawings over what varied.
+//!
+//! ```text
+//! Table of runs → Survey: dimensions (what varies), spread of each metric in each group
+//!     ↳ combinations, quantiles, sensitivities, front                       in words
+//!     ↳ heat maps over two dimensions, lines over one, distributions of draws, time against vibration     as SVG
+//! ```
+mod cells;
+mod colours;
+mod combinations;
+mod dimension;
+mod distributions;
+mod heat;
+mod layers;
+mod lines;
+mod metric;
+mod scale;
+mod scatter;
+mod sections;
+
+mod sheet;
+mod survey;
+
+use crate::style::Style;
+use servobench_sweep::Table;
+use survey::Survey;
+
+/// What a reader of a sweep looks at.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SweepOptions<'a> {
+    /// What the sweep is called: headline of drawings.
+    pub title: &'a str,
+    /// The metric that is time; `None`: `move_and_settling_time`, else `move_time`.
+    pub time: Option<&'a str>,
+    /// The metric that is vibration; `None`: `residual_vibration_amplitude`, else `residual_vibration_pp`.
+    pub vibration: Option<&'a str>,
+    /// Whether runs are judged by limits. If they are not, nothing is said of how many keep them.
+    pub judged: bool,
+}
+
+/// What a sweep gave, in words of at most [`Style::width`] columns: a row for each combination of the keys and each engine, what draws
+/// scatter by, which key costs how much, and the combinations that no other one beats in time and vibration.
+///
+/// Of draws a row has the median and the value that 95 % of them are within, and the share that keeps all limits with the bound that it is
+/// above with 95 % confidence (Clopper and Pearson). A run without a verdict does not keep them, and what it measured is not counted.
+#[must_use]
+pub fn sweep_table(table: &Table<'_>, style: Style, options: &SweepOptions<'_>) -> String {
+    let survey = Survey::of(table, options);
+    let sections = [
+        combinations::combinations(&survey, style),
+        sections::quantiles(&survey, style),
+        sections::sensitivities(&survey, style),
+        sections::front(&survey, style),
+        sections::remarks(&survey, style),
+    ];
+    let parts: Vec<String> = sections.into_iter().filter(|part| !part.is_empty()).collect();
+    parts.join("\n")
+}
+
+/// The metrics of a sweep over what varied, as SVG: over two dimensions colours, over one dimension lines, over draws alone their
+/// distribution. Further dimensions are small drawings side by side. `None` where nothing varied or nothing was measured.
+#[must_use]
+pub fn sweep_map(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String> {
+    let survey = Survey::of(table, options);
+    match survey.dimensions.len() {
+        0 if survey.is_drawn => distributions::distributions(&survey, options.title),
+        0 => None,
+        1 => lines::lines(&survey, options.title),
+        _ => heat::heat_maps(&survey, options.title),
+    }
+}
+
+/// Vibration against time of all combinations of a sweep, as SVG, with those that no other one beats in both. Of draws it is the medians.
+/// `None` where nothing but draws varied, or not both were measured.
+#[must_use]
+pub fn sweep_front(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String> {
+    let survey = Survey::of(table, options);
+    if survey.dimensions.is_empty() { None } else { scatter::scatter(&survey, options.title) }
+}
