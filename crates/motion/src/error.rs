@@ -128,7 +128,7 @@ pub enum PlanError {
         /// Number of samples in memory.
         capacity: usize,
     },
-    /// A damping ratio for which the equations of the extra-insensitive shaper have no usable solution.
+    /// A damping ratio for which the equations of an extra-insensitive shaper have no usable solution.
     #[error(
         "no extra-insensitive shaper found for `damping_ratio` = {damping_ratio} and `tolerable` = {tolerable}: lower \
          either, or take a ZVD shaper"

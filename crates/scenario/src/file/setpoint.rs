@@ -91,7 +91,7 @@ table! {
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         /// Damping ratio of the mode; default: 0.
         damping: f64 = not_negative(Plain(&RATIO), "0.02"),
-        /// Part of the vibration that "ei" may leave; default: 0.05.
+        /// Part of the vibration that an EI shaper may leave; default: 0.05.
         tolerable: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }

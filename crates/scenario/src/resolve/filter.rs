@@ -22,8 +22,10 @@ pub(super) fn filter(
         Some(given) => {
             let kind = *given.kind.given()?;
             let tolerable = given.tolerable.optional().ok()?.copied();
-            if let (Some(_), Some(span), true) = (tolerable, given.tolerable.span(), kind != Some(ShaperKind::Ei)) {
-                said.once(span, |report| report.error(span, "`tolerable` is for the shaper \"ei\"", ""), report);
+            if let (Some(_), Some(span), true) =
+                (tolerable, given.tolerable.span(), !kind.is_some_and(ShaperKind::has_tolerable))
+            {
+                said.once(span, |report| report.error(span, "`tolerable` is for the EI shapers", ""), report);
             }
             match kind {
                 None => None,

@@ -149,7 +149,7 @@ fn keys_that_a_way_does_not_have() {
         (
             "shaper = { kind = \"zv\", frequency = \"9 Hz\", tolerable = 0.1 }\n",
             TO,
-            &["1:57: `tolerable` is for the shaper \"ei\""],
+            &["1:57: `tolerable` is for the EI shapers"],
         ),
         (
             "averages = [\"10 ms\", \"0.1 ms\"]\n",

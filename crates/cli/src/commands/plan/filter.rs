@@ -22,7 +22,7 @@ pub(crate) struct FilterArgs {
     /// Damping ratio of the vibration [default: 0].
     #[arg(long, value_name = "RATIO", value_parser = ratio, requires = "shaper")]
     shaper_damping: Option<f64>,
-    /// Part of the vibration that the EI shaper may leave [default: 5 %].
+    /// Part of the vibration that an EI shaper may leave [default: 5 %].
     #[arg(long, value_name = "RATIO", value_parser = ratio, requires = "shaper")]
     shaper_tolerable: Option<f64>,
     /// Moving averages one after the other, as "10 ms,5 ms"; they need --sample-time.
@@ -62,7 +62,7 @@ impl FilterArgs {
 
     fn shaping(&self) -> Result<Option<Shaping>, PlanMistake> {
         let Some((kind, frequency)) = self.shaper.zip(self.shaper_frequency) else { return Ok(None) };
-        if self.shaper_tolerable.is_some() && kind != ShaperKind::Ei {
+        if self.shaper_tolerable.is_some() && !kind.has_tolerable() {
             return Err(PlanMistake::TolerableOfOthers);
         }
         let shaper = Shaper::new(kind, self.shaper_tolerable.unwrap_or(Shaper::TOLERABLE));

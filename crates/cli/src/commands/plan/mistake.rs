@@ -43,7 +43,7 @@ pub(crate) enum PlanMistake {
     UnusedLimits,
     #[error("--passes are those of --velocities smooth: choose that, or leave them out")]
     PassesOfOthers,
-    #[error("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency")]
+    #[error("--shaper-tolerable is for the EI shapers: the others leave nothing at the frequency")]
     TolerableOfOthers,
     #[error("--shaper: {0}")]
     Shaper(PlanError),
