@@ -109,7 +109,8 @@ pub enum PlanError {
     },
     /// A filter with more impulses than are kept.
     #[error(
-        "the filter has {impulses} impulses, at most {capacity} are kept: cascade fewer, or filter one after the other"
+        "the filter has {impulses} impulses, at most {capacity} are kept: take fewer shapers or shorter ones, or filter one \
+         after the other"
     )]
     TooManyImpulses {
         /// Number of impulses.

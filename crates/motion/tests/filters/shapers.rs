@@ -292,7 +292,7 @@ fn refusals_name_value_bound_and_way_out() {
     let many = Impulses::zvdd(&vibration).and(&Impulses::zvdd(&mode(17.0, 0.0))).unwrap();
     assert_eq!(
         message(many.and(&Impulses::zvdd(&mode(29.0, 0.0))).unwrap_err()),
-        "the filter has 64 impulses, at most 32 are kept: cascade fewer, or filter one after the other"
+        "the filter has 64 impulses, at most 32 are kept: take fewer shapers or shorter ones, or filter one after the other"
     );
 }
 

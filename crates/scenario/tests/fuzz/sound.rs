@@ -94,9 +94,9 @@ fn step(step: &Step) {
             if !matches!(generator, Generator::Rockwell(_)) {
                 assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
             }
-            if let Some(Shaping { shaper, frequency, damping }) = filter.shaper {
-                positive("frequency of a shaper", frequency);
-                not_negative("damping", damping);
+            for Shaping { shaper, frequency, damping } in &filter.shapers {
+                positive("frequency of a shaper", *frequency);
+                not_negative("damping", *damping);
                 if let Some(tolerable) = shaper.tolerable() {
                     positive("tolerable", tolerable);
                 }
