@@ -228,7 +228,7 @@ fn position_profiles_are_sent_in_the_cycle_of_a_bus() {
     assert!(error(300) > 0.0 && error(300).to_bits() == error(4000).to_bits(), "{} {}", error(300), error(4000));
 }
 
-/// A ZVD shaper adds a period, averages add their lengths.
+/// A ZVD shaper adds a period, averages add their lengths, two shapers as much as each.
 #[test]
 fn filters_make_a_move_longer() {
     let line = format!("--order 3 --distance 0.1m {LAMBRECHTS}").replace("--snap 1000m/s4", "");
@@ -237,7 +237,12 @@ fn filters_make_a_move_longer() {
         ("--shaper zv --shaper-frequency 10Hz", 0.05),
         ("--shaper zvd --shaper-frequency 10Hz", 0.1),
         ("--shaper zvdd --shaper-frequency 10Hz", 0.15),
+        ("--shaper mzv --shaper-frequency 10Hz", 0.075),
         ("--shaper ei --shaper-frequency 10Hz --shaper-tolerable 5%", 0.1),
+        ("--shaper 2hump-ei --shaper-frequency 10Hz", 0.15),
+        ("--shaper 3hump-ei --shaper-frequency 10Hz", 0.2),
+        ("--shaper zvd,ei --shaper-frequency 10Hz,20Hz --shaper-tolerable 3% --shaper-damping 0", 0.15),
+        ("--shaper zv --shaper-frequency 10Hz --shaper mzv --shaper-frequency 30Hz", 0.075),
         ("--averages 20ms,10ms --sample-time 1ms", 0.03),
     ] {
         let plan_json = json_of(&format!("{line} {filter}"));

@@ -74,6 +74,22 @@ fn every_mistake_names_its_flag_and_the_way_out() {
             "--shaper: `zeta` must be at least 0 and below 1, got 2",
         ),
         (
+            &format!("--order 4 {LIMITS} --shaper zv,zvd --shaper-frequency 1Hz"),
+            "--shaper-frequency has 1 values and --shaper 2: give a frequency for each shaper",
+        ),
+        (
+            &format!("--order 4 {LIMITS} --shaper zv,zvd,mzv --shaper-frequency 1Hz,2Hz,3Hz --shaper-damping 0.1,0.2"),
+            "--shaper-damping has 2 values for 3 shapers: give one for all, or one for each",
+        ),
+        (
+            &format!("--order 4 {LIMITS} --shaper zv --shaper-frequency 1Hz --shaper-tolerable 1%"),
+            "--shaper-tolerable is for the EI shapers: the others leave nothing at the frequency",
+        ),
+        (
+            &format!("--order 4 {LIMITS} --shaper zvdd,zvdd,zvd --shaper-frequency 9Hz,17Hz,29Hz"),
+            "--shaper: the filter has 48 impulses, at most 32 are kept: take fewer shapers or shorter ones, or filter one after",
+        ),
+        (
             &format!("--order 4 {LIMITS} --averages 10ms"),
             "--sample-time <TIME>\n      Make every time a whole number of samples of this length, as \"1 ms\"",
         ),

@@ -109,7 +109,8 @@ pub enum PlanError {
     },
     /// A filter with more impulses than are kept.
     #[error(
-        "the filter has {impulses} impulses, at most {capacity} are kept: cascade fewer, or filter one after the other"
+        "the filter has {impulses} impulses, at most {capacity} are kept: take fewer shapers or shorter ones, or filter one \
+         after the other"
     )]
     TooManyImpulses {
         /// Number of impulses.
@@ -128,7 +129,7 @@ pub enum PlanError {
         /// Number of samples in memory.
         capacity: usize,
     },
-    /// A damping ratio for which the equations of the extra-insensitive shaper have no usable solution.
+    /// A damping ratio for which the equations of an extra-insensitive shaper have no usable solution.
     #[error(
         "no extra-insensitive shaper found for `damping_ratio` = {damping_ratio} and `tolerable` = {tolerable}: lower \
          either, or take a ZVD shaper"

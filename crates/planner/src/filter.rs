@@ -7,11 +7,12 @@ use servobench_base::{ParamError, Setpoint, positive};
 use servobench_motion::PlanError;
 use servobench_motion::shape::{Impulses, MovingAverage, Shaper, Vibration};
 
-/// An input shaper, then moving averages.
+/// Input shapers, then moving averages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
-    /// A sum of parts of the set-point, each later than the one before; exact at any time.
-    pub shaper: Option<Shaping>,
+    /// Each a sum of parts of the set-point, each later than the one before; exact at any time. One behind the other, for the
+    /// modes of the axis.
+    pub shapers: Vec<Shaping>,
     /// Means of the last samples.
     pub averages: Option<Averages>,
 }
@@ -41,12 +42,19 @@ const NEAR: f64 = 1e-6;
 
 impl Filter {
     /// No filter.
-    pub const NONE: Self = Self { shaper: None, averages: None };
+    pub const NONE: Self = Self { shapers: Vec::new(), averages: None };
 
-    /// The same with the impulses of the shaper.
+    /// The impulses of all shapers, of each with each of the others; nothing without shapers.
+    ///
+    /// # Errors
+    /// As [`Shaping::impulses`] and [`Impulses::and`].
+    pub fn impulses(&self) -> Result<Option<Impulses>, PlanError> {
+        self.shapers.iter().map(Shaping::impulses).reduce(|all, next| all?.and(&next?)).transpose()
+    }
+
+    /// The same with the impulses of the shapers.
     pub(crate) fn solved(&self) -> Result<Solved<'_>, PlanError> {
-        let impulses = self.shaper.map(|shaping| shaping.impulses()).transpose()?;
-        Ok(Solved { impulses, averages: self.averages.as_ref() })
+        Ok(Solved { impulses: self.impulses()?, averages: self.averages.as_ref() })
     }
 }
 
@@ -60,7 +68,7 @@ impl Shaping {
     }
 }
 
-/// A filter with the impulses of its shaper.
+/// A filter with the impulses of its shapers.
 pub(crate) struct Solved<'a> {
     pub(crate) impulses: Option<Impulses>,
     pub(crate) averages: Option<&'a Averages>,

@@ -127,7 +127,7 @@ impl Request {
     /// Plans it.
     ///
     /// # Errors
-    /// [`PlanError`] of the generator or of the shaper; [`PlanError::TooShort`] for a duration below that at the limits;
+    /// [`PlanError`] of the generator or of the shapers; [`PlanError::TooShort`] for a duration below that at the limits;
     /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
         let filter = self.filter.solved()?;

@@ -104,12 +104,15 @@ impl Asked {
     fn request(&self) -> Request {
         let [.., one, other] = self.magnitudes;
         let frequency = one / TAU;
-        let shaper = match self.filter % 4 {
-            0 => Some(Shaping { shaper: Shaper::Zvd, frequency, damping: 0.1 }),
-            1 => Some(Shaping { shaper: Shaper::Ei { tolerable: 0.05 }, frequency, damping: 0.02 }),
-            _ => None,
+        let zvd = Shaping { shaper: Shaper::Zvd, frequency, damping: 0.1 };
+        let ei = Shaping { shaper: Shaper::Ei { tolerable: 0.05 }, frequency: 2.5 * frequency, damping: 0.02 };
+        let mut shapers = match self.filter % 4 {
+            0 => vec![zvd],
+            1 => vec![ei],
+            2 => vec![zvd, ei],
+            _ => Vec::new(),
         };
-        let shaper = shaper.filter(|shaping| shaping.impulses().is_ok());
+        shapers.retain(|shaping| shaping.impulses().is_ok());
         // As many samples as a person would wait for.
         let averages = (self.filter.is_multiple_of(7) && other > 1e-3)
             .then(|| Averages { lengths: vec![3.0 * other, other], sample_time: other });
@@ -117,7 +120,7 @@ impl Asked {
         let unit = if self.variant.is_multiple_of(2) { other } else { 0.0 };
         let cycle = CommandCycle { period: one, first: self.signed[5], unit };
         let commands = self.filter.is_multiple_of(3).then_some(cycle);
-        Request { duration, filter: Filter { shaper, averages }, commands, ..Request::new(self.generator()) }
+        Request { duration, filter: Filter { shapers, averages }, commands, ..Request::new(self.generator()) }
     }
 }
 

@@ -258,17 +258,26 @@ fn the_references_list_every_key() {
 /// The tables of the schema as Markdown, each before those inside it.
 fn describe(path: &str, table: &Json, out: &mut String) {
     let is_array = table["type"] == "array";
-    let object = if is_array { &table["items"] } else { table };
+    // One table or a list of them is described by the one.
+    let one = &table["anyOf"][0];
+    let object = if is_array { &table["items"] } else { one.as_object().map_or(table, |_| one) };
     let in_order = object["x-order"].as_array().unwrap().iter().map(|key| key.as_str().unwrap());
     let properties: Vec<(&str, &Json)> = in_order.map(|key| (key, &object["properties"][key])).collect();
     let title = match (path, is_array) {
         ("", _) => "Top level".to_owned(),
         (_, true) => format!("`[[{path}]]`"),
+        (_, false) if one.is_object() => format!("`[{path}]` or `[[{path}]]`"),
         (_, false) => format!("`[{path}]`"),
     };
     let text = |value: &Json| value["description"].as_str().unwrap().to_owned();
-    let _ = write!(out, "\n### {title}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", text(object));
-    let is_table = |value: &Json| value["properties"].is_object() || value["items"]["properties"].is_object();
+    let _ = write!(
+        out,
+        "\n### {title}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n",
+        text(if one.is_object() { table } else { object })
+    );
+    let is_table = |value: &Json| {
+        [value, &value["items"], &value["anyOf"][0]].into_iter().any(|table| table["properties"].is_object())
+    };
     for (key, value) in &properties {
         if !is_table(value) {
             let _ = writeln!(out, "| `{key}` | {} | {} |", kind(value), text(value));

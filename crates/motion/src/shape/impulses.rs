@@ -1,8 +1,9 @@
 //! Sequences of impulses: shapers.
 use super::difference::blend;
-use super::{Vibration, extra_insensitive};
+use super::{Vibration, extra_insensitive, humps};
 use crate::PlanError;
 use crate::limits::in_range;
+use core::f64::consts::SQRT_2;
 use servobench_base::{ParamError, Setpoint, positive};
 
 /// A part of the input and how much later it comes.
@@ -28,19 +29,26 @@ impl Impulses {
     /// Zero vibration: two impulses.
     #[must_use]
     pub fn zv(vibration: &Vibration) -> Self {
-        Self::binomial(vibration, [1.0, 1.0])
+        Self::geometric(vibration, 1.0, [1.0, 1.0])
+    }
+
+    /// Modified zero vibration: three impulses over three quarters of a damped period, which leave nothing at the modelled
+    /// frequency and forgive a little more than ZV.
+    #[must_use]
+    pub fn mzv(vibration: &Vibration) -> Self {
+        Self::geometric(vibration, 0.75, [1.0, SQRT_2, 1.0])
     }
 
     /// Zero vibration and derivative: three impulses.
     #[must_use]
     pub fn zvd(vibration: &Vibration) -> Self {
-        Self::binomial(vibration, [1.0, 2.0, 1.0])
+        Self::geometric(vibration, 1.0, [1.0, 2.0, 1.0])
     }
 
     /// Zero vibration and two derivatives: four impulses.
     #[must_use]
     pub fn zvdd(vibration: &Vibration) -> Self {
-        Self::binomial(vibration, [1.0, 3.0, 3.0, 1.0])
+        Self::geometric(vibration, 1.0, [1.0, 3.0, 3.0, 1.0])
     }
 
     /// Extra-insensitive: three impulses over one damped period that leave the part `tolerable` of the vibration at its
@@ -54,25 +62,55 @@ impl Impulses {
     /// solution is found: never up to a damping ratio of 0.1, nor up to 0.3 with a `tolerable` up to 0.2, nor up to 0.5
     /// with one up to 0.05.
     pub fn ei(vibration: &Vibration, tolerable: f64) -> Result<Self, PlanError> {
+        Self::extra_insensitive(vibration, tolerable, extra_insensitive::solve)
+    }
+
+    /// Extra-insensitive with two humps: four impulses over about one and a half damped periods that leave nothing at the modelled
+    /// frequency and at one on either side of it, and exactly `tolerable` at the tops of the two humps in between, also of a
+    /// damped mode.
+    ///
+    /// # Errors
+    /// As [`ei`](Self::ei); a solution is found up to a damping ratio of 0.05 with any `tolerable`, 0.1 with one up to 0.3, 0.2
+    /// up to 0.1, 0.3 up to 0.05.
+    pub fn two_hump_ei(vibration: &Vibration, tolerable: f64) -> Result<Self, PlanError> {
+        Self::extra_insensitive(vibration, tolerable, humps::solve::<4, 10>)
+    }
+
+    /// Extra-insensitive with three humps: five impulses over about two damped periods that leave nothing at two frequencies on
+    /// either side of the modelled one, and exactly `tolerable` at the tops of the three humps in between, the middle one at the
+    /// modelled frequency, also of a damped mode.
+    ///
+    /// # Errors
+    /// As [`ei`](Self::ei); a solution is found undamped with any `tolerable`, up to a damping ratio of 0.05 with one up to 0.3, 0.1
+    /// up to 0.2, 0.2 up to 0.05, 0.3 up to 0.02.
+    pub fn three_hump_ei(vibration: &Vibration, tolerable: f64) -> Result<Self, PlanError> {
+        Self::extra_insensitive(vibration, tolerable, humps::solve::<5, 14>)
+    }
+
+    /// The shaper that `solve` finds for a damping ratio and a tolerable residual, in the time unit 1/ω.
+    fn extra_insensitive<const N: usize>(
+        vibration: &Vibration,
+        tolerable: f64,
+        solve: impl Fn(f64, f64) -> Option<[Impulse; N]>,
+    ) -> Result<Self, PlanError> {
         if !(0.001..=0.5).contains(&tolerable) {
             let bound = "between 0.001 and 0.5 (below it, take a ZVD shaper)";
             return Err(ParamError { name: "tolerable", value: tolerable, bound }.into());
         }
         let zeta = vibration.zeta();
-        let solved = extra_insensitive::solve(zeta, tolerable);
-        let shape = solved.ok_or(PlanError::NoShaper { damping_ratio: zeta, tolerable })?;
+        let shape = solve(zeta, tolerable).ok_or(PlanError::NoShaper { damping_ratio: zeta, tolerable })?;
         Ok(Self::of(shape.map(|impulse| Impulse { time: impulse.time / vibration.omega_n(), ..impulse })))
     }
 
-    /// Amplitudes `coefficient·K^i`, normalised, half a damped period apart.
-    fn binomial<const N: usize>(vibration: &Vibration, coefficients: [f64; N]) -> Self {
-        let half_period = vibration.half_period();
-        let k = libm::exp(-vibration.decay() * half_period);
+    /// Amplitudes `coefficient·K^i`, normalised, `half_periods` of the damped vibration apart, in which it decays by K.
+    fn geometric<const N: usize>(vibration: &Vibration, half_periods: f64, coefficients: [f64; N]) -> Self {
+        let apart = half_periods * vibration.half_period();
+        let k = libm::exp(-vibration.decay() * apart);
         let (mut power, mut time) = (1.0, 0.0);
         let impulses = coefficients.map(|coefficient| {
             let impulse = Impulse { time, amplitude: coefficient * power };
             power *= k;
-            time += half_period;
+            time += apart;
             impulse
         });
         let sum: f64 = impulses.iter().map(|impulse| impulse.amplitude).sum();

@@ -1,18 +1,14 @@
 //! Shapers, averages, and both as filters of a stream.
 use crate::{is_finite, refused};
 use servobench_base::Setpoint;
+use servobench_config::Choice as _;
 use servobench_fuzz::{Number, ValueGenerator, check, fuzz, produce};
 use servobench_motion::PlanError;
-use servobench_motion::shape::{Impulses, MovingAverage, MovingAverages, ShapingFilter, Vibration};
+use servobench_motion::shape::{Impulses, MovingAverage, MovingAverages, Shaper, ShaperKind, ShapingFilter, Vibration};
 
 /// Shapers of all kinds for one mode.
-fn shapers(vibration: &Vibration, tolerable: f64) -> [Result<Impulses, PlanError>; 4] {
-    [
-        Ok(Impulses::zv(vibration)),
-        Ok(Impulses::zvd(vibration)),
-        Ok(Impulses::zvdd(vibration)),
-        Impulses::ei(vibration, tolerable),
-    ]
+fn shapers(vibration: &Vibration, tolerable: f64) -> impl Iterator<Item = Result<Impulses, PlanError>> {
+    ShaperKind::ALL.iter().map(move |(_, kind, _)| Shaper::new(*kind, tolerable).impulses(vibration))
 }
 
 fn set_point() -> impl ValueGenerator<Output = Setpoint> {

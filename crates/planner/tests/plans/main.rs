@@ -7,7 +7,7 @@ use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::{Knot, Table, average, continuous};
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape};
 use servobench_motion::sampled::Execution;
-use servobench_motion::shape::Shaper;
+use servobench_motion::shape::{Shaper, Vibration};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 use servobench_planner::{
     Averages, Binding, CommandRate, Filter, Follow, Generator, Grid, Method, Peak, Plan, PlanDetails, PointToPoint,
@@ -73,12 +73,12 @@ fn all() -> Vec<Plan> {
     let shaper = shaping(Shaper::Zvd, 0.02);
     let shaped = |duration| Request {
         duration,
-        filter: Filter { shaper: Some(shaper), averages: None },
+        filter: Filter { shapers: vec![shaper], averages: None },
         ..Request::new(point_to_point(0.3, Method::Published))
     };
     let averages = Averages { lengths: vec![0.01, 0.025], sample_time: 1e-3 };
     let averaged = Request {
-        filter: Filter { shaper: Some(shaper), averages: Some(averages) },
+        filter: Filter { shapers: vec![shaper], averages: Some(averages) },
         ..Request::new(point_to_point(0.3, Method::Published))
     };
     vec![
@@ -148,7 +148,7 @@ fn a_shaped_plan_is_the_sum_of_its_parts() {
     let shaper = shaping(Shaper::Zvd, 0.02);
     let impulses = shaper.impulses().unwrap();
     let generator = point_to_point(0.3, Method::Optimal);
-    let request = Request { filter: Filter { shaper: Some(shaper), averages: None }, ..Request::new(generator) };
+    let request = Request { filter: Filter { shapers: vec![shaper], averages: None }, ..Request::new(generator) };
     let plain = Profile::plan_optimal(Order::Fourth, 0.3, &LIMITS).unwrap();
     let shaped = request.plan().unwrap();
     assert!((shaped.duration() - plain.duration() - impulses.duration()).abs() < 1e-15);
@@ -163,12 +163,41 @@ fn a_shaped_plan_is_the_sum_of_its_parts() {
     assert!(matches!(refused, PlanError::TooShort { shortest, .. } if (shortest - shaped.duration()).abs() < 1e-12));
 }
 
+/// Oracle: the sum of parts once more, of parts, and that each shaper takes out its own mode behind the other.
+#[test]
+fn shapers_of_several_modes_stand_one_behind_the_other() {
+    let low = Shaping { shaper: Shaper::Zvd, frequency: 11.0, damping: 0.02 };
+    let high = Shaping { shaper: Shaper::TwoHumpEi { tolerable: 0.05 }, frequency: 37.0, damping: 0.1 };
+    let filter = Filter { shapers: vec![low, high], averages: None };
+    let both = filter.impulses().unwrap().unwrap();
+    assert_eq!(both.iter().len(), 12);
+    for Shaping { frequency, damping, .. } in &filter.shapers {
+        let residual = |off: f64| both.residual(&Vibration::new(TAU * frequency * off, *damping).unwrap());
+        assert!(residual(1.0) < 1e-14 && residual(1.3) > 1e-5, "{frequency} Hz: {:e}", residual(1.0));
+    }
+    let plan = |filter| Request { filter, ..Request::new(point_to_point(0.3, Method::Optimal)) }.plan().unwrap();
+    let plain = plan(Filter::NONE);
+    let [of_low, of_high] = [low, high].map(|shaping| shaping.impulses().unwrap());
+    let shaped = plan(filter);
+    assert!((shaped.duration() - plain.duration() - of_low.duration() - of_high.duration()).abs() < 1e-15);
+    for k in -10..=1010_i32 {
+        let t = f64::from(k) / 1000.0 * shaped.duration();
+        let expected = of_low.shape(t, |t| of_high.shape(t, |t| plain.at(t)));
+        assert!((shaped.at(t).x - expected.x).abs() < 1e-15 && (shaped.at(t).j - expected.j).abs() < 1e-12, "{t}");
+    }
+    assert_eq!(shaped.end(), Setpoint::at_rest(0.3));
+    let zvdd = |frequency| Shaping { shaper: Shaper::Zvdd, frequency, damping: 0.0 };
+    let long = Filter { shapers: [9.0, 17.0, 29.0].map(zvdd).to_vec(), averages: None };
+    let refused = Request { filter: long, ..Request::new(point_to_point(0.3, Method::Optimal)) }.plan().unwrap_err();
+    assert!(matches!(refused, PlanError::TooManyImpulses { impulses: 64, capacity: 32 }), "{refused}");
+}
+
 /// Oracle: a mean written down as a sum.
 #[test]
 fn averages_are_means_of_the_last_samples() {
     let generator = point_to_point(0.3, Method::Published);
     let averages = Averages { lengths: vec![0.008], sample_time: 2e-3 };
-    let filter = Filter { shaper: None, averages: Some(averages) };
+    let filter = Filter { shapers: Vec::new(), averages: Some(averages) };
     let averaged = Request { filter: filter.clone(), ..Request::new(generator.clone()) }.plan().unwrap();
     let plain = plan(generator.clone());
     for k in 0..400_u32 {
@@ -310,9 +339,9 @@ fn an_error_that_is_too_small_is_refused_by_its_name() {
 /// A velocity would jump where the parts of a shaper begin, or where time is stretched.
 #[test]
 fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
-    let shaper = Some(shaping(Shaper::Zv, 0.0));
+    let shapers = vec![shaping(Shaper::Zv, 0.0)];
     let generator = Generator::Replanning(replanning());
-    let filtered = Request { filter: Filter { shaper, averages: None }, ..Request::new(generator.clone()) };
+    let filtered = Request { filter: Filter { shapers, averages: None }, ..Request::new(generator.clone()) };
     let slowed = Request { duration: Some(10.0), ..Request::new(generator) };
     for request in [filtered, slowed] {
         let message = request.plan().unwrap_err().to_string();
@@ -424,7 +453,7 @@ fn averages_begin_with_an_axis_at_rest() {
         let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
         let asked = PointToPoint { distance: 1.0, order, limits, method: Method::Published, grid: None };
         let averages = Averages { lengths: vec![0.01], sample_time: 1e-3 };
-        let filter = Filter { shaper: None, averages: Some(averages) };
+        let filter = Filter { shapers: Vec::new(), averages: Some(averages) };
         let filtered = Request { filter, ..Request::new(Generator::PointToPoint(asked)) }.plan().unwrap();
         let top = |at: &Setpoint| [at.a, at.j, at.s][order.derivative() - 2];
         let full = [5.0, 50.0, 1000.0][order.derivative() - 2];

@@ -54,13 +54,13 @@ fn peaks_and_cruise_of_a_profile_are_its_closed_forms() {
 #[test]
 fn the_cruise_is_the_longest_part_at_constant_velocity() {
     let shaper = shaping(Shaper::Zv, 0.02);
-    let request = |shaper| Request {
-        filter: Filter { shaper, averages: None },
+    let request = |shapers| Request {
+        filter: Filter { shapers, averages: None },
         ..Request::new(point_to_point(1.0, Method::Published))
     };
-    let (start, length) = request(None).plan().unwrap().cruise();
+    let (start, length) = request(Vec::new()).plan().unwrap().cruise();
     assert!((start - 0.35).abs() < 1e-12 && (length - 0.65).abs() < 1e-12, "{start} {length}");
-    let (start, length) = request(Some(shaper)).plan().unwrap().cruise();
+    let (start, length) = request(vec![shaper]).plan().unwrap().cruise();
     let delay = shaper.impulses().unwrap().duration();
     assert!((start - 0.35 - delay).abs() < 1e-12 && (length - 0.65 + delay).abs() < 1e-12, "{start} {length}");
     let (_, length) = plan(Generator::Replanning(replanning())).cruise();

@@ -374,7 +374,7 @@ mod tests {
         for order in [Order::Second, Order::Third, Order::Fourth] {
             for shaper in [Shaper::Zv, Shaper::Zvd, Shaper::Ei { tolerable: 0.05 }] {
                 let shaping = Shaping { shaper, frequency: 38.985, damping: 0.02 };
-                let filter = Filter { shaper: Some(shaping), ..Filter::default() };
+                let filter = Filter { shapers: vec![shaping], ..Filter::default() };
                 let request = Request { filter, ..Request::new(generator(order)) };
                 let svg = PlannedMove::new(request, "m").unwrap().svg(None, None).unwrap();
                 let mut lines: Vec<&str> =

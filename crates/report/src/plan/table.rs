@@ -376,13 +376,13 @@ mod tests {
 
     #[test]
     fn filters_say_what_they_cost() {
-        let shaper = Some(Shaping { shaper: Shaper::Zvd, frequency: 10.0, damping: 0.0 });
+        let zvd = |frequency| Shaping { shaper: Shaper::Zvd, frequency, damping: 0.0 };
         let averages = Some(Averages { lengths: vec![0.01, 0.005], sample_time: 1e-3 });
         let (order, method) = (Order::Third, Method::Published);
         let asked = PointToPoint { distance: 0.3, order, limits: moves::LAMBRECHTS, method, grid: None };
-        let filter = Filter { shaper, averages };
-        let request = Request { filter, duration: Some(1.0), ..Request::new(Generator::PointToPoint(asked)) };
-        insta::assert_snapshot!(table(&PlannedMove::new(request, "m").unwrap()), @r#"
+        let request = Request { duration: Some(1.0), ..Request::new(Generator::PointToPoint(asked)) };
+        let behind = |filter| table(&PlannedMove::new(Request { filter, ..request.clone() }, "m").unwrap());
+        insta::assert_snapshot!(behind(Filter { shapers: vec![zvd(10.0)], averages }), @r#"
         move of 300 mm in 1 s, order 3
         1000 samples of 1 ms
         115 ms longer by a shaper of 3 impulses over 100 ms and averages of 10 ms and
@@ -394,5 +394,7 @@ mod tests {
         acceleration         2.30 m/s²        5.00 m/s²   45.96 %
         jerk                 15.6 m/s³        50.0 m/s³   31.16 %
         "#);
+        let two = behind(Filter { shapers: vec![zvd(10.0), zvd(25.0)], averages: None });
+        assert!(two.contains("140 ms longer by 2 shapers of 9 impulses over 140 ms"), "{two}");
     }
 }

@@ -191,10 +191,11 @@ impl PlannedMove {
 
     /// What filters the plan.
     fn filters(&self, time: &impl Fn(f64) -> String) -> Option<String> {
-        let Filter { shaper, averages } = &self.request.filter;
-        let shaper = shaper
-            .and_then(|shaping| shaping.impulses().ok())
-            .map(|shaper| format!("a shaper of {} impulses over {}", shaper.iter().count(), time(shaper.duration())));
+        let Filter { shapers, averages } = &self.request.filter;
+        let shaper = self.request.filter.impulses().ok().flatten().map(|all| {
+            let what = if shapers.len() == 1 { "a shaper".to_owned() } else { format!("{} shapers", shapers.len()) };
+            format!("{what} of {} impulses over {}", all.iter().count(), time(all.duration()))
+        });
         let averages = averages.as_ref().map(|averages| {
             let lengths: Vec<_> = averages.lengths.iter().map(|length| time(*length)).collect();
             let plural = if lengths.len() == 1 { "an average" } else { "averages" };

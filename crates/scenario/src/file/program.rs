@@ -1,7 +1,7 @@
 //! `[[program]]` and `[[disturbance]]`: what happens.
 use super::setpoint::{Rockwell, Shaper, TableOfPoints};
 use crate::limit_table::LimitTable;
-use crate::list::Many;
+use crate::list::{Many, OneOrMany};
 use crate::scenario::DisturbedBody;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -53,8 +53,8 @@ table! {
         negative_acceleration: f64 = LimitParameter::NEGATIVE_ACCELERATION,
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
-        /// Input shaper.
-        shaper: Shaper = (),
+        /// Input shaper, or a list of them.
+        shaper: OneOrMany<Shaper> = (),
         /// Lengths of moving averages behind the generator; `[]` for none.
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
         /// Slows the move to last this long, every derivative in proportion; default: as fast as the limits allow.

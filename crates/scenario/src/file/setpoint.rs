@@ -1,5 +1,5 @@
 //! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
-use crate::list::{Automatic, Many};
+use crate::list::{Automatic, Many, OneOrMany};
 use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;
 use servobench_config::Kind::{Axis as InAxis, Plain};
@@ -38,8 +38,8 @@ table! {
         negative_acceleration: f64 = LimitParameter::NEGATIVE_ACCELERATION,
         /// Moves by the operands of Rockwell's axis move.
         rockwell: Rockwell = (),
-        /// Input shaper, against one mode of the axis.
-        shaper: Shaper = (),
+        /// Input shaper, against one mode of the axis; a list of them for several modes.
+        shaper: OneOrMany<Shaper> = (),
         /// Lengths of moving averages behind the generator, one after the other, whole numbers of base ticks.
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
         /// Between a slow task that commands and the drive; default: the drive has a new set-point at every tick.
@@ -86,12 +86,12 @@ table! {
     /// cancel.
     pub(crate) struct Shaper requires ["kind"] {
         /// Which one.
-        kind: Option<ShaperKind> = OneOfOrNone("no shaper, where `[setpoint]` has one"),
+        kind: Option<ShaperKind> = OneOfOrNone("no shaper, where `[setpoint]` has one; in a list this one is left out"),
         /// Natural frequency of the mode.
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         /// Damping ratio of the mode; default: 0.
         damping: f64 = not_negative(Plain(&RATIO), "0.02"),
-        /// Part of the vibration that "ei" may leave; default: 0.05.
+        /// Part of the vibration that an EI shaper may leave; default: 0.05.
         tolerable: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }

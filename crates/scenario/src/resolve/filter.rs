@@ -1,7 +1,7 @@
-//! Times on the base ticks: sample times, averages, the period of a commanding task; and the input shaper.
+//! Times on the base ticks: sample times, averages, the period of a commanding task; and the input shapers.
 use crate::diagnostic::Report;
 use crate::field::Slot;
-use crate::file::File;
+use crate::file::{self, File};
 use crate::resolve::keys::{Keys, Reported};
 use crate::resolve::whole;
 use crate::scenario::Interpolation;
@@ -17,30 +17,9 @@ pub(super) fn filter(
     said: &mut Reported,
     report: &mut Report,
 ) -> Option<Filter> {
-    let shaper = match keys.shaper.optional().ok()? {
-        None => None,
-        Some(given) => {
-            let kind = *given.kind.given()?;
-            let tolerable = given.tolerable.optional().ok()?.copied();
-            if let (Some(_), Some(span), true) = (tolerable, given.tolerable.span(), kind != Some(ShaperKind::Ei)) {
-                said.once(span, |report| report.error(span, "`tolerable` is for the shaper \"ei\"", ""), report);
-            }
-            match kind {
-                None => None,
-                Some(kind) => {
-                    if matches!(given.frequency, Slot::Absent) {
-                        let say = |report: &mut Report| {
-                            report.missing_with_help("shaper", "frequency", given.span, "that of the mode");
-                        };
-                        said.once(given.span, say, report);
-                    }
-                    let damping = given.damping.optional().ok()?.copied().unwrap_or(0.0);
-                    let shaper = Shaper::new(kind, tolerable.unwrap_or(Shaper::TOLERABLE));
-                    Some(Shaping { shaper, frequency: *given.frequency.given()?, damping })
-                }
-            }
-        }
-    };
+    let given = keys.shaper.optional().ok()?.map_or(&[][..], |shapers| &shapers.0);
+    let all: Vec<_> = given.iter().map(|one| shaping(&one.value, said, report)).collect();
+    let shapers: Vec<_> = all.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
     let given = keys.averages.optional().ok()?.map_or(&[][..], |averages| &averages.0);
     let lengths: Vec<_> =
         given.iter().map(|length| whole_ticks("averages", *length, base_rate, said, report)).collect();
@@ -48,7 +27,39 @@ pub(super) fn filter(
         lengths if lengths.is_empty() => None,
         lengths => Some(Averages { lengths, sample_time: base_rate?.period() }),
     };
-    Some(Filter { shaper, averages })
+    let filter = Filter { shapers, averages };
+    if let (Err(error), Some(span)) = (filter.impulses(), keys.shaper.span()) {
+        said.once(span, |report| report.error(span, format!("`shaper`: {error}"), ""), report);
+        return None;
+    }
+    Some(filter)
+}
+
+/// An input shaper, when it is not "none".
+#[expect(clippy::option_option, reason = "a wrong shaper is not the same as none")]
+fn shaping(given: &file::Shaper, said: &mut Reported, report: &mut Report) -> Option<Option<Shaping>> {
+    let kind = *given.kind.given()?;
+    let tolerable = given.tolerable.optional().ok()?.copied();
+    if let (Some(_), Some(span), true) =
+        (tolerable, given.tolerable.span(), !kind.is_some_and(ShaperKind::has_tolerable))
+    {
+        said.once(span, |report| report.error(span, "`tolerable` is for the EI shapers", ""), report);
+    }
+    let Some(kind) = kind else { return Some(None) };
+    if matches!(given.frequency, Slot::Absent) {
+        let say = |report: &mut Report| {
+            report.missing_with_help("shaper", "frequency", given.span, "that of the mode");
+        };
+        said.once(given.span, say, report);
+    }
+    let damping = given.damping.optional().ok()?.copied().unwrap_or(0.0);
+    let shaper = Shaper::new(kind, tolerable.unwrap_or(Shaper::TOLERABLE));
+    let shaping = Shaping { shaper, frequency: *given.frequency.given()?, damping };
+    if let Err(error) = shaping.impulses() {
+        said.once(given.span, |report| report.error(given.span, format!("`shaper`: {error}"), ""), report);
+        return None;
+    }
+    Some(Some(shaping))
 }
 
 /// The samples of a move from rest to rest, when it has some.

@@ -2,7 +2,7 @@
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
-use crate::list::Many;
+use crate::list::{Many, OneOrMany};
 use crate::source::{At, Span};
 use servobench_motion::online::Effort;
 use servobench_motion::sampled::Execution;
@@ -25,7 +25,7 @@ pub(super) struct Keys<'a> {
     pub(super) online: &'a Slot<Effort>,
     pub(super) negative: [&'a Slot<f64>; 2],
     pub(super) rockwell: &'a Slot<file::Rockwell>,
-    pub(super) shaper: &'a Slot<file::Shaper>,
+    pub(super) shaper: &'a Slot<OneOrMany<file::Shaper>>,
     pub(super) averages: &'a Slot<Many<f64>>,
 }
 

@@ -53,10 +53,10 @@ const fn is_sent_as_points(mode: BusMode, generator: &Generator) -> bool {
 
 /// Whether the step says how a master is to plan it.
 fn is_planned_otherwise(request: &Request) -> bool {
-    let Filter { shaper, averages } = &request.filter;
+    let Filter { shapers, averages } = &request.filter;
     let is_sampled = match &request.generator {
         Generator::PointToPoint(asked) => asked.grid.is_some() || asked.method != Method::Published,
         Generator::Replanning(_) | Generator::Rockwell(_) | Generator::Table(_) => false,
     };
-    is_sampled || shaper.is_some() || averages.is_some() || request.duration.is_some()
+    is_sampled || !shapers.is_empty() || averages.is_some() || request.duration.is_some()
 }

@@ -321,10 +321,10 @@ impl Context<'_> {
             }
             _ => return,
         };
-        let Filter { shaper, averages } = &step.request.filter;
+        let Filter { shapers, averages } = &step.request.filter;
         let is_slowed = is_in_motion && step.request.duration.is_some();
         for (is_there, slot, help) in [
-            (shaper.is_some(), self.keys.shaper.span(), "write `shaper = { kind = \"none\" }` into this step"),
+            (!shapers.is_empty(), self.keys.shaper.span(), "write `shaper = { kind = \"none\" }` into this step"),
             (averages.is_some(), self.keys.averages.span(), "write `averages = []` into this step"),
             (is_slowed, self.step.duration.span(), "leave it out: limits say how fast the move is"),
         ] {

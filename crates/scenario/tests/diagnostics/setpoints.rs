@@ -145,12 +145,6 @@ fn keys_that_a_way_does_not_have() {
             &format!("{}end_velocity = \"1 m/min\"\n{TO}", rockwell("shape = \"s-curve\"")),
             &["4:16: Rockwell's move starts and ends at rest; leave `rockwell` out of this step, or let the axis rest"],
         ),
-        ("shaper = { kind = \"zvd\" }\n", TO, &["1:10: missing `frequency` in `shaper`; that of the mode"]),
-        (
-            "shaper = { kind = \"zv\", frequency = \"9 Hz\", tolerable = 0.1 }\n",
-            TO,
-            &["1:57: `tolerable` is for the shaper \"ei\""],
-        ),
         (
             "averages = [\"10 ms\", \"0.1 ms\"]\n",
             TO,
@@ -224,6 +218,52 @@ fn tables_of_points() {
             "",
             &format!("{}velocity = \"1 m/s\"\nend_velocity = \"1 m/s\"\n", table("file = \"points.csv\"")),
             &["3:12: a table has no `velocity`", "4:16: a table has no `end_velocity`"],
+        ),
+    ]);
+}
+
+#[test]
+fn shapers() {
+    check(&[
+        ("shaper = { kind = \"zvd\" }\n", TO, &["1:10: missing `frequency` in `shaper`; that of the mode"]),
+        (
+            "shaper = { kind = \"zv\", frequency = \"9 Hz\", tolerable = 0.1 }\n",
+            TO,
+            &["1:57: `tolerable` is for the EI shapers"],
+        ),
+        ("shaper = []\n", TO, &["1:10: `shaper` must not be empty"]),
+        (
+            "shaper = [{ kind = \"zv\", frequency = \"9 Hz\" }, { kind = \"2hump_ei\" }, { kind = \"zv\" }]\n",
+            TO,
+            &[
+                "1:57: \"2hump_ei\" is not a value of `kind`; did you mean `2hump-ei`?",
+                "1:71: missing `frequency` in `shaper`; that of the mode",
+            ],
+        ),
+        (
+            "shaper = [{ kind = \"zv\", frequency = \"9 Hz\" }, { kind = \"zvd\" }, { kind = \"zv\", damping = 0.1 }]\n",
+            &format!("{TO}{TO}"),
+            &[
+                "1:48: missing `frequency` in `shaper`; that of the mode",
+                "1:66: missing `frequency` in `shaper`; that of the mode",
+            ],
+        ),
+        (
+            "shaper = { kind = \"3hump-ei\", frequency = \"9 Hz\", damping = 0.5 }\n",
+            &format!("{TO}{TO}"),
+            &[
+                "1:10: `shaper`: no extra-insensitive shaper found for `damping_ratio` = 0.5 and `tolerable` = 0.05: lower \
+               either, or take a ZVD shaper",
+            ],
+        ),
+        (
+            "shaper = [{ kind = \"zvdd\", frequency = \"9 Hz\" }, { kind = \"zvdd\", frequency = \"17 Hz\" }, { kind = \"zv\", \
+             frequency = \"8 Hz\" }, { kind = \"zv\", frequency = \"29 Hz\" }]\n",
+            &format!("{TO}{TO}"),
+            &[
+                "1:10: `shaper`: the filter has 64 impulses, at most 32 are kept: take fewer shapers or shorter ones, or \
+               filter one after the other",
+            ],
         ),
     ]);
 }

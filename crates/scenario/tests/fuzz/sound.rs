@@ -1,7 +1,6 @@
 //! What the loop may take for granted of every scenario that was loaded.
 use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::Target;
-use servobench_motion::shape::Shaper;
 use servobench_planner::{Averages, Generator, Request, Shaping};
 use servobench_plcopen::program::{Condition, Inputs, Rows};
 use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
@@ -95,10 +94,10 @@ fn step(step: &Step) {
             if !matches!(generator, Generator::Rockwell(_)) {
                 assert!(free.iter().all(|limit| *limit == f64::INFINITY), "{limits:?}");
             }
-            if let Some(Shaping { shaper, frequency, damping }) = filter.shaper {
-                positive("frequency of a shaper", frequency);
-                not_negative("damping", damping);
-                if let Shaper::Ei { tolerable } = shaper {
+            for Shaping { shaper, frequency, damping } in &filter.shapers {
+                positive("frequency of a shaper", *frequency);
+                not_negative("damping", *damping);
+                if let Some(tolerable) = shaper.tolerable() {
                     positive("tolerable", tolerable);
                 }
             }

@@ -113,7 +113,7 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     assert_eq!(generator(rest), Generator::PointToPoint(expected));
     let shaper = Shaping { shaper: Shaper::Ei { tolerable: 0.05 }, frequency: 17.5, damping: 0.02 };
     let averages = Averages { lengths: vec![0.01, 0.005], sample_time: scenario.base_rate.period() };
-    assert_eq!(rest.request.filter, Filter { shaper: Some(shaper), averages: Some(averages) });
+    assert_eq!(rest.request.filter, Filter { shapers: vec![shaper], averages: Some(averages) });
     assert_eq!((rest.aborts_after, passing.aborts_after), (None, Some(0.1)));
     assert_eq!(passing.request.filter, Filter::NONE);
     let online = |target, order, effort| {
@@ -141,6 +141,40 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     assert_eq!(generator(rockwell), Generator::Rockwell(Rockwell { operands, maximum }));
     let positioning = moves.iter().map(|step| step.positioning == Positioning::Absolute);
     assert!(positioning.eq([true, true, false, true, false, false, false]));
+}
+
+/// One shaper is a table, several are a list, and "none" is left out of it.
+#[test]
+fn shapers_of_several_modes() {
+    let zv = Shaping { shaper: Shaper::Zv, frequency: 17.5, damping: 0.0 };
+    let humps = Shaping { shaper: Shaper::ThreeHumpEi { tolerable: 0.02 }, frequency: 40.0, damping: 0.01 };
+    let both = r#"[{ kind = "zv", frequency = "17.5 Hz" }, { kind = "3hump-ei", frequency = "40 Hz", damping = 0.01, tolerable = "2 %" }]"#;
+    let move_of = |setpoint: &str, step: &str, set: &[&str]| {
+        let text = format!(
+            "{SCREW}[setpoint]\norder = 2\nvelocity = \"30 m/min\"\nacceleration = \"5 m/s2\"\n{setpoint}\n[[program]]\n\
+             move_to = \"1 mm\"\n{step}"
+        );
+        let overrides: Vec<Override> = set.iter().map(|one| one.parse().unwrap()).collect();
+        let loaded = parse_with("test.toml", &text, None, &overrides).unwrap_or_else(|e| panic!("{e}"));
+        let Some(Step::Move(step)) = loaded.scenario.program.first() else { panic!() };
+        step.request.filter.shapers.clone()
+    };
+    let setpoint = format!("shaper = {both}");
+    assert_eq!(move_of(&setpoint, "", &[]), [zv, humps]);
+    assert_eq!(move_of("", &setpoint, &[]), [zv, humps]);
+    let tables = "[[setpoint.shaper]]\nkind = \"zv\"\nfrequency = \"17.5 Hz\"\n[[setpoint.shaper]]\nkind = \"none\"";
+    assert_eq!(move_of(tables, "", &[]), [zv]);
+    assert_eq!(move_of(&setpoint, "shaper = { kind = \"none\" }", &[]), []);
+    assert_eq!(move_of(&setpoint, "shaper = [{ kind = \"none\" }]", &[]), []);
+    let zvd = Shaping { shaper: Shaper::Zvd, frequency: 20.0, ..zv };
+    assert_eq!(
+        move_of(&setpoint, "", &["setpoint.shaper.0.kind=zvd", "setpoint.shaper[0].frequency=20 Hz"]),
+        [zvd, humps]
+    );
+    let without = setpoint.replace(", tolerable = \"2 %\"", "");
+    assert_eq!(move_of(&without, "", &["setpoint.shaper.1.kind=none"]), [zv]);
+    assert_eq!(move_of("", "", &["setpoint.shaper.kind=zvd", "setpoint.shaper.frequency=20 Hz"]), [zvd]);
+    assert_eq!(move_of(&setpoint, "", &["setpoint.shaper={ kind = \"zvd\", frequency = \"20 Hz\" }"]), [zvd]);
 }
 
 #[test]

@@ -9,22 +9,22 @@ use servobench_planner::{Averages, Filter, Shaping};
 /// Heading of what changes a move that is planned.
 pub(super) const FILTER: &str = "Behind the planner";
 
-/// Shaper and averages; whoever has them has `sample_time`.
+/// Shapers and averages; whoever has them has `sample_time`.
 #[derive(Debug, Args)]
 #[command(next_help_heading = FILTER)]
 pub(crate) struct FilterArgs {
-    /// Input shaper for one vibration.
-    #[arg(long, value_parser = choice::<ShaperKind>(), requires = "shaper_frequency")]
-    shaper: Option<ShaperKind>,
-    /// Natural frequency of the vibration, as "12 Hz".
-    #[arg(long, value_name = "FREQUENCY", value_parser = frequency, requires = "shaper")]
-    shaper_frequency: Option<f64>,
-    /// Damping ratio of the vibration [default: 0].
-    #[arg(long, value_name = "RATIO", value_parser = ratio, requires = "shaper")]
-    shaper_damping: Option<f64>,
-    /// Part of the vibration that the EI shaper may leave [default: 5 %].
-    #[arg(long, value_name = "RATIO", value_parser = ratio, requires = "shaper")]
-    shaper_tolerable: Option<f64>,
+    /// Input shaper for one vibration, or one for each of several, as "zvd,ei".
+    #[arg(long, value_delimiter = ',', value_parser = choice::<ShaperKind>(), requires = "shaper_frequency")]
+    shaper: Vec<ShaperKind>,
+    /// Natural frequency of the vibration, as "12 Hz", or of each, as "12 Hz,31 Hz".
+    #[arg(long, value_name = "FREQUENCY", value_delimiter = ',', value_parser = frequency, requires = "shaper")]
+    shaper_frequency: Vec<f64>,
+    /// Damping ratio of the vibrations, or of each [default: 0].
+    #[arg(long, value_name = "RATIO", value_delimiter = ',', value_parser = ratio, requires = "shaper")]
+    shaper_damping: Vec<f64>,
+    /// Part of the vibration that EI shapers may leave, or each of them [default: 5 %].
+    #[arg(long, value_name = "RATIO", value_delimiter = ',', value_parser = ratio, requires = "shaper")]
+    shaper_tolerable: Vec<f64>,
     /// Moving averages one after the other, as "10 ms,5 ms"; they need --sample-time.
     #[arg(long, value_name = "TIMES", value_delimiter = ',', value_parser = time, requires = "sample_time")]
     averages: Option<Vec<f64>>,
@@ -57,17 +57,44 @@ impl FilterArgs {
     pub(super) fn filter(&self, sample_time: Option<f64>) -> Result<Filter, PlanMistake> {
         let averages = self.averages.clone().zip(sample_time);
         let averages = averages.map(|(lengths, sample_time)| Averages { lengths, sample_time });
-        Ok(Filter { shaper: self.shaping()?, averages })
+        let filter = Filter { shapers: self.shapers()?, averages };
+        filter.impulses().map_err(PlanMistake::Shaper)?;
+        Ok(filter)
     }
 
-    fn shaping(&self) -> Result<Option<Shaping>, PlanMistake> {
-        let Some((kind, frequency)) = self.shaper.zip(self.shaper_frequency) else { return Ok(None) };
-        if self.shaper_tolerable.is_some() && kind != ShaperKind::Ei {
+    fn shapers(&self) -> Result<Vec<Shaping>, PlanMistake> {
+        let (count, frequencies) = (self.shaper.len(), self.shaper_frequency.len());
+        if frequencies != count {
+            return Err(PlanMistake::Frequencies { frequencies, shapers: count });
+        }
+        let with_tolerable = self.shaper.iter().filter(|kind| kind.has_tolerable()).count();
+        if with_tolerable == 0 && !self.shaper_tolerable.is_empty() {
             return Err(PlanMistake::TolerableOfOthers);
         }
-        let shaper = Shaper::new(kind, self.shaper_tolerable.unwrap_or(Shaper::TOLERABLE));
-        let shaping = Shaping { shaper, frequency, damping: self.shaper_damping.unwrap_or(0.0) };
-        shaping.impulses().map_err(PlanMistake::Shaper)?;
-        Ok(Some(shaping))
+        let dampings = for_each("shaper-damping", &self.shaper_damping, count, "shapers")?;
+        let mut tolerables =
+            for_each("shaper-tolerable", &self.shaper_tolerable, with_tolerable, "EI shapers")?.into_iter().flatten();
+        let modes = self.shaper_frequency.iter().zip(dampings);
+        let shaping = |(kind, (frequency, damping)): (&ShaperKind, (&f64, Option<f64>))| {
+            let tolerable = if kind.has_tolerable() { tolerables.next() } else { None };
+            let shaper = Shaper::new(*kind, tolerable.unwrap_or(Shaper::TOLERABLE));
+            Shaping { shaper, frequency: *frequency, damping: damping.unwrap_or(0.0) }
+        };
+        Ok(self.shaper.iter().zip(modes).map(shaping).collect())
+    }
+}
+
+/// For each of so many shapers, in words `what`, its value: none, the same one, or its own.
+fn for_each(
+    option: &'static str,
+    values: &[f64],
+    count: usize,
+    what: &'static str,
+) -> Result<Vec<Option<f64>>, PlanMistake> {
+    match values {
+        [] => Ok(vec![None; count]),
+        [one] => Ok(vec![Some(*one); count]),
+        each if each.len() == count => Ok(each.iter().copied().map(Some).collect()),
+        others => Err(PlanMistake::OtherCount { option, values: others.len(), count, what }),
     }
 }

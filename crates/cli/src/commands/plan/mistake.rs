@@ -43,8 +43,12 @@ pub(crate) enum PlanMistake {
     UnusedLimits,
     #[error("--passes are those of --velocities smooth: choose that, or leave them out")]
     PassesOfOthers,
-    #[error("--shaper-tolerable is for --shaper ei: the others leave nothing at the frequency")]
+    #[error("--shaper-tolerable is for the EI shapers: the others leave nothing at the frequency")]
     TolerableOfOthers,
+    #[error("--shaper-frequency has {frequencies} values and --shaper {shapers}: give a frequency for each shaper")]
+    Frequencies { frequencies: usize, shapers: usize },
+    #[error("--{option} has {values} values for {count} {what}: give one for all, or one for each")]
+    OtherCount { option: &'static str, values: usize, count: usize, what: &'static str },
     #[error("--shaper: {0}")]
     Shaper(PlanError),
     #[error("--points: cannot read `{}`: {error}", .file.display())]
