@@ -30,6 +30,8 @@ use survey::Survey;
 pub struct SweepOptions<'a> {
     /// What the sweep is called: headline of drawings.
     pub title: &'a str,
+    /// What the numbers are, below the headline: `each at its worst over axis.load.frequency`.
+    pub note: &'a str,
     /// The metric that is time; `None`: `move_and_settling_time`, else `move_time`.
     pub time: Option<&'a str>,
     /// The metric that is vibration; `None`: `residual_vibration_amplitude`, else `residual_vibration_pp`.
@@ -75,5 +77,5 @@ pub fn sweep_map(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String
 #[must_use]
 pub fn sweep_front(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String> {
     let survey = Survey::of(table, options);
-    if survey.dimensions.is_empty() { None } else { scatter::scatter(&survey, options.title) }
+    if survey.dimensions.is_empty() { None } else { scatter::scatter(&survey, options.title, options.note) }
 }

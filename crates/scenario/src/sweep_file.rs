@@ -67,6 +67,9 @@ table! {
         key: String = (),
         /// Other keys that have the same value in each run: "measure.mode".
         also: OneOrMany<String> = (),
+        /// Whether it is what the machine is like, which nobody chooses: what is chosen is then compared at its worst over these values. Only
+        /// in a grid; what is drawn is given in any case. Default: false.
+        given: bool = (),
         /// The values that it takes one after the other.
         values: OneOrMany<Amount> = (),
         /// Values from one end to the other, both among them.
@@ -259,9 +262,12 @@ fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> 
     })
 }
 
-/// With the keys that follow others.
+/// With the keys that follow others, and those that are given.
 fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<Sweep, Reported> {
     for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
+        if let (Some(key), Some(true)) = (vary.key.given(), vary.given.optional()?) {
+            sweep = sweep.given(key);
+        }
         if let (Some(key), Some(also)) = (vary.key.given(), vary.also.optional()?) {
             let others: Vec<String> = also.0.iter().map(|at| at.value.clone()).collect();
             let place = vary.also.span().unwrap_or(file.span);

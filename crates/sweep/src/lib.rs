@@ -25,6 +25,7 @@ mod random;
 mod sensitivity;
 mod sweep;
 mod table;
+mod worst;
 
 pub use axis::{Axis, Spacing, Value, spaced};
 pub use cover::KeyColumn;

@@ -27,7 +27,7 @@ struct Point {
 }
 
 /// The drawing; `None` where no combination has both numbers.
-pub(super) fn scatter(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
+pub(super) fn scatter(survey: &Survey<'_, '_>, title: &str, note: &str) -> Option<String> {
     let (time, vibration) = (survey.metrics.time?, survey.metrics.vibration?);
     let [along, up] = [time, vibration].map(|column| Measure::of(&survey.table.columns[column]));
     let median = |column: usize, group: usize| Some(survey.spread(column, group)?.median);
@@ -41,7 +41,8 @@ pub(super) fn scatter(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
     } else {
         String::new()
     };
-    let below = format!("{of}the further to the left the faster, the further down the calmer");
+    let note = if note.is_empty() { String::new() } else { format!("{note}; ") };
+    let below = format!("{of}{note}the further to the left the faster, the further down the calmer");
     let mut sheet = Sheet::new(title, &below);
     sheet.key(&key(survey, series));
     let top = sheet.y + HEADING;

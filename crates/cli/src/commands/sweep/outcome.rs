@@ -7,7 +7,7 @@ use crate::outputs::OutputFolder;
 use crate::suite::how_to_resume;
 use servobench_report::{SweepOptions, run_count, sweep_front, sweep_map, sweep_table, wrapped};
 use servobench_results::{Columns, Outcome as Ended, Runs, SWEEP_FRONT, SWEEP_MAP, TABLE_CSV, TABLE_PARQUET};
-use servobench_sweep::{Column, Outcome, Sweep, Table};
+use servobench_sweep::{Column, Outcome, Table};
 use servobench_trace::{Cells, Table as File, TableColumn};
 use std::borrow::Cow;
 
@@ -32,10 +32,23 @@ pub(super) fn say_what_came(
     drop(file);
 
     let engines = points.engines();
-    let table = table_of(points.sweep(), &engines, columns);
-    let options = SweepOptions { title: points.description(), judged: points.is_judged(), ..SweepOptions::default() };
+    let table = table_of(points, &engines, columns);
+    // What is chosen is compared at the worst of what is given.
+    let chosen = points.sweep().chosen();
+    let compared = chosen.as_ref().map_or_else(|| table.clone(), |chosen| table.at_worst(chosen));
+    let at_worst = match chosen {
+        None => String::new(),
+        Some(_) => format!("each at its worst over {}", points.sweep().given_keys().join(", ")),
+    };
+    let options = SweepOptions {
+        title: points.description(),
+        note: &at_worst,
+        judged: points.is_judged(),
+        ..SweepOptions::default()
+    };
     let mut written = vec![TABLE_CSV, TABLE_PARQUET];
-    for (name, drawing) in [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(&table, &options))] {
+    let drawings = [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(&compared, &options))];
+    for (name, drawing) in drawings {
         if let Some(drawing) = drawing {
             out.file(name)?.write(drawing)?;
             written.push(name);
@@ -46,26 +59,28 @@ pub(super) fn say_what_came(
     if args.suite.quiet {
         return print(&count);
     }
-    let described = match points.description() {
-        "" => String::new(),
-        words => wrapped(words, style.width).join("\n") + "\n\n",
-    };
+    let described = [points.description(), &at_worst].into_iter().filter(|part| !part.is_empty());
+    let described = described.collect::<Vec<_>>().join(", ");
+    let mut described = wrapped(&described, style.width);
+    if !described.is_empty() {
+        described.extend([String::new(), String::new()]);
+    }
     let folder = out.path().display();
     let where_it_is = format!("results.json, {}: {folder}\n{resume}", written.join(", "));
-    print(&[described, sweep_table(&table, style, &options), "\n".into(), count, where_it_is].concat())
+    print(&[described.join("\n"), sweep_table(&compared, style, &options), "\n".into(), count, where_it_is].concat())
 }
 
-/// The runs as the crate of sweeps counts them.
-fn table_of<'a>(sweep: &'a Sweep, engines: &'a [String], columns: Columns) -> Table<'a> {
+/// The runs as the crate of sweeps counts them, with the metrics that were asked for: others are limited, and in the files.
+fn table_of<'a>(points: &'a Points<'_>, engines: &'a [String], columns: Columns) -> Table<'a> {
     let outcome = |outcome: Option<Ended>| match outcome {
         Some(outcome) if outcome.is_good() => Outcome::Good,
         Some(Ended::Failed) => Outcome::Failed,
         Some(_) | None => Outcome::NoVerdict,
     };
     let outcomes = columns.outcomes.into_iter().map(outcome).collect();
-    let metrics = columns.metrics.into_iter();
+    let metrics = columns.metrics.into_iter().filter(|column| points.is_asked(column.metric));
     let columns = metrics.map(|of| Column { name: of.metric.to_string(), unit: of.unit, values: of.values }).collect();
-    Table { sweep, engines, columns, outcomes }
+    Table { sweep: points.sweep(), engines, columns, outcomes }
 }
 
 /// A row for each run: its number, its engine, what varies, its verdict, what was measured.

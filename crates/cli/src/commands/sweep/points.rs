@@ -7,6 +7,7 @@ use crate::outputs::reads;
 use crate::sources::{self, SWEEP};
 use crate::suite::{NotReady, Plan};
 use servobench_config::Choice as _;
+use servobench_metrics::Name;
 use servobench_plant::EngineName;
 use servobench_results::{Digest, Digester, Planned, RunIdentity, Unfinished, printable, printable_lines};
 use servobench_scenario::{LoadError, Override, Step, SweepRequest, load_sweep, root_of};
@@ -66,6 +67,11 @@ impl<'a> Points<'a> {
         let of_moves = |step: &Step| matches!(step, Step::Move(step) if !step.metric_limits.is_empty());
         let scenario = &self.base.scenario;
         !scenario.limits.is_empty() || scenario.program.iter().any(of_moves)
+    }
+
+    /// Whether a metric was asked for.
+    pub(super) fn is_asked(&self, metric: Name) -> bool {
+        self.request.metrics.is_empty() || self.request.metrics.contains(&metric)
     }
 
     pub(super) fn engines(&self) -> Vec<String> {
