@@ -1,8 +1,10 @@
 //! Arguments.
+mod advise;
 mod choice;
 mod mistakes;
 mod suite;
 
+pub(crate) use advise::AdviseArgs;
 pub(crate) use choice::choice;
 pub(crate) use mistakes::parse;
 pub(crate) use suite::{FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
@@ -45,6 +47,10 @@ const AFTER_SWEEP: &str = "A sweep file names a scenario and the keys that vary:
                            and sweep.parquet; servobench run with the keys of a row as --set gives its very numbers.\n\n\
                            Call sweep files NAME.sweep.toml: a folder of scenarios may then hold them too.";
 
+const AFTER_ADVISE: &str = "Order, velocity, acceleration, jerk, snap and input shaper are chosen. What is told was run: on the corners of \
+                            the box, on machines between them whose frequencies are nearer to each other than a tenth of a \
+                            lobe of the profile, and on draws. docs/advise.md says how.";
+
 const AFTER_COMPLETIONS: &str = "For bash: servobench completions bash > ~/.local/share/bash-completion/completions/servobench. For fish: … fish > \
                                  ~/.config/fish/completions/servobench.fish. For zsh: into _servobench in a folder of $fpath. A shell \
                                  that is started afterwards reads it.";
@@ -60,6 +66,9 @@ pub(crate) enum Command {
     /// Run a scenario over many values of its keys, and say what they cost: tables, heat maps, the Pareto front.
     #[command(after_help = AFTER_SWEEP)]
     Sweep(SweepArgs),
+    /// Find the fastest set-point that keeps the limits of a scenario on every machine of a box, and verify it.
+    #[command(after_help = AFTER_ADVISE)]
+    Advise(AdviseArgs),
     /// Validate scenario files without running them: every mistake in one go.
     Check(CheckArgs),
     /// Print the JSON Schema of a scenario or sweep file.

@@ -1,4 +1,5 @@
 //! The commands, one module each.
+mod advise;
 mod check;
 mod compare;
 mod completions;
@@ -15,6 +16,7 @@ mod timing;
 mod view;
 mod worker;
 
+pub(crate) use advise::{AdviseMistake, advise};
 pub(crate) use check::{Findings, check};
 pub(crate) use compare::compare;
 pub(crate) use completions::completions;

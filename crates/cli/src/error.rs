@@ -1,10 +1,11 @@
 //! Why a command could not do what it was asked to: one type, each variant with the error of the crate that it comes from, and one
 //! match from it to the exit code.
-use crate::commands::{Findings, PlanMistake};
+use crate::commands::{AdviseMistake, Findings, PlanMistake};
 use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
 use crate::outputs::Refused;
 use crate::sources::{Unusable, named, told};
+use servobench_advise::AdviseError;
 use servobench_config::Choice as _;
 use servobench_isolation::ContainError;
 use servobench_report::ReportError;
@@ -63,6 +64,8 @@ pub(crate) enum CliError {
     #[error("the suite in `{}` cannot go on: its scenarios, a file that they name, or the program are not those it was begun \
              with; run it again", .0.display())]
     OtherSuite(PathBuf),
+    #[error(transparent)]
+    Advise(#[from] AdviseMistake),
     #[error("name a sweep file")]
     NoSweep,
     #[error(
@@ -110,6 +113,8 @@ pub(crate) enum CliError {
     Check(Findings),
 
     // What could not be carried out.
+    #[error(transparent)]
+    NoAdvice(#[from] AdviseError),
     #[error("{0}; nothing was begun")]
     Shortage(LoadError),
     #[error(transparent)]
@@ -196,6 +201,7 @@ impl CliError {
             | Self::OtherCommand { .. }
             | Self::NoValidPoint { .. }
             | Self::NoSweep
+            | Self::Advise(_)
             | Self::TrustAgain
             | Self::NothingForTheViewer
             | Self::ReadRecording(_)
@@ -213,6 +219,7 @@ impl CliError {
                 failed.iter().fold(Exit::Run, |worst, failed| worst.worse(of_run_error(&failed.error)))
             }
             Self::Check(findings) => findings.exit(),
+            Self::NoAdvice(_) => Exit::Failed,
             Self::Shortage(_)
             | Self::Folder(_)
             | Self::Journal(_)

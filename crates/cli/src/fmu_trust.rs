@@ -29,6 +29,7 @@ impl FmuTrust {
         match command {
             Command::Run(args) => Self::running(args.suite.fmus),
             Command::Sweep(args) => Self::running(args.suite.fmus),
+            Command::Advise(args) => Self::running(args.fmus),
             Command::Compare(args) => Self::running(args.fmus),
             Command::Check(CheckArgs { load_fmus: true, fmus, .. }) => Self::running(*fmus),
             _ => Self::Describe,

@@ -44,6 +44,7 @@ fn dispatch(command: &Command) -> Exit {
     let done = match command {
         Command::Run(args) => commands::run(args),
         Command::Sweep(args) => commands::sweep(args),
+        Command::Advise(args) => commands::advise(args),
         Command::Check(args) => commands::check(args),
         Command::Schema(args) => commands::schema(args),
         Command::Plan(args) => commands::plan(args),

@@ -4,6 +4,7 @@
 //! What is said of runs is made from [`Results`](servobench_results::Results), which hold nothing that differs between two runs of the same scenario:
 //! no wall-clock time, no host. So every text here is the same to the byte, too.
 
+mod advice;
 mod bound_limits;
 mod compare;
 mod drawing;
@@ -22,6 +23,7 @@ mod text;
 mod timing;
 mod verdict_table;
 
+pub use advice::{AdviceOptions, advice_text};
 pub use compare::{Compared, Comparison};
 pub use error::ReportError;
 pub use fmu_table::fmu_table;

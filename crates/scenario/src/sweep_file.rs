@@ -174,7 +174,7 @@ impl Field for Amount {
 }
 
 /// A text that is a number with a unit, or any other.
-fn amount(text: &str) -> Value {
+pub(crate) fn amount(text: &str) -> Value {
     let trimmed = text.trim();
     let is_of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
     // The longest beginning that is a number: of "5 e" the 5, of "5e3 m" all but the unit.

@@ -11,6 +11,7 @@ mod panicked;
 mod pool;
 mod preview;
 mod requirements;
+mod usage;
 pub mod worker;
 
 pub use check::{Objection, check, delays};
@@ -26,4 +27,5 @@ pub use preview::{
     Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, LoopStability, Modes,
     PlannedProgram, Preview, VoltageDemand, preview,
 };
+pub use usage::{LoadMode, Usage, limits_of_set_point, load_mode};
 pub use worker::{RunLimits, WorkerCommand, WorkerError, Workers};

@@ -75,6 +75,11 @@ impl Draws {
         &self.keys
     }
 
+    /// The numbers of draw `index`, in the order of the keys.
+    pub fn numbers(&self, index: u32) -> impl Iterator<Item = f64> {
+        self.settings(index).filter_map(|setting| setting.value.number())
+    }
+
     /// The values of draw `index`.
     pub(crate) fn settings(&self, index: u32) -> impl Iterator<Item = Setting<'_>> {
         self.keys.iter().enumerate().map(move |(key, drawn)| {

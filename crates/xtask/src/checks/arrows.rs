@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 35] = [
+const PLAN: [(&str, May); 36] = [
     ("base", May::On(&[])),
     ("files", May::On(&[])),
     ("config", May::On(&["base"])),
@@ -27,6 +27,7 @@ const PLAN: [(&str, May); 35] = [
     ("plant", May::On(&["base", "config", "fmi"])),
     ("stability", May::On(&["base", "drive", "plant"])),
     ("sweep", May::On(&["config"])),
+    ("advise", May::On(&["sweep"])),
     ("engine-*", May::On(&["base", "files", "plant"])),
     ("isolation", May::On(&[])),
     ("engine-fmu", May::On(&["base", "plant", "fmi", "isolation"])),
@@ -76,6 +77,8 @@ const PLAN: [(&str, May); 35] = [
             "drive",
             "fmi",
             "isolation",
+            "motion",
+            "planner",
             "plant",
             "plcopen",
             "stability",
@@ -91,7 +94,7 @@ const PLAN: [(&str, May); 35] = [
         "report",
         May::On(&[
             "base", "config", "cia402", "fieldbus", "motion", "planner", "fmi", "signals", "trace", "metrics",
-            "results", "sweep",
+            "results", "sweep", "advise",
         ]),
     ),
     ("view", May::On(&["base", "signals", "trace", "metrics"])),

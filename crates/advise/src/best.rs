@@ -1,0 +1,219 @@
+//! From a question to an answer that was verified.
+use crate::machines::Machines;
+use crate::refine::refined;
+use crate::search::{Allowance, Bench, Found, Planned, Search, Worst};
+use crate::set_point::{Ceiling, Family, SetPoint, grid};
+use crate::verify::{Outcome, Plan, Verification, verified};
+use servobench_sweep::SweepError;
+use thiserror::Error;
+
+/// What is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// Kinds of set-points to choose from.
+    pub families: Vec<Family>,
+    /// The largest limits.
+    pub ceiling: Ceiling,
+    /// The machines on which it has to do.
+    pub machines: Machines,
+    /// Natural frequency of the mode that rings (Hz), which says how fine lobes are.
+    pub frequency: f64,
+    /// How many limits a run is judged by.
+    pub limits: usize,
+    /// The limit whose price is asked for, by its index.
+    pub priced: Option<usize>,
+    /// Share of the machines that is promised.
+    pub share: f64,
+    /// Draws that verify it.
+    pub draws: u32,
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+/// The answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// The fastest set-point that was found.
+    pub point: SetPoint,
+    /// Duration of its moves (s).
+    pub duration: f64,
+    /// The worst that it gave on any machine of search and verification.
+    pub worst: Worst,
+    /// How it was verified.
+    pub verification: Verification,
+    /// The best of each other family, with its worst time (s), the fastest first: on the machines of the search.
+    pub others: Vec<(SetPoint, f64)>,
+    /// What another limit would cost or save.
+    pub prices: Vec<Price>,
+    /// Runs that were made.
+    pub runs: usize,
+    /// Set-points that were planned.
+    pub planned: usize,
+}
+
+/// What a limit costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Price {
+    /// The limit, in parts of what it is.
+    pub factor: f64,
+    /// The fastest set-point (s) with that limit, on the machines of the search; `None`: there is none.
+    pub time: Option<f64>,
+}
+
+/// Why there is no advice.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum AdviseError {
+    /// No move can be planned.
+    #[error("no move can be planned within the limits of the set-point")]
+    NoPlan,
+    /// No set-point keeps the limits.
+    #[error(
+        "none of the {planned} set-points that were planned keeps all limits on all machines; allow more vibration or time in `[limits]`, a \
+         lower velocity or acceleration will not do, or make the box smaller"
+    )]
+    NoneKeeps {
+        /// Set-points that were planned.
+        planned: usize,
+    },
+    /// What was found failed on machines that the search had not seen, again and again.
+    #[error(
+        "no set-point was found that keeps all limits on {wanted:.1} % of the machines: after {rounds} rounds the best one keeps them on \
+         {found:.1} % at least; promise a smaller share, or make the box smaller"
+    )]
+    NotVerified {
+        /// Share that is wanted (%).
+        wanted: f64,
+        /// What was shown (%).
+        found: f64,
+        /// Rounds of search and verification.
+        rounds: u32,
+    },
+    /// The box cannot be drawn from.
+    #[error(transparent)]
+    Draws(#[from] SweepError),
+}
+
+/// Set-points that are at most so much slower than the best on the coarse grid are refined, so many of them and of each family.
+const NEAR: f64 = 1.06;
+const REFINED: usize = 12;
+const OF_EACH_FAMILY: usize = 4;
+/// Rounds of search and verification, and machines that join the search after each.
+const ROUNDS: u32 = 12;
+const JOINING: usize = 4;
+/// Confidence of what is promised.
+const CONFIDENCE: f64 = 0.95;
+/// Factors of the priced limit, in ascending order.
+const FACTORS: [f64; 4] = [0.5, 0.9, 1.1, 2.0];
+
+/// The fastest set-point that keeps all limits on the machines of the box.
+///
+/// # Errors
+/// [`AdviseError`]
+pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, AdviseError> {
+    let mut machines = question.machines.corners();
+    machines.push(question.machines.middle());
+    let mut search = Search::new(bench, machines);
+    let planned = candidates(question, &mut search)?;
+    let allowed = vec![1.0; question.limits];
+    let mut shown = 0.0;
+    for round in 0..ROUNDS {
+        let found = best(question, &mut search, &planned, &allowed);
+        let Some(best) = found.first().cloned() else {
+            return Err(AdviseError::NoneKeeps { planned: planned.len() });
+        };
+        let Planned { point, duration } = best.planned;
+        // Draws that have helped to find it prove nothing.
+        let seed = question.seed.wrapping_add(u64::from(round));
+        let plan = Plan { machines: &question.machines, frequency: question.frequency, draws: question.draws, seed };
+        let failed = match verified(&mut search, point, duration, &allowed, plan)? {
+            Outcome::OffGrid(failed) => failed,
+            Outcome::Drawn(verification, failed) => {
+                shown = verification.draws.at_least(CONFIDENCE);
+                if shown >= question.share {
+                    let prices = prices(question, &mut search, &planned, &found);
+                    let others = others(&found, point.family);
+                    let worst = worse(&best.worst, &verification.worst);
+                    let (runs, planned) = (search.runs(), planned.len());
+                    return Ok(Advice { point, duration, worst, verification, others, prices, runs, planned });
+                }
+                failed
+            }
+        };
+        spread(&failed).into_iter().for_each(|machine| search.add(machine));
+    }
+    Err(AdviseError::NotVerified { wanted: 100.0 * question.share, found: 100.0 * shown, rounds: ROUNDS })
+}
+
+/// All set-points of the coarse grid.
+fn candidates(question: &Question, search: &mut Search<'_>) -> Result<Vec<Planned>, AdviseError> {
+    let Ceiling { velocity, acceleration, .. } = question.ceiling;
+    let fast = SetPoint { family: 0, limits: [velocity, acceleration, f64::INFINITY, f64::INFINITY] };
+    let of_second = question.families.iter().position(|family| family.order == 2);
+    let fast = SetPoint { family: of_second.unwrap_or(0), ..fast };
+    let shortest = search.planned(&[fast]).first().ok_or(AdviseError::NoPlan)?.duration;
+    let all: Vec<SetPoint> = question
+        .families
+        .iter()
+        .enumerate()
+        .flat_map(|(index, family)| grid(index, family, &question.ceiling, shortest))
+        .collect();
+    let planned = search.planned(&all);
+    if planned.is_empty() { Err(AdviseError::NoPlan) } else { Ok(planned) }
+}
+
+/// The best set-points, refined, the fastest first.
+fn best(question: &Question, search: &mut Search<'_>, planned: &[Planned], allowed: &Allowance) -> Vec<Found> {
+    let coarse = search.fastest(planned, allowed, NEAR);
+    let mut of_family = vec![0; question.families.len()];
+    let mut starts = Vec::new();
+    for found in coarse {
+        let count = &mut of_family[found.planned.point.family];
+        if *count < OF_EACH_FAMILY && starts.len() < REFINED {
+            *count += 1;
+            starts.push(found);
+        }
+    }
+    let refine = |found| refined(search, &question.families, &question.ceiling, allowed, found);
+    let mut all: Vec<Found> = starts.into_iter().map(refine).collect();
+    all.sort_by(|one, other| one.worst.time.total_cmp(&other.worst.time));
+    all
+}
+
+/// The best of each family but one.
+fn others(found: &[Found], but: usize) -> Vec<(SetPoint, f64)> {
+    let mut others: Vec<(SetPoint, f64)> = Vec::new();
+    for one in found.iter().filter(|one| one.planned.point.family != but) {
+        if others.iter().all(|(point, _)| point.family != one.planned.point.family) {
+            others.push((one.planned.point, one.worst.time));
+        }
+    }
+    others
+}
+
+/// The fastest with other values of the priced limit. What keeps a tighter limit keeps a wider one too.
+fn prices(question: &Question, search: &mut Search<'_>, planned: &[Planned], known: &[Found]) -> Vec<Price> {
+    let Some(priced) = question.priced else { return Vec::new() };
+    let mut fastest = f64::INFINITY;
+    let mut prices = Vec::new();
+    for factor in FACTORS {
+        let mut allowed = vec![1.0; question.limits];
+        allowed[priced] = factor;
+        let found = best(question, search, planned, &allowed);
+        let known = if factor > 1.0 { known } else { &[] };
+        fastest = found.iter().chain(known).map(|found| found.worst.time).fold(fastest, f64::min);
+        prices.push(Price { factor, time: fastest.is_finite().then_some(fastest) });
+    }
+    prices
+}
+
+/// A few of the machines on which it failed, as far from each other in their order as they are.
+fn spread(failed: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let count = failed.len().min(JOINING);
+    (0..count).map(|k| failed[k * (failed.len() - 1) / (count - 1).max(1)].clone()).collect()
+}
+
+/// The worse of both in each respect.
+fn worse(one: &Worst, other: &Worst) -> Worst {
+    let usage = one.usage.iter().zip(&other.usage).map(|(one, other)| if one.0 >= other.0 { one } else { other });
+    Worst { time: one.time.max(other.time), usage: usage.cloned().collect() }
+}

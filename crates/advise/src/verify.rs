@@ -1,0 +1,85 @@
+//! What was found, on machines that the search has not seen.
+use crate::machines::{Machines, Stretch};
+use crate::search::{Allowance, Reading, Search, Worst, keeps, worst_of};
+use crate::set_point::SetPoint;
+use servobench_sweep::{Distribution, Drawn, Draws, Method, Proportion, SweepError};
+
+/// A part of a lobe between two machines of the grid: finer than a tenth.
+const LOBE: f64 = 0.095;
+
+/// What a set-point gave on machines that the search has not seen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verification {
+    /// Corners and machines between them along which a mode moves.
+    pub grid: usize,
+    /// Distance of these in frequency (Hz), at most; `None` where no mode moves.
+    pub spacing: Option<f64>,
+    /// Draws that keep all limits, and those that do not.
+    pub draws: Proportion,
+    /// The worst of all of them.
+    pub worst: Worst,
+}
+
+/// How a set-point is verified.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan<'a> {
+    pub(crate) machines: &'a Machines,
+    /// Natural frequency of the mode (Hz).
+    pub(crate) frequency: f64,
+    pub(crate) draws: u32,
+    pub(crate) seed: u64,
+}
+
+/// What verification came to.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// Machines of the grid on which it fails; nothing was drawn.
+    OffGrid(Vec<Vec<f64>>),
+    /// It does on the grid; and draws on which it fails.
+    Drawn(Verification, Vec<Vec<f64>>),
+}
+
+/// Tries `point`, whose moves take `longest` (s), on the grid, and where it does there on draws.
+pub(crate) fn verified(
+    search: &mut Search<'_>,
+    point: SetPoint,
+    longest: f64,
+    allowed: &Allowance,
+    plan: Plan<'_>,
+) -> Result<Outcome, SweepError> {
+    let fails = |machines: &[Vec<f64>], readings: &[Reading]| -> Vec<Vec<f64>> {
+        let failed = machines.iter().zip(readings).filter(|(_, reading)| !keeps(reading, allowed));
+        failed.map(|(machine, _)| machine.clone()).collect()
+    };
+    let mut grid = plan.machines.corners();
+    grid.push(plan.machines.middle());
+    grid.extend(plan.machines.along(plan.frequency, longest, LOBE));
+    let of_grid = search.on(point, &grid);
+    let failed = fails(&grid, &of_grid);
+    if !failed.is_empty() {
+        return Ok(Outcome::OffGrid(failed));
+    }
+    let drawn = drawn(plan)?;
+    let of_draws = search.on(point, &drawn);
+    let failed = fails(&drawn, &of_draws);
+    let all = grid.iter().chain(&drawn).map(Vec::as_slice).zip(of_grid.iter().chain(&of_draws));
+    let moves = plan.machines.ranges().iter().any(|range| range.stretch != Stretch::None);
+    let verification = Verification {
+        grid: grid.len(),
+        spacing: moves.then_some(LOBE / longest),
+        draws: Proportion::new((drawn.len() - failed.len()) as u64, failed.len() as u64),
+        worst: worst_of(all),
+    };
+    Ok(Outcome::Drawn(verification, failed))
+}
+
+/// Machines drawn at random, every one of the box as likely as any other.
+fn drawn(plan: Plan<'_>) -> Result<Vec<Vec<f64>>, SweepError> {
+    let keys = plan.machines.ranges().iter().map(|range| {
+        let [low, high] = range.ends;
+        let distribution = Distribution::Uniform { low: low.min(high), high: low.max(high) };
+        Drawn { key: range.key.clone(), unit: range.unit.clone(), distribution }
+    });
+    let draws = Draws::new(plan.draws, plan.seed, Method::Random, keys.collect())?;
+    Ok((0..plan.draws).map(|index| draws.numbers(index).collect()).collect())
+}

@@ -1,0 +1,138 @@
+//! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile rings with X·∏|sin(ωT/2)/(ωT/2)|, T the
+//! boxes of the profile. Oracle: all of many set-points, tried on all machines.
+use servobench_advise::{
+    AdviseError, Bench, Ceiling, Family, Machines, Question, Range, Reading, SetPoint, Stretch, advise,
+};
+use servobench_testkit::Random;
+use std::f64::consts::TAU;
+
+const DISTANCE: f64 = 0.25;
+/// Largest vibration (m).
+const VIBRATION: f64 = 60e-6;
+
+/// The boxes of the profile, the longest first; none of a profile that does not reach its limits.
+fn boxes(point: &SetPoint) -> Option<Vec<f64>> {
+    let [velocity, acceleration, jerk, snap] = point.limits;
+    let all = [DISTANCE / velocity, velocity / acceleration, acceleration / jerk, jerk / snap];
+    let boxes: Vec<f64> = all.into_iter().filter(|length| *length > 0.0).collect();
+    let later = |k: usize| boxes[k + 1..].iter().sum::<f64>();
+    (0..boxes.len()).all(|k| boxes[k] >= later(k)).then_some(boxes)
+}
+
+struct Axis {
+    runs: usize,
+}
+
+impl Axis {
+    fn reading(point: &SetPoint, machine: &[f64]) -> Reading {
+        let boxes = boxes(point).unwrap();
+        let [frequency, payload] = machine else { panic!("{machine:?}") };
+        let ring = |length: &f64| {
+            let half = 0.5 * TAU * frequency * length;
+            (half.sin() / half).abs()
+        };
+        let vibration = DISTANCE * boxes.iter().map(ring).product::<f64>();
+        let force = payload * point.limits[1];
+        Reading { time: boxes.iter().sum(), usage: vec![vibration / VIBRATION, force / 55.0], is_sound: true }
+    }
+}
+
+impl Bench for Axis {
+    fn durations(&mut self, points: &[SetPoint]) -> Vec<Option<f64>> {
+        points.iter().map(|point| boxes(point).map(|boxes| boxes.iter().sum())).collect()
+    }
+
+    fn run(&mut self, runs: &[(SetPoint, &[f64])]) -> Vec<Reading> {
+        self.runs += runs.len();
+        runs.iter().map(|(point, machine)| Self::reading(point, machine)).collect()
+    }
+}
+
+fn question() -> Question {
+    let family = |order| Family { order, settings: vec![], name: format!("order {order}") };
+    let range = |key: &str, ends, stretch| Range { key: key.into(), ends, unit: String::new(), stretch };
+    Question {
+        families: vec![family(2), family(3), family(4)],
+        ceiling: Ceiling { velocity: 0.5, acceleration: 6.0, jerk: f64::INFINITY, snap: f64::INFINITY },
+        machines: Machines::new(vec![
+            range("frequency", [15.0, 20.0], Stretch::Frequency),
+            range("payload", [8.0, 11.0], Stretch::None),
+        ]),
+        frequency: 17.5,
+        limits: 2,
+        priced: Some(0),
+        share: 0.99,
+        draws: 1_000,
+        seed: 1,
+    }
+}
+
+/// The worst of a set-point over machines as near to each other as 0.02 Hz: its time, if it keeps all limits on them.
+fn time_of(point: &SetPoint) -> Option<f64> {
+    let boxes = boxes(point)?;
+    let keeps = (0..=250).all(|k| {
+        let reading = Axis::reading(point, &[15.0 + 0.02 * f64::from(k), 11.0]);
+        reading.usage.iter().all(|usage| *usage <= 1.0)
+    });
+    keeps.then(|| boxes.iter().sum())
+}
+
+#[test]
+fn nothing_of_twenty_thousand_set_points_is_better_by_half_a_percent() {
+    let mut axis = Axis { runs: 0 };
+    let advice = advise(&question(), &mut axis).unwrap();
+    assert_eq!(advice.runs, axis.runs);
+    assert!((advice.worst.time - advice.duration).abs() < 1e-12, "nothing settles here");
+    assert!(time_of(&advice.point).is_some(), "{advice:?}");
+    // 12·12·12·12 of the fourth order and 12·12·12 of the third.
+    let mut fastest = f64::INFINITY;
+    let levels = |top: f64, ratio: f64| (0..12).map(move |k| top * ratio.powi(-k));
+    for velocity in levels(0.5, 1.04) {
+        for acceleration in levels(6.0, 1.08) {
+            for rise in levels(0.12, 1.25) {
+                for rise_of_jerk in std::iter::once(0.0).chain(levels(0.1, 1.25)) {
+                    let order = if rise_of_jerk > 0.0 { 4 } else { 3 };
+                    let point = SetPoint::by_times(0, order, [velocity, acceleration, rise, rise_of_jerk]);
+                    fastest = fastest.min(time_of(&point).unwrap_or(f64::INFINITY));
+                }
+            }
+        }
+    }
+    println!("advice {} s after {} runs, the grid has {fastest} s", advice.duration, advice.runs);
+    assert!(advice.worst.time <= fastest * 1.005, "{} against {fastest}", advice.worst.time);
+}
+
+/// Draws of its own: the promise holds.
+#[test]
+fn fresh_draws_keep_the_promise() {
+    let advice = advise(&question(), &mut Axis { runs: 0 }).unwrap();
+    let mut random = Random::seeded(99);
+    let good = (0..1_000).filter(|_| {
+        let machine = [15.0 + 5.0 * random.unit(), 8.0 + 3.0 * random.unit()];
+        Axis::reading(&advice.point, &machine).usage.iter().all(|usage| *usage <= 1.0)
+    });
+    let good = good.count();
+    assert!(good >= 990, "{good} of 1000");
+    assert!(advice.verification.draws.at_least(0.95) >= 0.99 && advice.verification.grid > 39, "{advice:?}");
+}
+
+/// Less vibration takes longer, more vibration less time.
+#[test]
+fn a_tighter_limit_costs_time() {
+    let advice = advise(&question(), &mut Axis { runs: 0 }).unwrap();
+    let times: Vec<f64> = advice.prices.iter().map(|price| price.time.unwrap()).collect();
+    let factors: Vec<f64> = advice.prices.iter().map(|price| price.factor).collect();
+    assert_eq!(factors.len(), 4);
+    let falls = times.windows(2).all(|pair| pair[0] >= pair[1]);
+    assert!(falls && times[0] > advice.worst.time && advice.worst.time > times[3], "{times:?}");
+}
+
+#[test]
+fn what_cannot_be_kept_has_no_advice() {
+    let mut impossible = question();
+    impossible.machines = Machines::new(vec![
+        Range { key: "frequency".into(), ends: [15.0, 20.0], unit: String::new(), stretch: Stretch::Frequency },
+        Range { key: "payload".into(), ends: [8.0, 11e3], unit: String::new(), stretch: Stretch::None },
+    ]);
+    assert!(matches!(advise(&impossible, &mut Axis { runs: 0 }), Err(AdviseError::NoneKeeps { .. })));
+}

@@ -1,0 +1,191 @@
+//! `servobench advise`: the fastest set-point that keeps the limits of a scenario on every machine of a box.
+mod runs;
+
+use crate::args::AdviseArgs;
+use crate::console::{print, say, style};
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::sources;
+use runs::Runs;
+use servobench_advise::{Ceiling, Family, Machines, Question, Range, Stretch, advise as find};
+use servobench_config::Choice as _;
+use servobench_motion::shape::ShaperKind;
+use servobench_report::{AdviceOptions, advice_text};
+use servobench_scenario::{KeyRange, root_of};
+use servobench_suite::{LoadMode, Source, limits_of_set_point, load_mode};
+use std::path::Path;
+use thiserror::Error;
+
+/// Why nothing can be advised.
+#[derive(Debug, Error)]
+pub(crate) enum AdviseMistake {
+    #[error(
+        "the scenario has no `[limits]` that a set-point could be chosen by: give `residual_vibration_pp`, for example"
+    )]
+    NoLimits,
+    #[error(
+        "the scenario has no move from rest to rest by velocity and acceleration: give `setpoint` and a `[[program]]` with `move_to`"
+    )]
+    NoMove,
+    #[error("nothing of this axis is coupled by a spring: say with `--within KEY=RANGE` what its machines may be")]
+    NoMode,
+    #[error("--shaper: there is no shaper `{given}`; it is none of none, {known}")]
+    NoShaper { given: String, known: String },
+    #[error("--choose: `{0}` is no key with values; write it as drive.position.bandwidth=20 Hz,30 Hz")]
+    NoChoice(String),
+    #[error("--within: with {settings} the scenario is invalid:\n{why}")]
+    Machine { settings: String, why: String },
+}
+
+/// How far the frequency of the load is from that of the scenario, where nobody says so, and its damping ratio.
+const FREQUENCIES: [f64; 2] = [0.9, 1.1];
+const DAMPINGS: [f64; 2] = [0.5, 2.0];
+
+/// Finds it, and says it with its price and its certainty.
+pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
+    let folder = args.scenario.parent().unwrap_or_else(|| Path::new(""));
+    let root = root_of(folder, args.with.root.as_deref())
+        .map_err(|error| CliError::Read { path: args.scenario.clone(), error })?;
+    let base = sources::base(&args.scenario, &args.with.overrides, &root)?;
+    let scenario = &base.scenario;
+    let limits: Vec<_> = scenario.limits.iter().copied().filter(|limit| limit.max.is_some()).collect();
+    if limits.is_empty() {
+        return Err(AdviseMistake::NoLimits.into());
+    }
+    let mode = load_mode(scenario);
+    let machines = Machines::new(ranges(args, mode.as_ref())?);
+    let frequency = frequency(&machines, scenario.measure.mode, mode.as_ref());
+    let question = Question {
+        families: families(args, &base, mode.as_ref(), frequency)?,
+        ceiling: ceiling(args, &base)?,
+        machines,
+        frequency: frequency.unwrap_or_default(),
+        limits: limits.len(),
+        priced: limits.iter().position(|limit| limit.metric.as_str().starts_with("residual_vibration")),
+        share: args.share,
+        draws: args.draws,
+        seed: args.seed,
+    };
+    let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
+    runs.check()?;
+    say(&format!("looking for a set-point among {} kinds\n", question.families.len()));
+    let advice = find(&question, &mut runs)?;
+    runs.finish();
+    let options = AdviceOptions {
+        scenario: &scenario.name,
+        engine: runs.engine().name(),
+        limits: &limits,
+        motion: scenario.axis.motion,
+        command: runs.command(&advice.point),
+        is_assumed: args.within.is_empty(),
+        has_window: scenario.measure.window.is_some(),
+        shaper_frequency: frequency,
+    };
+    print(&advice_text(&question, &advice, &options, style()))?;
+    Ok(Exit::Passed)
+}
+
+/// What the machines may be.
+fn ranges(args: &AdviseArgs, mode: Option<&LoadMode>) -> Result<Vec<Range>, CliError> {
+    if !args.within.is_empty() {
+        let names: Vec<&str> = args.within.iter().map(|range| range.key.as_str()).collect();
+        return Ok(args.within.iter().map(|range| with_stretch(range, &names)).collect());
+    }
+    let LoadMode { table, frequency, damping_ratio } = mode.ok_or(AdviseMistake::NoMode)?;
+    let range = |key: &str, value: f64, factors: [f64; 2], unit: &str, stretch| Range {
+        key: format!("{table}.{key}"),
+        ends: factors.map(|factor| factor * value),
+        unit: unit.to_owned(),
+        stretch,
+    };
+    Ok(vec![
+        range("frequency", *frequency, FREQUENCIES, "Hz", Stretch::Frequency),
+        range("damping_ratio", *damping_ratio, DAMPINGS, "", Stretch::None),
+    ])
+}
+
+/// A mass moves a mode where nothing else says what its frequency is.
+fn with_stretch(range: &KeyRange, names: &[&str]) -> Range {
+    let (table, last) = range.key.rsplit_once('.').unwrap_or(("", &range.key));
+    let has_frequency = names.contains(&format!("{table}.frequency").as_str());
+    let stretch = match last {
+        "frequency" => Stretch::Frequency,
+        "stiffness" | "mass" | "inertia" if !has_frequency => Stretch::Root,
+        _ => Stretch::None,
+    };
+    Range { key: range.key.clone(), ends: range.ends, unit: range.unit.clone(), stretch }
+}
+
+/// The frequency in the middle of the box, or that which the scenario has.
+fn frequency(machines: &Machines, measured: Option<f64>, mode: Option<&LoadMode>) -> Option<f64> {
+    let middle = machines.middle();
+    let own = machines.ranges().iter().zip(middle).find(|(range, _)| range.stretch == Stretch::Frequency);
+    own.map(|(_, value)| value).or(measured).or(mode.map(|mode| mode.frequency))
+}
+
+/// The largest limits of the set-point.
+fn ceiling(args: &AdviseArgs, base: &Source) -> Result<Ceiling, CliError> {
+    let limits = limits_of_set_point(&base.scenario).ok_or(AdviseMistake::NoMove)?;
+    let kept = |limit: f64| if args.keep_jerk_and_snap { limit } else { f64::INFINITY };
+    Ok(Ceiling {
+        velocity: limits.velocity,
+        acceleration: limits.acceleration,
+        jerk: kept(limits.jerk),
+        snap: kept(limits.snap),
+    })
+}
+
+/// Kinds of set-points: each order, with each shaper where it may have one, with each choice.
+fn families(
+    args: &AdviseArgs,
+    base: &Source,
+    mode: Option<&LoadMode>,
+    frequency: Option<f64>,
+) -> Result<Vec<Family>, CliError> {
+    let orders = if args.order.is_empty() { vec![2, 3, 4] } else { args.order.clone() };
+    let mut families = Vec::new();
+    for order in orders {
+        families.push(Family { order, settings: without_shaper(base), name: format!("order {order}") });
+        let Some(frequency) = frequency.filter(|_| order < 4) else { continue };
+        let damping = mode.map_or(0.0, |mode| mode.damping_ratio);
+        for kind in shapers(args)? {
+            let table =
+                format!("setpoint.shaper={{ kind = \"{kind}\", frequency = \"{frequency} Hz\", damping = {damping} }}");
+            families.push(Family { order, settings: vec![table], name: format!("order {order}, {kind}") });
+        }
+    }
+    for choice in &args.choose {
+        let (key, values) = choice.split_once('=').ok_or_else(|| AdviseMistake::NoChoice(choice.clone()))?;
+        let values: Vec<&str> = values.split(',').map(str::trim).collect();
+        if values.iter().any(|value| value.is_empty()) {
+            return Err(AdviseMistake::NoChoice(choice.clone()).into());
+        }
+        let with = |family: &Family, value: &str| Family {
+            order: family.order,
+            settings: [&family.settings[..], &[format!("{key}={value}")]].concat(),
+            name: format!("{}, {key} {value}", family.name),
+        };
+        families = families.iter().flat_map(|family| values.iter().map(move |value| with(family, value))).collect();
+    }
+    Ok(families)
+}
+
+/// The kinds of shapers to choose from, without none.
+fn shapers(args: &AdviseArgs) -> Result<Vec<&'static str>, CliError> {
+    let known: Vec<&'static str> = ShaperKind::ALL.iter().map(|(name, ..)| *name).collect();
+    if args.shaper.is_empty() {
+        return Ok(known);
+    }
+    let wanted = args.shaper.iter().filter(|kind| *kind != "none");
+    let found = wanted.map(|kind| {
+        let own = known.iter().copied().find(|name| name == kind);
+        own.ok_or_else(|| AdviseMistake::NoShaper { given: kind.clone(), known: known.join(", ") }.into())
+    });
+    found.collect()
+}
+
+/// What takes the shaper of the scenario away, if it has one.
+fn without_shaper(base: &Source) -> Vec<String> {
+    let has_one = base.scenario.parameters.iter().any(|one| one.key.starts_with("setpoint.shaper"));
+    if has_one { vec!["setpoint.shaper={ kind = \"none\" }".to_owned()] } else { Vec::new() }
+}

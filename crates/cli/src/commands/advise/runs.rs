@@ -1,0 +1,173 @@
+//! The runs of an advice: a scenario with a set-point on a machine.
+use super::AdviseMistake;
+use crate::args::AdviseArgs;
+use crate::console::{program, say};
+use crate::engines;
+use crate::error::CliError;
+use crate::sources;
+use crate::workers;
+use servobench_advise::{Bench, Question, Reading, SetPoint};
+use servobench_base::Coordinate;
+use servobench_metrics::{Limit, Name};
+use servobench_plant::EngineName;
+use servobench_scenario::Override;
+use servobench_sim::Program;
+use servobench_suite::{AtATime, Engines, Job, Source, Usage, Workers, execute, map_in_parallel};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Time from one word to the next.
+const PERIOD: Duration = Duration::from_secs(10);
+
+/// Makes the runs of an advice.
+pub(super) struct Runs<'a> {
+    args: &'a AdviseArgs,
+    base: &'a Source,
+    root: &'a Path,
+    limits: &'a [Limit],
+    question: &'a Question,
+    engine: EngineName,
+    engines: Engines,
+    workers: Workers,
+    at_a_time: AtATime,
+    wanted: Vec<Name>,
+    made: usize,
+    told: Instant,
+}
+
+impl<'a> Runs<'a> {
+    pub(super) fn new(
+        args: &'a AdviseArgs,
+        base: &'a Source,
+        root: &'a Path,
+        limits: &'a [Limit],
+        question: &'a Question,
+    ) -> Result<Self, CliError> {
+        let allowed = workers::limits(None, args.memory.memory_limit);
+        let engine = args.engine.or_else(|| base.scenario.engines.first().copied()).unwrap_or_default();
+        Ok(Self {
+            args,
+            base,
+            root,
+            limits,
+            question,
+            engine,
+            engines: engines::installed(),
+            workers: workers::of(&std::env::temp_dir(), args.worker_timeout, allowed)?,
+            at_a_time: workers::at_a_time(args.jobs, allowed),
+            wanted: vec![Name::MoveTime, Name::MoveAndSettlingTime],
+            made: 0,
+            told: Instant::now(),
+        })
+    }
+
+    pub(super) const fn engine(&self) -> EngineName {
+        self.engine
+    }
+
+    /// Ends worker processes.
+    pub(super) fn finish(&self) {
+        workers::dismiss(&self.workers);
+    }
+
+    /// The command that makes a run of `point` on the machine of the scenario.
+    pub(super) fn command(&self, point: &SetPoint) -> String {
+        let own = self.args.with.overrides.iter().map(ToString::to_string);
+        let sets = own.chain(self.set_point(point)).map(|one| format!(" --set '{one}'"));
+        format!("{} run {}{}", program(), self.args.scenario.display(), sets.collect::<String>())
+    }
+
+    /// Refuses a box whose corners are no valid scenarios.
+    pub(super) fn check(&self) -> Result<(), CliError> {
+        let ceiling = &self.question.ceiling;
+        for (index, family) in self.question.families.iter().enumerate() {
+            let slow = [ceiling.velocity, ceiling.acceleration, 0.1, 0.1];
+            let point = SetPoint::by_times(index, family.order, slow);
+            for machine in self.question.machines.corners() {
+                if let Err(why) = self.source(&point, &machine) {
+                    let settings = [self.set_point(&point), self.machine(&machine)].concat().join(", ");
+                    return Err(AdviseMistake::Machine { settings, why: why.join("\n") }.into());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A set-point as on the command line.
+    fn set_point(&self, point: &SetPoint) -> Vec<String> {
+        let family = &self.question.families[point.family];
+        let unit = if self.base.scenario.axis.motion == Coordinate::Linear { "m" } else { "rad" };
+        let mut settings = vec![format!("setpoint.order={}", family.order)];
+        let names = ["velocity", "acceleration", "jerk", "snap"];
+        for ((name, limit), power) in names.iter().zip(point.limits).zip(1_u32..) {
+            if power <= family.order && limit.is_finite() {
+                let power = if power > 1 { power.to_string() } else { String::new() };
+                settings.push(format!("setpoint.{name}={limit} {unit}/s{power}"));
+            }
+        }
+        settings.extend(family.settings.iter().cloned());
+        settings
+    }
+
+    /// A machine as on the command line; the mode that is measured is its own.
+    fn machine(&self, machine: &[f64]) -> Vec<String> {
+        let mut settings = Vec::new();
+        for (range, value) in self.question.machines.ranges().iter().zip(machine) {
+            let written = if range.unit.is_empty() { value.to_string() } else { format!("{value} {}", range.unit) };
+            settings.push(format!("{}={written}", range.key));
+            if range.key.ends_with(".frequency") && self.base.scenario.measure.mode.is_some() {
+                settings.push(format!("measure.mode={written}"));
+            }
+        }
+        settings
+    }
+
+    fn source(&self, point: &SetPoint, machine: &[f64]) -> Result<Source, Vec<String>> {
+        let mut overrides = self.args.with.overrides.clone();
+        for written in self.set_point(point).into_iter().chain(self.machine(machine)) {
+            overrides.push(written.parse::<Override>().map_err(|error| vec![format!("`{written}`: {error}")])?);
+        }
+        sources::varied(&self.args.scenario, &self.base.text, &overrides, self.root)
+            .map_err(|error| sources::reasons(&error))
+    }
+
+    fn reading(&self, point: &SetPoint, machine: &[f64]) -> Option<Usage> {
+        let source = self.source(point, machine).ok()?;
+        let has_window = source.scenario.measure.window.is_some();
+        let mut job = Job::new("advise".into(), source, self.engine);
+        job.leave_recording_out();
+        job.measure_only(&self.wanted);
+        let run = execute(&job, &self.engines, &self.workers, &mut |_| {}).ok()?;
+        Some(run.usage(self.limits, has_window))
+    }
+
+    fn tell(&mut self, more: usize) {
+        self.made += more;
+        if self.told.elapsed() >= PERIOD {
+            self.told = Instant::now();
+            say(&format!("{} runs made\n", self.made));
+        }
+    }
+}
+
+impl Bench for Runs<'_> {
+    fn durations(&mut self, points: &[SetPoint]) -> Vec<Option<f64>> {
+        let middle = self.question.machines.middle();
+        let duration = |point: &SetPoint| {
+            let source = self.source(point, &middle).ok()?;
+            let program = Program::new(&source.scenario).ok()?;
+            program.durations().reduce(f64::max)
+        };
+        let planned = map_in_parallel(points, self.at_a_time, |_| ((), 0), |point, ()| duration(point));
+        planned.into_iter().map(|one| one.ok().flatten()).collect()
+    }
+
+    fn run(&mut self, runs: &[(SetPoint, &[f64])]) -> Vec<Reading> {
+        let made =
+            map_in_parallel(runs, self.at_a_time, |_| ((), 0), |(point, machine), ()| self.reading(point, machine));
+        self.tell(runs.len());
+        let nothing = || Usage { time: f64::NAN, shares: vec![f64::NAN; self.limits.len()], is_sound: false };
+        let readings = made.into_iter().map(|one| one.ok().flatten().unwrap_or_else(nothing));
+        readings.map(|Usage { time, shares, is_sound }| Reading { time, usage: shares, is_sound }).collect()
+    }
+}

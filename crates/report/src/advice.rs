@@ -1,0 +1,213 @@
+//! An advice in words: what to set, what it costs, how sure it is.
+mod vendors;
+
+use crate::style::{Ink, Style};
+use crate::text::wrapped;
+use servobench_advise::{Advice, Question, SetPoint};
+use servobench_base::Coordinate;
+use servobench_metrics::{Limit, Quantity};
+use servobench_results::printable;
+
+/// What an advice is about.
+#[derive(Debug, Clone)]
+pub struct AdviceOptions<'a> {
+    /// The scenario.
+    pub scenario: &'a str,
+    /// The engine that it ran on.
+    pub engine: &'a str,
+    /// The limits, in the order in which the advice counts them.
+    pub limits: &'a [Limit],
+    /// Whether the axis moves along a line or turns.
+    pub motion: Coordinate,
+    /// The command that makes the run of the set-point on the machine of the scenario.
+    pub command: String,
+    /// Whether the box was assumed and not given.
+    pub is_assumed: bool,
+    /// Whether settling counts.
+    pub has_window: bool,
+    /// Natural frequency that shapers are made for (Hz).
+    pub shaper_frequency: Option<f64>,
+}
+
+/// Confidence of what is promised.
+const CONFIDENCE: f64 = 0.95;
+/// Other kinds of set-points that are told.
+const OTHERS: usize = 5;
+
+/// The advice in at most [`Style::width`] columns: a sentence with its price and its certainty, what limits it, other kinds of set-points, and
+/// the same in the words of those who sell drives.
+#[must_use]
+pub fn advice_text(question: &Question, advice: &Advice, options: &AdviceOptions<'_>, style: Style) -> String {
+    let text = Text { question, advice, options, style };
+    [
+        text.sentence(),
+        text.used(),
+        text.machines(),
+        text.prices(),
+        text.others(),
+        vendors::words(question, advice, options, style),
+        format!("\nrun it: {}\n", options.command),
+    ]
+    .concat()
+}
+
+struct Text<'a> {
+    question: &'a Question,
+    advice: &'a Advice,
+    options: &'a AdviceOptions<'a>,
+    style: Style,
+}
+
+impl Text<'_> {
+    fn heading(&self, text: &str) -> String {
+        format!("\n{}\n", self.style.paint(Ink::Heading, text))
+    }
+
+    fn broken(&self, text: &str) -> String {
+        wrapped(text, self.style.width).into_iter().fold(String::new(), |all, line| all + &line + "\n")
+    }
+
+    fn unit(&self, power: usize) -> String {
+        let axis = if self.options.motion == Coordinate::Linear { "m" } else { "rad" };
+        match power {
+            1 => format!("{axis}/s"),
+            power => format!("{axis}/s{power}"),
+        }
+    }
+
+    /// `order 4: velocity 500 mm/s, acceleration 3.69 m/s2`.
+    fn point(&self, point: &SetPoint) -> String {
+        let family = &self.question.families[point.family];
+        let names = ["velocity", "acceleration", "jerk", "snap"];
+        let limits = names.iter().zip(point.limits).enumerate().filter(|(_, (_, limit))| limit.is_finite());
+        let limits: Vec<String> =
+            limits.map(|(k, (name, limit))| format!("{name} {}", Quantity::new(limit, &self.unit(k + 1)))).collect();
+        format!("{} with {}", family.name, limits.join(", "))
+    }
+
+    fn sentence(&self) -> String {
+        let Self { advice, options, .. } = self;
+        let time = Quantity::new(advice.worst.time, "s");
+        let what = if options.has_window { "is in position" } else { "has moved" };
+        let draws = advice.verification.draws;
+        let share = 100.0 * draws.at_least(CONFIDENCE);
+        let price = self.price_of_less().map_or(String::new(), |words| format!("; {words}"));
+        self.broken(&format!(
+            "Take {}: {} {what} {time} after the start at worst, and at least {} % of the machines keep all limits ({} of {} draws did, \
+             95 % certain){price}.",
+            self.point(&advice.point),
+            printable(options.scenario),
+            // Never more than what was shown.
+            (share * 10.0).floor() / 10.0,
+            draws.hits(),
+            draws.trials(),
+        ))
+    }
+
+    /// What the next 10 % of vibration cost.
+    fn price_of_less(&self) -> Option<String> {
+        let metric = self.options.limits.get(self.question.priced?)?.metric;
+        let own = self.advice.worst.time;
+        let of = |factor: f64| self.advice.prices.iter().find(|price| price.factor.to_bits() == factor.to_bits());
+        let less = of(0.9).map(|price| match price.time {
+            Some(time) => format!("10 % less of {metric} would cost {}", Quantity::new((time - own).max(0.0), "s")),
+            None => format!("10 % less of {metric} was not found at any price"),
+        })?;
+        let more = of(1.1).and_then(|price| price.time);
+        let more = more.map_or(String::new(), |time| {
+            format!(", 10 % more would save {}", Quantity::new((own - time).max(0.0), "s"))
+        });
+        Some(less + &more)
+    }
+
+    /// How much of each limit is used, and where.
+    fn used(&self) -> String {
+        let mut rows: Vec<(f64, String)> = Vec::new();
+        for (limit, (usage, machine)) in self.options.limits.iter().zip(&self.advice.worst.usage) {
+            let at = self.machine(machine);
+            let name = limit.metric.as_str();
+            rows.push((*usage, format!("{:>5.1} %  {name} at {at}", 100.0 * usage)));
+        }
+        rows.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let rows = rows.into_iter().map(|(_, row)| {
+            let lines = wrapped(&row, self.style.width.saturating_sub(9));
+            let indent = " ".repeat(9);
+            lines.join(&format!("\n{indent}")) + "\n"
+        });
+        self.heading("What limits it: used of each limit, at most") + &rows.collect::<String>()
+    }
+
+    /// `frequency 15.8 Hz, damping_ratio 0.002`.
+    fn machine(&self, machine: &[f64]) -> String {
+        let ranges = self.question.machines.ranges();
+        let of = |(range, value): (&servobench_advise::Range, &f64)| {
+            let name = range.key.rsplit('.').next().unwrap_or_default();
+            let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
+            printable(&format!("{name} {}{unit}", rounded(*value)))
+        };
+        ranges.iter().zip(machine).map(of).collect::<Vec<_>>().join(", ")
+    }
+
+    fn machines(&self) -> String {
+        let ranges = self.question.machines.ranges().iter().map(|range| {
+            let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
+            let [low, high] = range.ends.map(rounded);
+            printable(&format!("{} from {low} to {high}{unit}", range.key))
+        });
+        let assumed = if self.options.is_assumed { " (assumed; say what yours are with --within)" } else { "" };
+        let verification = &self.advice.verification;
+        let spacing = verification
+            .spacing
+            .map_or(String::new(), |spacing| format!(", {} Hz or less from each other", rounded(spacing)));
+        let ranges: Vec<String> = ranges.collect();
+        let text = format!(
+            "Machines{assumed}: {}. Verified by runs on {} of them at corners of the box and between these{spacing}, and on {} draws; {} \
+             set-points were planned and {} runs made on {}.",
+            ranges.join("; "),
+            verification.grid,
+            verification.draws.trials(),
+            self.advice.planned,
+            self.advice.runs,
+            self.options.engine,
+        );
+        "\n".to_owned() + &self.broken(&text)
+    }
+
+    fn prices(&self) -> String {
+        let limit = self.question.priced.and_then(|priced| self.options.limits.get(priced));
+        let Some((metric, max)) = limit.and_then(|limit| Some((limit.metric, limit.max?))) else {
+            return String::new();
+        };
+        let (axis, own) = (self.unit(0), self.advice.worst.time);
+        let unit = if axis.starts_with("rad") { "rad" } else { "m" };
+        let mut rows: Vec<(f64, Option<f64>)> =
+            self.advice.prices.iter().map(|price| (price.factor, price.time)).chain([(1.0, Some(own))]).collect();
+        rows.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let row = |(factor, time): &(f64, Option<f64>)| {
+            let limit = Quantity::new(factor * max, unit).to_string();
+            let time = time.map_or("none found".to_owned(), |time| Quantity::new(time, "s").to_string());
+            let here = if (factor - 1.0).abs() < 1e-12 { "  this advice" } else { "" };
+            format!("{limit:>12}  {time:>10}{here}\n")
+        };
+        let heading = format!("What {metric} costs: its limit, and the time at worst");
+        self.heading(&heading) + &rows.iter().map(row).collect::<String>()
+    }
+
+    fn others(&self) -> String {
+        if self.advice.others.is_empty() {
+            return String::new();
+        }
+        let row = |(point, time): &(SetPoint, f64)| {
+            let text = format!("{:>10}  {}", Quantity::new(*time, "s").to_string(), self.point(point));
+            wrapped(&text, self.style.width.saturating_sub(12)).join(&format!("\n{}", " ".repeat(12))) + "\n"
+        };
+        let rows: String = self.advice.others.iter().take(OTHERS).map(row).collect();
+        self.heading("The best of other kinds, on the machines of the search") + &rows
+    }
+}
+
+/// Four digits.
+fn rounded(value: f64) -> String {
+    let text = format!("{value:.3e}");
+    text.parse::<f64>().map_or(text, |value| value.to_string())
+}

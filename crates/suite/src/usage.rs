@@ -1,0 +1,95 @@
+//! How much of its limits a run used, and the mode in which its load swings: what an advice is made of.
+use crate::execute::Run;
+use servobench_metrics::{Limit, Name, Standing};
+use servobench_motion::Limits;
+use servobench_planner::Generator;
+use servobench_scenario::{AxisMechanics, Scenario, Step};
+use std::f64::consts::TAU;
+
+/// How much of its limits a run used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Usage {
+    /// Longest move with settling (s), without a settling window longest move; not a number where the load does not settle.
+    pub time: f64,
+    /// Of each largest allowed value the share that is used; not a number where it could not be measured.
+    pub shares: Vec<f64>,
+    /// Whether nothing else failed: every requirement is met, every smallest value reached.
+    pub is_sound: bool,
+}
+
+impl Run {
+    /// How much this run used of `limits`, which it was judged by; `has_window`: settling counts.
+    #[must_use]
+    pub fn usage(&self, limits: &[Limit], has_window: bool) -> Usage {
+        let value = |name| self.metrics.run.value(name).unwrap_or(f64::NAN);
+        let share = |limit: &Limit| {
+            let size = value(limit.metric).abs();
+            // Nothing of nothing is all that is allowed.
+            limit.max.map(|max| if size == 0.0 { 0.0 } else { size / max })
+        };
+        let is_of_a_share = |limit: &Limit, in_move: Option<usize>| in_move.is_none() && limit.max.is_some();
+        let verdict = &self.verdict;
+        let is_sound = verdict.expected.iter().all(|expected| expected.met.is_some())
+            && !verdict.requirements.iter().any(|(_, result)| result.standing == Standing::Broken)
+            && verdict.misses.iter().all(|miss| is_of_a_share(&miss.limit, miss.in_move) && miss.value.is_some());
+        let time = value(if has_window { Name::MoveAndSettlingTime } else { Name::MoveTime });
+        Usage { time, shares: limits.iter().filter_map(share).collect(), is_sound }
+    }
+}
+
+/// The mode in which the last body of an axis swings on its coupling, the one before it held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadMode {
+    /// The table of the scenario that the body is in: `axis.load`.
+    pub table: String,
+    /// Natural frequency (Hz).
+    pub frequency: f64,
+    /// Damping ratio.
+    pub damping_ratio: f64,
+}
+
+/// The mode in which the load of `scenario` swings; `None` where nothing is coupled by a spring.
+#[must_use]
+pub fn load_mode(scenario: &Scenario) -> Option<LoadMode> {
+    let AxisMechanics::Bodies(chain) = &scenario.axis.mechanics else { return None };
+    let (body, link) = (chain.bodies().last()?, chain.links().last()?);
+    let frequency = (link.stiffness / body.inertia).sqrt() / TAU;
+    let damping_ratio = 0.5 * link.damping / (link.stiffness * body.inertia).sqrt();
+    Some(LoadMode { table: format!("axis.{}", body.name), frequency, damping_ratio })
+}
+
+/// Velocity, acceleration, jerk and snap that the moves of a scenario are limited to, of each the largest; `None` where none goes from rest to
+/// rest by limits.
+#[must_use]
+pub fn limits_of_set_point(scenario: &Scenario) -> Option<Limits> {
+    let of_moves = scenario.program.iter().filter_map(|step| match step {
+        Step::Move(step) => match &step.request.generator {
+            Generator::PointToPoint(request) => Some(request.limits),
+            Generator::Replanning(_) | Generator::Rockwell(_) | Generator::Table(_) => None,
+        },
+        Step::Wait(_) => None,
+    });
+    of_moves.reduce(|one, other| Limits {
+        velocity: one.velocity.max(other.velocity),
+        acceleration: one.acceleration.max(other.acceleration),
+        jerk: one.jerk.max(other.jerk),
+        snap: one.snap.max(other.snap),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the file of the model, 17.5 Hz and 0.4 %.
+    #[test]
+    fn the_load_of_the_demo_swings_as_its_model_says() {
+        let (name, text) = servobench_scenario::embedded_demo().into_iter().next().unwrap();
+        let scenario = servobench_scenario::parse(name, text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+        let mode = load_mode(&scenario).unwrap();
+        assert_eq!(mode.table, "axis.load");
+        assert!((mode.frequency - 17.5).abs() < 0.01 && (mode.damping_ratio - 0.004).abs() < 1e-4, "{mode:?}");
+        let limits = limits_of_set_point(&scenario).unwrap();
+        assert!((limits.velocity - 0.5).abs() < 1e-12 && (limits.jerk - 50.0).abs() < 1e-12, "{limits:?}");
+    }
+}
