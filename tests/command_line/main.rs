@@ -1,4 +1,5 @@
 //! The program as its users see it: output, files, exit codes. It belongs to the crate `cli`, whose binary it runs.
+mod advise;
 mod attached;
 mod check;
 mod compare;

@@ -1,5 +1,5 @@
 //! `servobench sweep`: a scenario over many values of its keys.
-use crate::{SLIDE, code, command, folder, json, said, servobench};
+use crate::{SLIDE, code, command, folder, json, repository, said, servobench};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -188,4 +188,25 @@ fn recordings_stay_when_asked_for_and_go_with_their_sweep() {
     let mut left: Vec<_> = fs::read_dir(&out).unwrap().map(|one| one.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["results.json", "slide.exact.parquet"]);
+}
+
+/// The sweep of the README, and its picture: `SERVOBENCH_WRITE_DOCS=1` writes it anew.
+#[test]
+fn the_picture_of_the_readme_is_that_of_its_sweep() {
+    let work = tempfile::tempdir().unwrap();
+    let out = work.path().to_str().unwrap();
+    let output = servobench(&["sweep", "scenarios/sweeps/jerk-or-snap.sweep.toml", "--out", out]);
+    // Most combinations miss a limit on some machine: that is what it shows.
+    assert_eq!(code(&output), 4, "{}", said(&output));
+    assert!(said(&output).lines().all(|line| line.chars().count() <= 80), "{}", said(&output));
+    let shown = String::from_utf8(output.stdout).unwrap();
+    let front: Vec<&str> = shown.lines().skip_while(|line| !line.starts_with("No other combination")).collect();
+    assert!(front.iter().take(4).any(|line| line.contains("jerk 100 m/s3, snap 1000 m/s4")), "{shown}");
+    for (drawn, kept) in [("sweep.svg", "jerk-or-snap.svg"), ("sweep-front.svg", "jerk-or-snap-front.svg")] {
+        let (drawn, kept) = (fs::read(work.path().join(drawn)).unwrap(), repository().join("docs/images").join(kept));
+        if std::env::var_os("SERVOBENCH_WRITE_DOCS").is_some() {
+            fs::write(&kept, &drawn).unwrap();
+        }
+        assert!(fs::read(&kept).unwrap() == drawn, "{}: run this test with SERVOBENCH_WRITE_DOCS=1", kept.display());
+    }
 }

@@ -97,13 +97,15 @@ pub enum AdviseError {
 const NEAR: f64 = 1.06;
 const REFINED: usize = 12;
 const OF_EACH_FAMILY: usize = 4;
+/// The same where a price is asked for.
+const REFINED_FOR_A_PRICE: usize = 3;
 /// Rounds of search and verification, and machines that join the search after each.
 const ROUNDS: u32 = 12;
 const JOINING: usize = 4;
 /// Confidence of what is promised.
 const CONFIDENCE: f64 = 0.95;
 /// Factors of the priced limit, in ascending order.
-const FACTORS: [f64; 4] = [0.5, 0.9, 1.1, 2.0];
+const FACTORS: [f64; 6] = [0.1, 0.25, 0.5, 0.9, 1.1, 2.0];
 
 /// The fastest set-point that keeps all limits on the machines of the box.
 ///
@@ -117,7 +119,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
     let allowed = vec![1.0; question.limits];
     let mut shown = 0.0;
     for round in 0..ROUNDS {
-        let found = best(question, &mut search, &planned, &allowed);
+        let found = best(question, &mut search, &planned, &allowed, REFINED);
         let Some(best) = found.first().cloned() else {
             return Err(AdviseError::NoneKeeps { planned: planned.len() });
         };
@@ -139,7 +141,9 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
                 failed
             }
         };
-        spread(&failed).into_iter().for_each(|machine| search.add(machine));
+        for machine in spread(&failed) {
+            search.add(machine);
+        }
     }
     Err(AdviseError::NotVerified { wanted: 100.0 * question.share, found: 100.0 * shown, rounds: ROUNDS })
 }
@@ -162,13 +166,19 @@ fn candidates(question: &Question, search: &mut Search<'_>) -> Result<Vec<Planne
 }
 
 /// The best set-points, refined, the fastest first.
-fn best(question: &Question, search: &mut Search<'_>, planned: &[Planned], allowed: &Allowance) -> Vec<Found> {
+fn best(
+    question: &Question,
+    search: &mut Search<'_>,
+    planned: &[Planned],
+    allowed: &Allowance,
+    most: usize,
+) -> Vec<Found> {
     let coarse = search.fastest(planned, allowed, NEAR);
     let mut of_family = vec![0; question.families.len()];
     let mut starts = Vec::new();
     for found in coarse {
         let count = &mut of_family[found.planned.point.family];
-        if *count < OF_EACH_FAMILY && starts.len() < REFINED {
+        if *count < OF_EACH_FAMILY && starts.len() < most {
             *count += 1;
             starts.push(found);
         }
@@ -198,7 +208,7 @@ fn prices(question: &Question, search: &mut Search<'_>, planned: &[Planned], kno
     for factor in FACTORS {
         let mut allowed = vec![1.0; question.limits];
         allowed[priced] = factor;
-        let found = best(question, search, planned, &allowed);
+        let found = best(question, search, planned, &allowed, REFINED_FOR_A_PRICE);
         let known = if factor > 1.0 { known } else { &[] };
         fastest = found.iter().chain(known).map(|found| found.worst.time).fold(fastest, f64::min);
         prices.push(Price { factor, time: fastest.is_finite().then_some(fastest) });

@@ -39,10 +39,7 @@ fn neighbours(point: &SetPoint, families: &[Family], ceiling: &Ceiling, step: f6
             *time *= [1.0 / (1.0 + step), 1.0, 1.0 + step][rest % 3];
             rest /= 3;
         }
-        // What a step would carry beyond the ceiling stands at it.
-        times[0] = times[0].min(ceiling.velocity);
-        times[1] = times[1].min(ceiling.acceleration);
-        let near = SetPoint::by_times(point.family, family.order, times);
+        let near = SetPoint::by_times(point.family, family.order, times).below(ceiling);
         if near.is_below(ceiling) && near.key() != point.key() {
             all.push(near);
         }

@@ -33,20 +33,31 @@ pub struct SetPoint {
     pub limits: [f64; 4],
 }
 
+/// Significant digits of a limit.
+const DIGITS: usize = 4;
+/// What rounding or a step may carry a limit beyond its ceiling by: it then stands at it.
+const BEYOND: f64 = 1.1;
+
+/// The number with [`DIGITS`] significant digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+}
+
 /// Levels of velocity and acceleration, and their ratio from one to the next.
-const VELOCITIES: (usize, f64) = (3, 0.8);
-const ACCELERATIONS: (usize, f64) = (9, 0.86);
+const VELOCITIES: (i32, f64) = (3, 0.8);
+const ACCELERATIONS: (i32, f64) = (9, 0.86);
 /// Levels of the times in which acceleration and jerk rise, and their ratio; the longest is this part of the shortest move of second order.
-const RISES: (usize, f64) = (15, 1.4);
+const RISES: (i32, f64) = (15, 1.4);
 const LONGEST_RISE: f64 = 0.5;
 
 impl SetPoint {
-    /// By velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; of those the first `order − 2` count.
+    /// By velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; of those the first `order − 2` count. Limits
+    /// are rounded to [`DIGITS`], so that what was run is what is told.
     #[must_use]
     pub fn by_times(family: usize, order: u32, [velocity, acceleration, rise, rise_of_jerk]: [f64; 4]) -> Self {
         let jerk = if order > 2 { acceleration / rise } else { f64::INFINITY };
         let snap = if order > 3 { jerk / rise_of_jerk } else { f64::INFINITY };
-        Self { family, limits: [velocity, acceleration, jerk, snap] }
+        Self { family, limits: [velocity, acceleration, jerk, snap].map(rounded) }
     }
 
     /// Velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; 0 where they jump.
@@ -56,12 +67,24 @@ impl SetPoint {
         [velocity, acceleration, acceleration / jerk, if jerk.is_finite() { jerk / snap } else { 0.0 }]
     }
 
+    /// The same with what rounding or a step has carried beyond the ceiling at it.
+    pub(crate) fn below(self, ceiling: &Ceiling) -> Self {
+        let Ceiling { velocity, acceleration, jerk, snap } = *ceiling;
+        let most = [velocity, acceleration, jerk, snap];
+        let limits = std::array::from_fn(|k| {
+            let limit = self.limits[k];
+            // What is infinite belongs to a higher order.
+            if limit.is_finite() && limit <= BEYOND * most[k] { limit.min(most[k]) } else { limit }
+        });
+        Self { limits, ..self }
+    }
+
     /// Whether no limit is above the ceiling.
     pub(crate) fn is_below(&self, ceiling: &Ceiling) -> bool {
         let Ceiling { velocity, acceleration, jerk, snap } = *ceiling;
         let most = [velocity, acceleration, jerk, snap];
         // An order below three has no jerk to bound.
-        self.limits.iter().zip(most).all(|(limit, most)| limit.is_infinite() || *limit <= most * (1.0 + 1e-12))
+        self.limits.iter().zip(most).all(|(limit, most)| limit.is_infinite() || *limit <= most)
     }
 
     /// Bits by which it is told from others.
@@ -72,13 +95,14 @@ impl SetPoint {
 
 /// All set-points of a family on a coarse grid; `shortest` is the duration of the move of second order at the ceiling (s).
 pub(crate) fn grid(index: usize, family: &Family, ceiling: &Ceiling, shortest: f64) -> Vec<SetPoint> {
-    let levels = |top: f64, (count, ratio): (usize, f64)| (0..count).map(move |k| top * ratio.powi(k as i32));
+    let levels = |top: f64, (count, ratio): (i32, f64)| (0..count).map(move |k| top * ratio.powi(k));
     let rises = || levels(LONGEST_RISE * shortest, (RISES.0, 1.0 / RISES.1));
     let mut all = Vec::new();
     for velocity in levels(ceiling.velocity, VELOCITIES) {
         for acceleration in levels(ceiling.acceleration, ACCELERATIONS) {
             let add = |all: &mut Vec<SetPoint>, rise, rise_of_jerk| {
-                let point = SetPoint::by_times(index, family.order, [velocity, acceleration, rise, rise_of_jerk]);
+                let times = [velocity, acceleration, rise, rise_of_jerk];
+                let point = SetPoint::by_times(index, family.order, times).below(ceiling);
                 all.extend(point.is_below(ceiling).then_some(point));
             };
             match family.order {
@@ -97,15 +121,29 @@ pub(crate) fn grid(index: usize, family: &Family, ceiling: &Ceiling, shortest: f
 mod tests {
     use super::*;
 
+    fn is_same(found: &[f64], expected: &[f64]) -> bool {
+        found.len() == expected.len() && found.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-12)
+    }
+
     #[test]
     fn limits_and_times_say_the_same() {
-        let point = SetPoint::by_times(0, 4, [0.5, 4.0, 0.08, 0.05]);
-        assert_eq!(point.limits.map(|limit| (limit * 1e9).round() / 1e9), [0.5, 4.0, 50.0, 1000.0]);
-        let back = point.times();
-        assert!(back.iter().zip([0.5, 4.0, 0.08, 0.05]).all(|(one, other)| (one - other).abs() < 1e-12), "{back:?}");
-        let third = SetPoint::by_times(0, 3, [0.5, 4.0, 0.08, 0.05]);
-        assert!(third.limits[3].is_infinite() && third.times()[3] == 0.0);
-        assert_eq!(SetPoint::by_times(0, 2, [0.5, 4.0, 0.0, 0.0]).times()[2..], [0.0, 0.0]);
+        let times = [0.5, 4.0, 0.08, 0.05];
+        let point = SetPoint::by_times(0, 4, times);
+        assert!(is_same(&point.limits, &[0.5, 4.0, 50.0, 1000.0]), "{point:?}");
+        assert!(is_same(&point.times(), &times), "{point:?}");
+        let third = SetPoint::by_times(0, 3, times);
+        assert!(third.limits[3].is_infinite() && is_same(&third.times(), &[0.5, 4.0, 0.08, 0.0]));
+        assert!(is_same(&SetPoint::by_times(0, 2, times).times(), &[0.5, 4.0, 0.0, 0.0]));
+    }
+
+    /// Four digits, and at the ceiling where they would carry it beyond.
+    #[test]
+    fn limits_are_rounded_and_stay_below_the_ceiling() {
+        let ceiling = Ceiling { velocity: 1.0 / 3.0, acceleration: 2.0 / 3.0, jerk: 1.0, snap: 1.0 };
+        let rounded = SetPoint::by_times(0, 2, [1.0 / 3.0, 2.0 / 3.0, 0.0, 0.0]);
+        assert!(is_same(&rounded.limits[..2], &[0.3333, 0.6667]) && !rounded.is_below(&ceiling));
+        let below = rounded.below(&ceiling);
+        assert!(is_same(&below.limits[..2], &[0.3333, 2.0 / 3.0]) && below.is_below(&ceiling), "{below:?}");
     }
 
     #[test]
@@ -115,7 +153,7 @@ mod tests {
         assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 27);
         for order in [3, 4] {
             let all = grid(0, &family(order), &ceiling, 0.6);
-            assert!(all.len() > 100 && all.iter().all(|point| point.limits[2] <= 100.0 * (1.0 + 1e-12)), "{order}");
+            assert!(all.len() > 100 && all.iter().all(|point| point.limits[2] <= 100.0), "{order}");
         }
     }
 }

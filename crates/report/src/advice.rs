@@ -3,10 +3,11 @@ mod vendors;
 
 use crate::style::{Ink, Style};
 use crate::text::wrapped;
+use serde_json::{Value, json};
 use servobench_advise::{Advice, Question, SetPoint};
 use servobench_base::Coordinate;
 use servobench_metrics::{Limit, Quantity};
-use servobench_results::printable;
+use servobench_results::{printable, printable_lines};
 
 /// What an advice is about.
 #[derive(Debug, Clone)]
@@ -19,8 +20,12 @@ pub struct AdviceOptions<'a> {
     pub limits: &'a [Limit],
     /// Whether the axis moves along a line or turns.
     pub motion: Coordinate,
-    /// The command that makes the run of the set-point on the machine of the scenario.
-    pub command: String,
+    /// The program, as it is called.
+    pub program: &'a str,
+    /// File of the scenario.
+    pub file: String,
+    /// The set-point as on the command line: `setpoint.jerk=50 m/s3`.
+    pub settings: Vec<String>,
     /// Whether the box was assumed and not given.
     pub is_assumed: bool,
     /// Whether settling counts.
@@ -31,6 +36,10 @@ pub struct AdviceOptions<'a> {
 
 /// Confidence of what is promised.
 const CONFIDENCE: f64 = 0.95;
+/// Width of a first column.
+const FIRST: usize = 8;
+/// A difference of times that nobody pays for (s).
+const NOTHING: f64 = 0.5e-4;
 /// Other kinds of set-points that are told.
 const OTHERS: usize = 5;
 
@@ -46,9 +55,54 @@ pub fn advice_text(question: &Question, advice: &Advice, options: &AdviceOptions
         text.prices(),
         text.others(),
         vendors::words(question, advice, options, style),
-        format!("\nrun it: {}\n", options.command),
+        text.command(),
     ]
     .concat()
+}
+
+/// The advice for programs (SI; shares from 0 to 1).
+#[must_use]
+pub fn advice_json(question: &Question, advice: &Advice, options: &AdviceOptions<'_>) -> Value {
+    let [velocity, acceleration, jerk, snap] = advice.point.limits;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    let keys: Vec<&str> = question.machines.ranges().iter().map(|range| range.key.as_str()).collect();
+    let machine = |values: &[f64]| -> Value {
+        let pairs = keys.iter().zip(values).map(|(key, value)| ((*key).to_owned(), json!(value)));
+        Value::Object(pairs.collect())
+    };
+    let usage = options.limits.iter().zip(&advice.worst.usage).map(|(limit, (usage, at))| {
+        json!({ "limit": limit.metric.as_str(), "used": finite(*usage), "machine": machine(at) })
+    });
+    let ranges = question.machines.ranges().iter();
+    let ranges =
+        ranges.map(|range| json!({ "key": range.key, "from": range.ends[0], "to": range.ends[1], "unit": range.unit }));
+    let prices = advice.prices.iter().map(|price| json!({ "factor": price.factor, "time": price.time }));
+    let draws = advice.verification.draws;
+    json!({
+        "scenario": options.scenario,
+        "engine": options.engine,
+        "kind": question.families[advice.point.family].name,
+        "order": question.families[advice.point.family].order,
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "jerk": finite(jerk),
+        "snap": finite(snap),
+        "settings": options.settings,
+        "move_time": advice.duration,
+        "time": advice.worst.time,
+        "usage": usage.collect::<Vec<_>>(),
+        "machines": ranges.collect::<Vec<_>>(),
+        "verified": {
+            "grid": advice.verification.grid,
+            "spacing": advice.verification.spacing,
+            "draws": draws.trials(),
+            "kept": draws.hits(),
+            "share_at_least": draws.at_least(CONFIDENCE),
+            "confidence": CONFIDENCE,
+        },
+        "prices": prices.collect::<Vec<_>>(),
+        "runs": advice.runs,
+    })
 }
 
 struct Text<'a> {
@@ -59,6 +113,14 @@ struct Text<'a> {
 }
 
 impl Text<'_> {
+    /// The command that makes a run of the set-point on the machine of the scenario.
+    fn command(&self) -> String {
+        let AdviceOptions { program, file, settings, .. } = self.options;
+        let sets: Vec<String> = settings.iter().map(|one| format!("  --set '{one}'")).collect();
+        let command = [vec![format!("{program} run {file}")], sets].concat().join(" \\\n");
+        printable_lines(&format!("\nrun it on the machine of the scenario:\n{command}\n"))
+    }
+
     fn heading(&self, text: &str) -> String {
         format!("\n{}\n", self.style.paint(Ink::Heading, text))
     }
@@ -91,7 +153,7 @@ impl Text<'_> {
         let what = if options.has_window { "is in position" } else { "has moved" };
         let draws = advice.verification.draws;
         let share = 100.0 * draws.at_least(CONFIDENCE);
-        let price = self.price_of_less().map_or(String::new(), |words| format!("; {words}"));
+        let price = self.price().map_or(String::new(), |words| format!("; {words}"));
         self.broken(&format!(
             "Take {}: {} {what} {time} after the start at worst, and at least {} % of the machines keep all limits ({} of {} draws did, \
              95 % certain){price}.",
@@ -104,20 +166,26 @@ impl Text<'_> {
         ))
     }
 
-    /// What the next 10 % of vibration cost.
-    fn price_of_less(&self) -> Option<String> {
+    /// What less vibration, more of it, and more time would cost and save.
+    fn price(&self) -> Option<String> {
         let metric = self.options.limits.get(self.question.priced?)?.metric;
-        let own = self.advice.worst.time;
-        let of = |factor: f64| self.advice.prices.iter().find(|price| price.factor.to_bits() == factor.to_bits());
-        let less = of(0.9).map(|price| match price.time {
-            Some(time) => format!("10 % less of {metric} would cost {}", Quantity::new((time - own).max(0.0), "s")),
-            None => format!("10 % less of {metric} was not found at any price"),
-        })?;
-        let more = of(1.1).and_then(|price| price.time);
-        let more = more.map_or(String::new(), |time| {
-            format!(", 10 % more would save {}", Quantity::new((own - time).max(0.0), "s"))
+        let (own, prices) = (self.advice.worst.time, &self.advice.prices);
+        let of = |factor: f64| prices.iter().find(|price| price.factor.to_bits() == factor.to_bits());
+        let less = match of(0.9)?.time {
+            Some(time) if time - own < NOTHING => format!("10 % less {metric} would cost nothing"),
+            Some(time) => format!("10 % less {metric} would cost {}", Quantity::new(time - own, "s")),
+            None => format!("10 % less {metric} was not found at any price"),
+        };
+        let more = match of(1.1)?.time {
+            Some(time) if own - time >= NOTHING => format!(", 10 % more would save {}", Quantity::new(own - time, "s")),
+            _ => ", 10 % more would save nothing".to_owned(),
+        };
+        let is_near = |time: f64| time <= 1.1 * own;
+        let slower = prices.iter().find(|price| price.factor < 1.0 && price.time.is_some_and(is_near));
+        let slower = slower.map_or(String::new(), |price| {
+            format!(", and in 10 % more time it could be {} % of its limit", rounded(100.0 * price.factor))
         });
-        Some(less + &more)
+        Some(less + &more + &slower)
     }
 
     /// How much of each limit is used, and where.
@@ -126,15 +194,19 @@ impl Text<'_> {
         for (limit, (usage, machine)) in self.options.limits.iter().zip(&self.advice.worst.usage) {
             let at = self.machine(machine);
             let name = limit.metric.as_str();
-            rows.push((*usage, format!("{:>5.1} %  {name} at {at}", 100.0 * usage)));
+            rows.push((*usage, format!("{name} at {at}")));
         }
         rows.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let rows = rows.into_iter().map(|(_, row)| {
-            let lines = wrapped(&row, self.style.width.saturating_sub(9));
-            let indent = " ".repeat(9);
-            lines.join(&format!("\n{indent}")) + "\n"
-        });
-        self.heading("What limits it: used of each limit, at most") + &rows.collect::<String>()
+        let rows: String =
+            rows.iter().map(|(usage, text)| self.beside(&format!("{:.1} %", 100.0 * usage), text)).collect();
+        self.heading("What limits it: how much of each limit is used, at most") + &rows
+    }
+
+    /// `text` in as many lines as it takes, to the right of `first`.
+    fn beside(&self, first: &str, text: &str) -> String {
+        let lines = wrapped(text, self.style.width.saturating_sub(FIRST + 2).max(20));
+        let line = |(k, line): (usize, String)| format!("{:>FIRST$}  {line}\n", if k == 0 { first } else { "" });
+        lines.into_iter().enumerate().map(line).collect()
     }
 
     /// `frequency 15.8 Hz, damping_ratio 0.002`.
@@ -187,7 +259,7 @@ impl Text<'_> {
             let limit = Quantity::new(factor * max, unit).to_string();
             let time = time.map_or("none found".to_owned(), |time| Quantity::new(time, "s").to_string());
             let here = if (factor - 1.0).abs() < 1e-12 { "  this advice" } else { "" };
-            format!("{limit:>12}  {time:>10}{here}\n")
+            format!("{limit:>FIRST$}  {time}{here}\n")
         };
         let heading = format!("What {metric} costs: its limit, and the time at worst");
         self.heading(&heading) + &rows.iter().map(row).collect::<String>()
@@ -197,10 +269,8 @@ impl Text<'_> {
         if self.advice.others.is_empty() {
             return String::new();
         }
-        let row = |(point, time): &(SetPoint, f64)| {
-            let text = format!("{:>10}  {}", Quantity::new(*time, "s").to_string(), self.point(point));
-            wrapped(&text, self.style.width.saturating_sub(12)).join(&format!("\n{}", " ".repeat(12))) + "\n"
-        };
+        let row =
+            |(point, time): &(SetPoint, f64)| self.beside(&Quantity::new(*time, "s").to_string(), &self.point(point));
         let rows: String = self.advice.others.iter().take(OTHERS).map(row).collect();
         self.heading("The best of other kinds, on the machines of the search") + &rows
     }

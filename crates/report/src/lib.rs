@@ -23,7 +23,7 @@ mod text;
 mod timing;
 mod verdict_table;
 
-pub use advice::{AdviceOptions, advice_text};
+pub use advice::{AdviceOptions, advice_json, advice_text};
 pub use compare::{Compared, Comparison};
 pub use error::ReportError;
 pub use fmu_table::fmu_table;

@@ -4,7 +4,8 @@
 //! tables of `docs/scenario.md` and `docs/sweep.md` anew.
 use serde_json::{Value as Json, json};
 use servobench_scenario::{
-    Actuator, AxisMechanics, Step, embedded_demo, embedded_models, json_schema, load, parse, sweep_schema,
+    Actuator, AxisMechanics, Override, Step, embedded_demo, embedded_models, json_schema, load, load_sweep, load_with,
+    parse, sweep_schema,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -54,6 +55,24 @@ fn every_scenario_loads_without_a_warning_and_says_what_it_shows() {
         let schema = path.parent().unwrap().join(pointer.strip_prefix("#:schema ").unwrap());
         assert!(schema.is_file(), "{} points at {}", path.display(), schema.display());
         assert!(rest.starts_with("# "), "{} begins without a comment", path.display());
+    }
+}
+
+#[test]
+fn every_sweep_loads_with_the_scenario_that_it_varies() {
+    let validator = jsonschema::validator_for(&sweep_schema()).unwrap();
+    let folder = repository().join("scenarios/sweeps");
+    let files: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(!files.is_empty() && files.iter().all(|path| is_sweep(path)), "{files:?}");
+    for path in files {
+        let request = load_sweep(&path).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!request.description.is_empty(), "{} has no description", path.display());
+        for point in request.sweep.cover(100) {
+            let overrides: Vec<Override> =
+                request.sweep.overrides(point).iter().map(|one| one.parse().unwrap()).collect();
+            load_with(&request.scenario, &overrides).unwrap_or_else(|e| panic!("{e}"));
+        }
+        assert!(validator.is_valid(&as_json(&read(&path))), "{}", path.display());
     }
 }
 

@@ -1,15 +1,19 @@
 //! Drills: the real program against what it must bear.
+mod advice;
 mod faults;
 mod inputs;
 mod long;
 mod many;
 mod measured;
 mod mutants;
+mod sweeps;
 
+pub(crate) use advice::run as advise;
 pub(crate) use faults::run as faults;
 pub(crate) use inputs::run as inputs;
 pub(crate) use long::run as long;
 pub(crate) use many::run as many;
+pub(crate) use sweeps::run as sweep;
 
 use crate::failure::Failure;
 use crate::program;

@@ -57,7 +57,11 @@ fn scenario_files(path: &Path) -> Vec<PathBuf> {
     let mut entries: Vec<PathBuf> = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     let is_wanted = |path: &PathBuf| {
-        if path.is_dir() { !path.ends_with("models") } else { path.extension().is_some_and(|end| end == "toml") }
+        if path.is_dir() {
+            !path.ends_with("models")
+        } else {
+            path.extension().is_some_and(|end| end == "toml") && !path.to_string_lossy().ends_with(".sweep.toml")
+        }
     };
     entries.iter().filter(|path| is_wanted(path)).flat_map(|path| scenario_files(path)).collect()
 }

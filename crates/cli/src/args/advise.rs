@@ -1,5 +1,5 @@
 //! Arguments of `advise`.
-use super::{FmuTrustArgs, MemoryArgs, OverrideArgs, engine, time};
+use super::{FmuTrustArgs, MemoryArgs, OverrideArgs, engine, file, time};
 use clap::Args;
 use servobench_plant::EngineName;
 use servobench_scenario::KeyRange;
@@ -40,6 +40,9 @@ pub(crate) struct AdviseArgs {
     /// Engine to use instead of the scenario's first.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Option<EngineName>,
+    /// Write the advice for programs (JSON) to this file, too.
+    #[arg(long, short, value_name = "FILE", value_parser = file())]
+    pub(crate) output: Option<PathBuf>,
     /// Runs to make at once [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) jobs: Option<u16>,

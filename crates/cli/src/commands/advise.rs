@@ -2,15 +2,16 @@
 mod runs;
 
 use crate::args::AdviseArgs;
-use crate::console::{print, say, style};
+use crate::console::{print, program, say, style};
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::outputs::Outputs;
 use crate::sources;
 use runs::Runs;
 use servobench_advise::{Ceiling, Family, Machines, Question, Range, Stretch, advise as find};
 use servobench_config::Choice as _;
 use servobench_motion::shape::ShaperKind;
-use servobench_report::{AdviceOptions, advice_text};
+use servobench_report::{AdviceOptions, advice_json, advice_text};
 use servobench_scenario::{KeyRange, root_of};
 use servobench_suite::{LoadMode, Source, limits_of_set_point, load_mode};
 use std::path::Path;
@@ -66,6 +67,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         draws: args.draws,
         seed: args.seed,
     };
+    let output = Outputs::default().optional("-o", args.output.as_deref())?;
     let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
     runs.check()?;
     say(&format!("looking for a set-point among {} kinds\n", question.families.len()));
@@ -76,11 +78,19 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         engine: runs.engine().name(),
         limits: &limits,
         motion: scenario.axis.motion,
-        command: runs.command(&advice.point),
+        program: &program(),
+        file: args.scenario.display().to_string(),
+        settings: runs.settings(&advice.point),
         is_assumed: args.within.is_empty(),
         has_window: scenario.measure.window.is_some(),
         shaper_frequency: frequency,
     };
+    if let Some(output) = output {
+        output.write_text(
+            &(serde_json::to_string_pretty(&advice_json(&question, &advice, &options)).map_err(CliError::Schema)?
+                + "\n"),
+        )?;
+    }
     print(&advice_text(&question, &advice, &options, style()))?;
     Ok(Exit::Passed)
 }
@@ -147,7 +157,7 @@ fn families(
     for order in orders {
         families.push(Family { order, settings: without_shaper(base), name: format!("order {order}") });
         let Some(frequency) = frequency.filter(|_| order < 4) else { continue };
-        let damping = mode.map_or(0.0, |mode| mode.damping_ratio);
+        let (frequency, damping) = (digits(frequency), digits(mode.map_or(0.0, |mode| mode.damping_ratio)));
         for kind in shapers(args)? {
             let table =
                 format!("setpoint.shaper={{ kind = \"{kind}\", frequency = \"{frequency} Hz\", damping = {damping} }}");
@@ -168,6 +178,11 @@ fn families(
         families = families.iter().flat_map(|family| values.iter().map(move |value| with(family, value))).collect();
     }
     Ok(families)
+}
+
+/// Four significant digits: nobody sets more.
+fn digits(value: f64) -> String {
+    format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 /// The kinds of shapers to choose from, without none.

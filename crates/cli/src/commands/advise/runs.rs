@@ -1,7 +1,7 @@
 //! The runs of an advice: a scenario with a set-point on a machine.
 use super::AdviseMistake;
 use crate::args::AdviseArgs;
-use crate::console::{program, say};
+use crate::console::say;
 use crate::engines;
 use crate::error::CliError;
 use crate::sources;
@@ -70,11 +70,9 @@ impl<'a> Runs<'a> {
         workers::dismiss(&self.workers);
     }
 
-    /// The command that makes a run of `point` on the machine of the scenario.
-    pub(super) fn command(&self, point: &SetPoint) -> String {
-        let own = self.args.with.overrides.iter().map(ToString::to_string);
-        let sets = own.chain(self.set_point(point)).map(|one| format!(" --set '{one}'"));
-        format!("{} run {}{}", program(), self.args.scenario.display(), sets.collect::<String>())
+    /// What makes a run of `point` on the machine of the scenario, as on the command line.
+    pub(super) fn settings(&self, point: &SetPoint) -> Vec<String> {
+        self.args.with.overrides.iter().map(ToString::to_string).chain(self.set_point(point)).collect()
     }
 
     /// Refuses a box whose corners are no valid scenarios.

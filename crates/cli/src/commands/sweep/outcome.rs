@@ -46,12 +46,12 @@ pub(super) fn say_what_came(
         judged: points.is_judged(),
         ..SweepOptions::default()
     };
-    let mut written = vec![TABLE_CSV, TABLE_PARQUET];
+    let mut has_pictures = false;
     let drawings = [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(&compared, &options))];
     for (name, drawing) in drawings {
         if let Some(drawing) = drawing {
             out.file(name)?.write(drawing)?;
-            written.push(name);
+            has_pictures = true;
         }
     }
     let style = style();
@@ -66,7 +66,8 @@ pub(super) fn say_what_came(
         described.extend([String::new(), String::new()]);
     }
     let folder = out.path().display();
-    let where_it_is = format!("results.json, {}: {folder}\n{resume}", written.join(", "));
+    let pictures = if has_pictures { " and pictures" } else { "" };
+    let where_it_is = format!("results, tables{pictures}: {folder}\n{resume}");
     print(&[described.join("\n"), sweep_table(&compared, style, &options), "\n".into(), count, where_it_is].concat())
 }
 
