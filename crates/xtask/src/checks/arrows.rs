@@ -76,6 +76,7 @@ const PLAN: [(&str, May); 35] = [
             "drive",
             "fmi",
             "isolation",
+            "planner",
             "plant",
             "plcopen",
             "stability",
