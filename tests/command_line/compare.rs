@@ -1,6 +1,49 @@
 //! `servobench compare`
+mod against;
+mod documented;
+mod equal;
+mod published;
+mod variants;
+
 use crate::{SLIDE, code, folder, json, said, servobench};
+use serde_json::Value;
 use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+/// `servobench compare` with these arguments, into the folder `out`.
+fn compare(out: &Path, arguments: &[&str]) -> Output {
+    servobench(&[&["compare"], arguments, &["--out", out.to_str().unwrap()]].concat())
+}
+
+/// The runs that a comparison or a suite left in `out`.
+fn runs(out: &Path, list: &str) -> Vec<Value> {
+    json(&fs::read(out.join(list)).unwrap())["scenarios"].as_array().unwrap().clone()
+}
+
+/// The runs of a comparison that went well.
+fn compared(out: &Path, arguments: &[&str]) -> (Vec<Value>, String) {
+    let output = compare(out, arguments);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    (runs(out, "comparison.json"), String::from_utf8(output.stdout).unwrap())
+}
+
+/// A metric of a run (SI).
+fn metric(run: &Value, name: &str) -> f64 {
+    run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {}", run["absent"][name]))
+}
+
+/// How long the move with this index lasts (s).
+fn duration(run: &Value, index: usize) -> f64 {
+    let made = &run["moves"][index];
+    made["end"].as_f64().unwrap() - made["start"].as_f64().unwrap()
+}
+
+/// No line is wider than a terminal but the command that is to be pasted.
+fn fits(text: &str) {
+    let wide = text.lines().find(|line| line.chars().count() > 80 && !line.contains(" view "));
+    assert_eq!(wide, None, "{text}");
+}
 
 #[test]
 fn compare_says_in_words_which_wins_and_writes_one_recording() {
@@ -46,7 +89,7 @@ fn compare_says_by_key_and_value_what_differs() {
         ]
     );
     assert!(text.contains("peak following error") && !text.contains("set-points alone"), "{text}");
-    assert!(text.lines().all(|line| line.chars().count() <= 80 || line.contains(" view ")), "{text}");
+    fits(&text);
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Arguments.
 mod advise;
 mod choice;
+mod compare;
 mod mistakes;
 mod suite;
 
 pub(crate) use advise::AdviseArgs;
 pub(crate) use choice::choice;
+pub(crate) use compare::{CompareArgs, Equal, EqualTerm, Shapers, Variant};
 pub(crate) use mistakes::parse;
 pub(crate) use suite::{FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
 
@@ -51,6 +53,12 @@ const AFTER_ADVISE: &str = "Order, velocity, acceleration, jerk, snap and input 
                             the box, on machines between them whose frequencies are nearer to each other than a tenth of a \
                             lobe of the profile, and on draws. docs/advise.md says how.";
 
+const AFTER_COMPARE: &str = "Examples:\n  \
+                             servobench compare jerk.toml snap.toml --equal duration\n  \
+                             servobench compare axis.toml --variant 'jerk: setpoint.order=3' --variant 'snap: setpoint.order=4'\n  \
+                             servobench compare axis.toml --shaper none,zv,zvd,ei --shaper-frequency 17.5Hz\n  \
+                             servobench compare axis.toml --against before/results.json";
+
 const AFTER_COMPLETIONS: &str = "For bash: servobench completions bash > ~/.local/share/bash-completion/completions/servobench. For fish: … fish > \
                                  ~/.config/fish/completions/servobench.fish. For zsh: into _servobench in a folder of $fpath. A shell \
                                  that is started afterwards reads it.";
@@ -76,7 +84,8 @@ pub(crate) enum Command {
     /// Plan a move of any family: duration, segments, peaks against limits.
     #[command(after_help = PLAN_EXAMPLES)]
     Plan(Box<PlanArgs>),
-    /// Run two or more scenarios and say what differs in them and in what they give.
+    /// Run scenarios, or variants of one, side by side: what differs in them and in what they give.
+    #[command(after_help = AFTER_COMPARE)]
     Compare(CompareArgs),
     /// Open a recording in the Rerun viewer.
     View(ViewArgs),
@@ -241,43 +250,6 @@ pub(crate) struct CheckArgs {
     pub(crate) load_fmus: bool,
     #[command(flatten)]
     pub(crate) fmus: FmuTrustArgs,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct CompareArgs {
-    /// Scenario files: axes of one kind, linear or rotary; - is standard input.
-    #[arg(required = true, num_args = 2..)]
-    pub(crate) scenarios: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) with: OverrideArgs,
-    /// What must be equal in all runs; without it each keeps its own limits.
-    #[arg(long, value_enum)]
-    pub(crate) equal: Option<Equal>,
-    /// Engine to use instead of the first scenario's.
-    #[arg(long, value_name = "NAME", value_parser = engine())]
-    pub(crate) engine: Option<EngineName>,
-    /// Folder for the comparison and its recording.
-    #[arg(long, value_name = "DIR", value_parser = file(), default_value = "servobench-out")]
-    pub(crate) out: PathBuf,
-    /// End the process of an isolated engine that makes no progress for this long.
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
-    pub(crate) worker_timeout: Duration,
-    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    pub(crate) time_limit: Option<Duration>,
-    #[command(flatten)]
-    pub(crate) memory: MemoryArgs,
-    #[command(flatten)]
-    pub(crate) fmus: FmuTrustArgs,
-}
-
-/// What is equal in all runs of a comparison.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Equal {
-    /// The limits: it is an error when one that several moves have differs.
-    Limits,
-    /// The duration: faster moves are slowed to the slowest, and no longer judged by their limits.
-    Duration,
 }
 
 #[derive(Debug, Args)]

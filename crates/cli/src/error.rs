@@ -91,8 +91,21 @@ pub(crate) enum CliError {
     SourceDateEpoch(OsString),
     #[error("{}", lines(.0))]
     Plan(Vec<PlanMistake>),
-    #[error("a comparison needs two scenarios at least")]
+    #[error(
+        "a comparison needs two runs at least: name a second scenario, two variants (--variant, --shaper), or results of earlier \
+         runs (--against)"
+    )]
     TooFewScenarios,
+    #[error("--variant: two are called `{0}`; give each a name of its own")]
+    VariantTwice(String),
+    #[error("variant `{variant}` of `{}`: {}", named(.scenario), told(.error))]
+    Variant { variant: String, scenario: PathBuf, error: LoadError },
+    #[error("{0}")]
+    Shaper(String),
+    #[error("--equal {quantity}={error}")]
+    EqualValue { quantity: &'static str, error: String },
+    #[error("--against: cannot read `{}`: {why}", .path.display())]
+    Earlier { path: PathBuf, why: String },
     #[error(transparent)]
     Compare(Box<CompareError>),
     #[error("nothing was measured of two of these runs: there is nothing to compare")]
@@ -176,7 +189,7 @@ pub(crate) struct FailedRun {
 
 impl FailedRun {
     pub(crate) fn new(job: &Job, error: RunError) -> Self {
-        Self { scenario: job.scenario.name.clone(), engine: job.engine.name(), error }
+        Self { scenario: job.label().to_owned(), engine: job.engine.name(), error }
     }
 }
 
@@ -210,6 +223,11 @@ impl CliError {
             | Self::SourceDateEpoch(_)
             | Self::Plan(_)
             | Self::TooFewScenarios
+            | Self::VariantTwice(_)
+            | Self::Variant { .. }
+            | Self::Shaper(_)
+            | Self::EqualValue { .. }
+            | Self::Earlier { .. }
             | Self::Compare(_)
             | Self::Plc(_)
             | Self::NothingToCompare => Exit::Input,

@@ -195,6 +195,27 @@ pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<S
     Ok(source(loaded))
 }
 
+/// A file that was read before, with the values of `overrides` beside those of `with`: what it names is noted, and what is doubtful in it
+/// said unless that is in `said` already.
+pub(crate) fn variant(
+    path: &Path,
+    with: &OverrideArgs,
+    overrides: &[Override],
+    said: &mut HashSet<String>,
+) -> Result<Source, LoadError> {
+    let overrides = with.overrides.iter().chain(overrides).cloned().collect();
+    let with = OverrideArgs { overrides, root: with.root.clone() };
+    let loaded = parsed(path, &with).and_then(trusted)?;
+    note_files(&loaded, path, with.root.as_deref());
+    if !loaded.warnings.is_empty() {
+        let words = render(&loaded.warnings, &loaded.sources, Severity::Warning);
+        if said.insert(words.clone()) {
+            say(&words);
+        }
+    }
+    Ok(source(loaded))
+}
+
 fn source(loaded: Loaded) -> Source {
     let text = loaded.sources.text(loaded.sources.scenario()).to_owned();
     Source { scenario: loaded.scenario, text }

@@ -2,6 +2,8 @@
 //!
 //! Differences within one per cent are none, nor are those of rounding. A ratio of vibrations never stands alone: at which frequency and damping it
 //! holds, what the set-points make of the frequencies beside that one, and what it costs in time and torque.
+mod by_run;
+mod many;
 mod relation;
 mod table;
 mod words;

@@ -5,6 +5,7 @@ use servobench_base::Coordinate;
 use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
 use servobench_config::{Counterparts, Physical};
 use servobench_fmi::SiUnit;
+use servobench_metrics::Name;
 use thiserror::Error;
 
 /// A derivative of position with respect to time.
@@ -89,6 +90,15 @@ pub fn frequency(text: &str) -> Result<f64, ArgumentError> {
     Ok(read(&[&FREQUENCY], text)?.0)
 }
 
+/// Reads a value of a metric (SI) as a limit of it is read, on an axis whose load and whose motor move so.
+///
+/// # Errors
+/// As [`axis_quantity`].
+pub fn metric_value(metric: Name, axis: Coordinate, motor: Coordinate, text: &str) -> Result<f64, ArgumentError> {
+    let candidates: Vec<&Physical> = metric.largest().kind.candidates(Some(axis), Some(motor)).collect();
+    Ok(read(&candidates, text)?.0)
+}
+
 /// Reads a pure number: `0.02`, `2 %`.
 ///
 /// # Errors
@@ -127,6 +137,20 @@ mod tests {
         assert!((angle - std::f64::consts::PI).abs() < 1e-15 && motion == Coordinate::Rotary);
         assert_eq!(time("1 ms"), Ok(1e-3));
         assert_eq!((frequency("8 kHz"), ratio("2 %"), ratio("0.02")), (Ok(8000.0), Ok(0.02), Ok(0.02)));
+    }
+
+    #[test]
+    fn a_value_of_a_metric_has_the_unit_that_a_limit_of_it_has() {
+        use Coordinate::{Linear, Rotary};
+        let value = |metric, text| metric_value(metric, Linear, Rotary, text).map_err(|error| error.message);
+        assert_eq!(value(Name::ResidualVibrationAmplitude, "20 um"), Ok(20e-6));
+        assert_eq!(value(Name::TorquePeak, "5Nm"), Ok(5.0));
+        // An effective value is one: 4 Arms are 4√2 Apk.
+        let current = value(Name::CurrentRms, "4 Arms").unwrap();
+        assert!((current - 4.0).abs() < 1e-12, "{current}");
+        assert!(value(Name::TorquePeak, "5 N").unwrap_err().contains("a torque is needed, this is a force"));
+        assert!(value(Name::ResidualVibrationAmplitude, "20").unwrap_err().contains("a length needs its unit"));
+        assert!(value(Name::CurrentRms, "4 A").is_err());
     }
 
     /// Oracle: the definitions of the units.

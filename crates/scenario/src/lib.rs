@@ -44,7 +44,7 @@ mod unit;
 mod when;
 
 pub use access::{MOST_OF_A_SCENARIO, root_of};
-pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, ratio, si_unit, time};
+pub use argument::{ArgumentError, Derivative, axis_quantity, frequency, metric_value, ratio, si_unit, time};
 pub use diagnostic::{Diagnostic, Invalid, LoadError, MOST_MISTAKES, NamedFile, Shown, shown};
 pub use key_range::{KeyRange, KeyRangeError};
 pub use load::{Loaded, load, load_with, load_within, parse, parse_with, parse_within};

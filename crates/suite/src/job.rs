@@ -17,6 +17,8 @@ pub struct Job {
     pub text: String,
     /// The engine.
     pub engine: EngineName,
+    /// What it is called beside other runs; `None`: as its scenario.
+    label: Option<String>,
     /// What [`Job::slow_to`] was told. A worker process is told it beside the text.
     durations: Vec<f64>,
     /// Whether somebody wants the recording, and not only what is measured of it.
@@ -33,7 +35,18 @@ impl Job {
     #[must_use]
     pub fn new(id: String, source: Source, engine: EngineName) -> Self {
         let Source { scenario, text } = source;
-        Self { id, scenario, text, engine, durations: Vec::new(), keeps_recording: true, wanted: None }
+        Self { id, scenario, text, engine, label: None, durations: Vec::new(), keeps_recording: true, wanted: None }
+    }
+
+    /// From now on messages call it `label`: variants of one scenario have one name.
+    pub fn call(&mut self, label: String) {
+        self.label = Some(label);
+    }
+
+    /// What messages call it.
+    #[must_use]
+    pub fn label(&self) -> &str {
+        self.label.as_deref().unwrap_or(&self.scenario.name)
     }
 
     /// Slows the moves to `durations` (s), one for each move.
@@ -121,8 +134,24 @@ pub(crate) fn run_length(scenario: &Scenario, program: &Program) -> f64 {
     scenario.duration.unwrap_or(program.end() + TAIL)
 }
 
-/// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move alone.
+/// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move alone. What comes after the program stays: a run
+/// of given length is longer by as much, and residual vibration that is measured from a time after the program on, later by as much.
 pub(crate) fn slow_to(scenario: &mut Scenario, durations: &[f64]) {
+    let end = |scenario: &Scenario| Program::new(scenario).ok().map(|program| program.end());
+    let has_times = scenario.duration.is_some() || scenario.measure.from.is_some();
+    let before = if has_times { end(scenario) } else { None };
+    slow_moves(scenario, durations);
+    let Some((before, after)) = before.and_then(|before| Some((before, end(scenario)?))) else { return };
+    let later = (after - before).max(0.0);
+    if let Some(duration) = scenario.duration.as_mut().filter(|duration| **duration >= before) {
+        *duration += later;
+    }
+    if let Some(from) = scenario.measure.from.as_mut().filter(|from| **from >= before) {
+        *from += later;
+    }
+}
+
+fn slow_moves(scenario: &mut Scenario, durations: &[f64]) {
     let moves = scenario.program.iter_mut().filter_map(|step| match step {
         Step::Move(step) => Some(step),
         Step::Wait(_) => None,
@@ -232,6 +261,20 @@ mod tests {
         let channels = all.memory() / (2001 * 8);
         assert_eq!(channels as usize, most_channels(&all.scenario));
         assert!((10..servobench_signals::Signal::ALL.len() as u64 / 2).contains(&channels), "{channels}");
+    }
+
+    /// A run of 3 s whose move takes 1 s has 2 s behind it, slowed or not.
+    #[test]
+    fn what_follows_the_program_stays_as_long_as_it_was() {
+        let text = TEXT.replace("duration = \"2 s\"", "duration = \"3 s\"").replace(
+            "[record]",
+            "[setpoint]\norder = 2\nvelocity = \"1 m/s\"\nacceleration = \"4 m/s2\"\n[[program]]\nmove_to = \"0.75 m\"\n[measure]\nfrom = \"1.5 s\"\n[record]",
+        );
+        let mut job = job(&text);
+        job.slow_to(vec![1.25]);
+        let Scenario { duration, measure, .. } = &job.scenario;
+        let (duration, from) = (duration.unwrap(), measure.from.unwrap());
+        assert!((duration - 3.25).abs() < 1e-12 && (from - 1.75).abs() < 1e-12, "{duration} {from}");
     }
 
     #[test]

@@ -66,8 +66,10 @@ impl<'a> Presentation<'a> {
         let labels = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
         let mut engines: Vec<&str> = runs.iter().map(|(_, recording)| recording.about.engine.as_str()).collect();
         engines.dedup();
-        // A comparison gives all its runs the same.
-        let overridden = runs[0].1.about.overridden();
+        // Variants of one scenario are told apart by their labels.
+        let first = &runs[0].1.about;
+        let is_of_all = runs.iter().all(|(_, recording)| recording.about.overrides == first.overrides);
+        let overridden = if is_of_all { first.overridden() } else { String::new() };
         let name = format!("{labels} on {}{overridden}", engines.join(" and "));
         let runs = runs.iter().map(|(label, recording)| Run { label: Some(label), recording });
         Ok(Self::plan(name, runs.collect(), options))

@@ -9,7 +9,7 @@ pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value =
 }
 
 /// A meaning names parameters as files do, `maximum_jerk`; help is plain text.
-fn plain(meaning: &str) -> String {
+pub(super) fn plain(meaning: &str) -> String {
     let words = meaning.split('`').enumerate();
     words.map(|(k, words)| if k % 2 == 1 { words.replace('_', " ") } else { words.to_owned() }).collect()
 }

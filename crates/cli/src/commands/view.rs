@@ -53,7 +53,7 @@ fn is_own(run: &RunResult, folder: &Path) -> bool {
 }
 
 /// What `run` or `compare` wrote into `folder`, whichever came last.
-fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
+pub(super) fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
     let files = [RESULTS, COMPARISON].map(|name| folder.join(name));
     let written = files.into_iter().filter_map(|file| Some((modified(&file).ok()?, file)));
     let latest = written.max_by_key(|(when, _)| *when).map(|(_, file)| file);

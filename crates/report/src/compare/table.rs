@@ -7,7 +7,7 @@ use servobench_metrics::{Name, Quantity};
 
 /// How the last column of a row reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     /// A duration: difference and per cent.
     Time,
     /// A size: ratio.
@@ -19,10 +19,10 @@ enum Kind {
 }
 
 /// Limits of the set-points, and the powers of the second in their units.
-const LIMITS: [(&str, &str); 4] =
+pub(super) const LIMITS: [(&str, &str); 4] =
     [("limit of velocity", ""), ("limit of acceleration", "²"), ("limit of jerk", "³"), ("limit of snap", "⁴")];
 
-const ROWS: [(&str, Name, Kind); 11] = [
+pub(super) const ROWS: [(&str, Name, Kind); 13] = [
     ("move", Name::MoveTime, Kind::Time),
     ("move + settling", Name::MoveAndSettlingTime, Kind::Time),
     ("peak following error, load", Name::FollowingErrorPeakLoad, Kind::Size),
@@ -34,7 +34,12 @@ const ROWS: [(&str, Name, Kind); 11] = [
     ("peak effort", Name::TorquePeak, Kind::Size),
     ("RMS effort", Name::TorqueRms, Kind::Size),
     ("RMS current", Name::CurrentRms, Kind::Size),
+    ("electrical energy", Name::ElectricalEnergy, Kind::Size),
+    ("copper loss", Name::CopperLoss, Kind::Size),
 ];
+
+/// Runs that are columns; more of them are rows, so that the table stays within 80 columns.
+pub(super) const MOST_COLUMNS: usize = 4;
 
 /// Every quantity that is compared.
 pub(super) fn compared() -> impl Iterator<Item = Name> {
@@ -47,9 +52,12 @@ const CHANGE: usize = 18;
 
 impl Comparison<'_> {
     /// One row for each quantity that any run has; with two runs a column says how the second stands to the first,
-    /// with more an asterisk marks the smallest.
+    /// with more an asterisk marks the smallest. Of more than four runs each is a row.
     #[must_use]
     pub fn table(&self, style: Style) -> String {
+        if self.runs.len() > MOST_COLUMNS {
+            return self.table_by_run(style);
+        }
         let name = widest(ROWS.iter().map(|(label, ..)| *label));
         let room = style.width.saturating_sub(name + CHANGE) / self.runs.len().max(1);
         let cell = widest(self.runs.iter().map(|run| run.label)).min(room.saturating_sub(2)).max(CELL);
@@ -73,7 +81,7 @@ impl Comparison<'_> {
     }
 
     /// Unit of the axis, as the residual vibration has it.
-    fn axis_unit(&self) -> &str {
+    pub(super) fn axis_unit(&self) -> &str {
         let unit = self.runs.iter().find_map(|run| run.metric(Name::ResidualVibrationPp));
         unit.map_or("m", |(_, unit)| unit)
     }
@@ -105,13 +113,13 @@ fn shown(kind: Kind, quantity: Quantity<'_>, largest: f64) -> String {
 }
 
 /// "effort" is a force or a torque, as the unit says.
-fn effort_word(label: &str, values: &[Option<Value<'_>>]) -> String {
+pub(super) fn effort_word(label: &str, values: &[Option<Value<'_>>]) -> String {
     let unit = values.iter().flatten().map(|(_, unit)| *unit).next().unwrap_or_default();
     label.replace("effort", force_or_torque(unit))
 }
 
 /// Whether `value` is smaller than all others by more than 1 %.
-fn is_smallest(value: Option<Value<'_>>, all: &[Option<Value<'_>>]) -> bool {
+pub(super) fn is_smallest(value: Option<Value<'_>>, all: &[Option<Value<'_>>]) -> bool {
     let Some((value, _)) = value else { return false };
     let not_smaller = all.iter().flatten().filter(|(other, _)| !(Relation::of(value, *other).is_more())).count();
     not_smaller == 1
@@ -119,6 +127,7 @@ fn is_smallest(value: Option<Value<'_>>, all: &[Option<Value<'_>>]) -> bool {
 
 fn beside(kind: Kind, one: Value<'_>, two: Value<'_>) -> String {
     match kind {
+        _ if one.1 != two.1 => "other unit".into(),
         Kind::Property => String::new(),
         Kind::Limit if one.0.to_bits() == two.0.to_bits() => String::new(),
         Kind::Limit => "differs".into(),

@@ -1,6 +1,6 @@
 //! What the table says, in words.
 use super::relation::{Relation, percent};
-use super::{Compared, Comparison, Value, force_or_torque, in_words, vibration_of};
+use super::{Compared, Comparison, Value, force_or_torque, in_words, many, vibration_of};
 use crate::text::wrapped;
 use servobench_metrics::{Name, Quantity, ResidualRatios};
 
@@ -11,7 +11,7 @@ impl Comparison<'_> {
         let sentences = match self.runs.as_slice() {
             [] | [_] => vec!["There is nothing to compare.".to_owned()],
             [one, two] => Pair { is_of_set_points: self.is_of_set_points, ..Pair::of(*one, *two) }.sentences(),
-            many => ranking(many),
+            many => many::sentences(many),
         };
         wrapped(&sentences.join(" "), width).join("\n") + "\n"
     }
@@ -219,7 +219,7 @@ impl<'a> Pair<'a> {
 }
 
 /// Natural frequency (Hz) and damping ratio of the mode in which a run rings.
-fn mode(run: Compared<'_>) -> Option<(f64, f64)> {
+pub(super) fn mode(run: Compared<'_>) -> Option<(f64, f64)> {
     let (frequency, _) = run.metric(Name::ResidualVibrationFrequency)?;
     Some((frequency, run.metric(Name::ResidualVibrationDamping)?.0))
 }
@@ -229,41 +229,6 @@ fn size(ratio: f64) -> String {
     match Relation::of(1.0, 1.0 / ratio) {
         Relation::Same => "as much".into(),
         relation => relation.to_string(),
-    }
-}
-
-/// More than two runs: each quantity from the best to the worst.
-fn ranking(runs: &[Compared<'_>]) -> Vec<String> {
-    let unit = runs.iter().find_map(|run| run.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
-    let vibration = vibration_of(runs);
-    [
-        (format!("Residual vibration ({})", in_words(vibration)), vibration),
-        ("Move".to_owned(), Name::MoveTime),
-        ("Move with settling".to_owned(), Name::MoveAndSettlingTime),
-        ("Peak following error".to_owned(), Name::FollowingErrorPeakLoad),
-        (format!("RMS {}", force_or_torque(unit)), Name::TorqueRms),
-    ]
-    .into_iter()
-    .filter_map(|(words, name)| {
-        let mut ranked: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.metric(name)?))).collect();
-        ranked.sort_by(|one, two| one.1.0.abs().total_cmp(&two.1.0.abs()));
-        let (_, (best, _)) = *ranked.first()?;
-        let parts: Vec<_> = ranked.iter().map(|(label, value)| format!("{label} {}", against(best, *value))).collect();
-        Some(format!("{words}: {}.", parts.join(", ")))
-    })
-    .collect()
-}
-
-/// `1.35 s (3.8 % longer)`
-fn against(best: f64, (value, unit): Value<'_>) -> String {
-    let text = Quantity::new(value, unit).to_string();
-    match Relation::of(best, value) {
-        Relation::Same => text,
-        relation if unit == "s" => {
-            let relation = relation.to_string().replace("more", "longer").replace("as much", "as long");
-            format!("{text} ({relation})")
-        }
-        relation => format!("{text} ({relation})"),
     }
 }
 
@@ -318,27 +283,6 @@ mod tests {
         50.0 ms (3.8 %) longer. With settling, it is in position 46.0 ms (3.5 %)
         later. Its peak following error is 4.2 × less, peak force the same, RMS
         force 2.0 % less. snap shakes its load less, jerk arrives sooner.
-        "#);
-    }
-
-    #[test]
-    fn three_are_ranked() {
-        let (jerk, snap) = (jerk(), snap());
-        let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
-        let runs = vec![
-            Compared { label: "trapezoid", result: &trapezoid, moves: &[] },
-            Compared { label: "jerk", result: &jerk, moves: &[] },
-            Compared { label: "snap", result: &snap, moves: &[] },
-        ];
-        let comparison = Comparison::new(runs);
-        insta::assert_snapshot!(comparison.words(76), @r#"
-        Residual vibration (amplitude of the mode): snap 105 nm, jerk 1.70 µm
-        (16 × as much), trapezoid 20.5 µm (200 × as much). Move: trapezoid 1.20 s,
-        jerk 1.30 s (8.3 % longer), snap 1.35 s (13 % longer). Move with settling:
-        jerk 1.30 s, snap 1.35 s (3.5 % longer), trapezoid 1.50 s (15 % longer).
-        Peak following error: snap 730 nm, jerk 3.10 µm (4.2 × as much), trapezoid
-        90.0 µm (120 × as much). RMS force: snap 60.0 N, trapezoid 60.3 N, jerk
-        61.2 N (2.0 % more).
         "#);
     }
 

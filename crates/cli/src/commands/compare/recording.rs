@@ -1,0 +1,71 @@
+//! The one recording in which the runs lie over each other.
+use super::variants::Wanted;
+use crate::error::CliError;
+use crate::interrupt;
+use crate::output;
+use crate::outputs::OutputFolder;
+use servobench_suite::{Run, file_name};
+use servobench_trace::Recording;
+use servobench_view::ViewOptions;
+
+/// Runs that the name of the recording has in it; of more of them the first and how many others.
+const MOST_NAMED: usize = 4;
+
+/// What the recording is called.
+pub(super) fn name(wanted: &[Wanted]) -> String {
+    let labels: Vec<&str> = wanted.iter().map(|one| one.label.as_str()).collect();
+    let name = match labels.as_slice() {
+        [first, others @ ..] if labels.len() > MOST_NAMED => format!("{first}-against-{}-others", others.len()),
+        few => few.join("-against-"),
+    };
+    format!("{}.rrd", file_name(&name))
+}
+
+/// Writes it as the file `name`.
+pub(super) fn write(out: &OutputFolder, name: &str, wanted: &[Wanted], runs: &[Run]) -> Result<(), CliError> {
+    let options = wanted.iter().map(|one| output::view_options(&one.job.scenario));
+    let options = options.reduce(|one, other| agreed(one, &other)).unwrap_or_default();
+    let verdicts = runs.iter().map(|run| output::shown(&run.recording, &run.metrics, &run.verdict)).collect();
+    let options = ViewOptions { verdicts, ..options };
+    let place = out.place(name)?;
+    match runs {
+        [one] => servobench_view::write_rrd(&one.recording, &place, &options)?,
+        many => {
+            let labels = wanted.iter().map(|one| one.label.as_str());
+            let labelled: Vec<(&str, &Recording)> = labels.zip(many.iter().map(|run| &run.recording)).collect();
+            servobench_view::write_comparison_rrd(&labelled, &place, &options)?;
+        }
+    }
+    interrupt::written(&place);
+    Ok(())
+}
+
+/// What both are held to: a line over all runs must not be the bound of one of them.
+fn agreed(mut one: ViewOptions, other: &ViewOptions) -> ViewOptions {
+    one.limits.retain(|limit| other.limits.contains(limit));
+    one.allowed.retain(|allowed| other.allowed.contains(allowed));
+    one.window = one.window.filter(|_| one.window == other.window);
+    one.residual_from = one.residual_from.filter(|_| one.residual_from == other.residual_from);
+    one
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_metrics::Name;
+
+    #[test]
+    fn a_bound_of_one_run_is_not_drawn_over_all() {
+        let options = |most, window| ViewOptions {
+            limits: vec![("current.q".into(), 18.0)],
+            allowed: vec![(Name::SettlingTime, most), (Name::CurrentPeak, 18.0)],
+            window: Some(window),
+            ..ViewOptions::default()
+        };
+        let drawn = agreed(options(0.02, 5e-6), &options(0.9, 1e-5));
+        assert_eq!(drawn.limits, [("current.q".to_owned(), 18.0)]);
+        assert_eq!((drawn.allowed, drawn.window), (vec![(Name::CurrentPeak, 18.0)], None));
+        let same = options(0.02, 5e-6);
+        assert_eq!(agreed(same.clone(), &same), same);
+    }
+}

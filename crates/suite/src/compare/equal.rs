@@ -1,0 +1,311 @@
+//! Moves that are slowed until what is measured of them is equal.
+use super::duration::slowable;
+use super::search::{LONGEST, Search, Steps};
+use super::{CompareError, slow};
+use crate::engines::Engines;
+use crate::error::RunError;
+use crate::execute::execute;
+use crate::job::Job;
+use crate::pool::{AtATime, map_in_parallel};
+use crate::worker::Workers;
+use servobench_metrics::{Metrics, Name, Quantity};
+use thiserror::Error;
+
+/// What runs are made equal in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EqualQuantity {
+    /// How long the moves last.
+    Duration,
+    /// The peak torque or force of the motor.
+    Torque,
+    /// The effective current.
+    Current,
+    /// The residual vibration of the load.
+    Vibration,
+}
+
+impl EqualQuantity {
+    /// What it is in words.
+    #[must_use]
+    pub const fn in_words(self) -> &'static str {
+        match self {
+            Self::Duration => "duration",
+            Self::Torque => "peak torque or force",
+            Self::Current => "RMS current",
+            Self::Vibration => "residual vibration",
+        }
+    }
+
+    /// How a value of it is asked for, of a metric in `unit`.
+    fn example(self, unit: &str) -> &'static str {
+        match (self, unit) {
+            (Self::Duration, _) => "duration=1.2s",
+            (Self::Torque, "N") => "torque=100N",
+            (Self::Torque, _) => "torque=5Nm",
+            (Self::Current, _) => "current=4Arms",
+            (Self::Vibration, "rad") => "vibration=20urad",
+            (Self::Vibration, _) => "vibration=20um",
+        }
+    }
+
+    /// The metrics that say it, the first that all runs have.
+    const fn metrics(self) -> &'static [Name] {
+        match self {
+            Self::Duration => &[Name::MoveTime],
+            Self::Torque => &[Name::TorquePeak],
+            Self::Current => &[Name::CurrentRms],
+            Self::Vibration => &[Name::ResidualVibrationAmplitude, Name::ResidualVibrationPp],
+        }
+    }
+}
+
+/// The metric whose limit has the unit in which a value of `quantity` is given.
+#[must_use]
+pub const fn equal_metric(quantity: EqualQuantity) -> Name {
+    quantity.metrics()[0]
+}
+
+/// Why runs cannot be made equal.
+#[derive(Debug, Error)]
+pub enum EqualError {
+    /// They cannot be compared so.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// One of the runs that it takes to find out was not carried out.
+    #[error("{error}")]
+    Run {
+        /// Index of its job.
+        job: usize,
+        /// Why not.
+        error: RunError,
+    },
+}
+
+/// How runs are measured on the way.
+pub struct Measuring<'a> {
+    /// The engines.
+    pub engines: &'a Engines,
+    /// The processes of isolated engines.
+    pub workers: &'a Workers,
+    /// How much runs at a time; results do not depend on it.
+    pub limit: AtATime,
+    /// Is told how many runs were made until now.
+    pub progress: &'a dyn Fn(usize),
+}
+
+/// What runs were made equal in, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equalized {
+    /// The metric.
+    pub metric: Name,
+    /// Its unit.
+    pub unit: String,
+    /// The value that all have, or are below of (SI).
+    pub target: f64,
+    /// Index of the job whose value it is; `None` when it was asked for.
+    pub gentlest: Option<usize>,
+    /// Runs that it took to find the factors.
+    pub runs: usize,
+    /// Of each job.
+    pub slowed: Vec<Slowed>,
+}
+
+/// How one job was slowed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slowed {
+    /// How many times as long its moves last; 1 when it was not slowed.
+    pub factor: f64,
+    /// What it has of the metric then (SI).
+    pub value: f64,
+}
+
+/// A step of torque and current, relative.
+const STEP: f64 = 0.05;
+/// A step of vibrations, in lobes of the spectrum of the longest box that a move may be made of.
+const OF_A_LOBE: f64 = 0.099;
+
+/// Slows the moves of each job by one factor of its own, so that what is measured of it is not above `target` (SI), or that of the
+/// gentlest job at its own limits, and not below that by more than it can be met. A job that is slowed loses its limits.
+///
+/// # Errors
+/// [`CompareError::NotSlowable`], [`CompareError::NotMeasured`], [`CompareError::Nothing`], [`CompareError::NotReached`],
+/// [`CompareError::Plan`]; [`EqualError::Run`] for a run that could not be carried out.
+///
+/// # Panics
+/// With what panics in a run that it makes.
+pub fn to_equal(
+    jobs: &mut [Job],
+    quantity: EqualQuantity,
+    target: Option<f64>,
+    measuring: &Measuring<'_>,
+) -> Result<Equalized, EqualError> {
+    let own = jobs.iter().map(slowable).collect::<Result<Vec<_>, _>>()?;
+    let mut making = Making { jobs, own: &own, measuring, runs: 0, wanted: &[] };
+    let with_mode = [quantity.metrics(), &[Name::ResidualVibrationFrequency]].concat();
+    making.wanted = if quantity == EqualQuantity::Vibration { &with_mode } else { quantity.metrics() };
+    let at_limits = making.measured(&(0..making.jobs.len()).map(|job| (job, 1.0)).collect::<Vec<_>>())?;
+    let metric = metric_of_all(quantity, &at_limits);
+    let mut values = Vec::new();
+    for (job, metrics) in making.jobs.iter().zip(&at_limits) {
+        let found = metrics.get(metric).ok_or_else(|| not_measured(job, quantity, metric, metrics))?;
+        values.push((found.value.abs(), found.unit.clone()));
+    }
+    let unit = values.first().map(|(_, unit)| unit.clone()).unwrap_or_default();
+    let least = values.iter().enumerate().min_by(|(_, one), (_, two)| one.0.total_cmp(&two.0));
+    let (gentlest, target) = match (target, least) {
+        (Some(target), _) => (None, target),
+        (None, Some((index, (value, _)))) => (Some(index), *value),
+        (None, None) => (None, 0.0),
+    };
+    if target <= 0.0 {
+        let scenario = gentlest.map_or_else(String::new, |index| making.jobs[index].label().to_owned());
+        let (value, what) = (Quantity::new(target, &unit).to_string(), quantity.in_words());
+        return Err(CompareError::Nothing { scenario, what, value, example: quantity.example(&unit) }.into());
+    }
+    let mut searches = Vec::new();
+    for (index, (value, _)) in values.iter().enumerate() {
+        let steps = if quantity == EqualQuantity::Vibration && *value > target {
+            Steps::Difference(making.step(index, &at_limits[index], quantity, metric)?)
+        } else {
+            Steps::Ratio(STEP)
+        };
+        searches.push(Search::new(target, *value, steps));
+    }
+    making.search(&mut searches, metric)?;
+    let mut slowed = Vec::new();
+    for ((search, (value, _)), job) in searches.iter().zip(&values).zip(making.jobs.iter()) {
+        let text = |value| Quantity::new(value, &unit).to_string();
+        let found = search.found().ok_or_else(|| CompareError::NotReached {
+            scenario: job.label().to_owned(),
+            what: quantity.in_words(),
+            target: text(target),
+            own: text(*value),
+            factor: format!("{:.3}", search.reached().min(LONGEST)),
+            least: text(search.least()),
+            example: quantity.example(&unit),
+        })?;
+        slowed.push(Slowed { factor: found.factor, value: found.value });
+    }
+    let runs = making.runs;
+    for (slowed, (job, own)) in slowed.iter().zip(jobs.iter_mut().zip(&own)) {
+        if slowed.factor > 1.0 {
+            slow(job, times(own, slowed.factor));
+        }
+    }
+    Ok(Equalized { metric, unit, target, gentlest, runs, slowed })
+}
+
+/// The first metric of `quantity` that all have; its last where none is.
+fn metric_of_all(quantity: EqualQuantity, all: &[Metrics]) -> Name {
+    let metrics = quantity.metrics();
+    let found = metrics.iter().find(|metric| all.iter().all(|metrics| metrics.get(**metric).is_some()));
+    found.or(metrics.last()).copied().unwrap_or(Name::MoveTime)
+}
+
+fn not_measured(job: &Job, quantity: EqualQuantity, metric: Name, metrics: &Metrics) -> CompareError {
+    let why = metrics.run.absence(metric).map_or_else(|| "the run has none".to_owned(), ToString::to_string);
+    CompareError::NotMeasured {
+        scenario: job.label().to_owned(),
+        what: quantity.in_words(),
+        metric: metric.as_str(),
+        why,
+        remedy: "",
+    }
+}
+
+fn times(own: &[f64], factor: f64) -> Vec<f64> {
+    own.iter().map(|duration| duration * factor).collect()
+}
+
+/// Runs that are made on the way.
+struct Making<'a> {
+    jobs: &'a [Job],
+    /// How long the moves of each job last at its own limits (s).
+    own: &'a [Vec<f64>],
+    measuring: &'a Measuring<'a>,
+    wanted: &'a [Name],
+    /// How many were made.
+    runs: usize,
+}
+
+impl Making<'_> {
+    /// What is measured of these jobs with their moves so many times as long, in that order.
+    fn measured(&mut self, wanted: &[(usize, f64)]) -> Result<Vec<Metrics>, EqualError> {
+        let jobs: Vec<Job> = wanted.iter().map(|(job, factor)| self.slower(*job, *factor)).collect();
+        let Measuring { engines, workers, limit, progress } = self.measuring;
+        let ended = map_in_parallel(
+            &jobs,
+            *limit,
+            |job| ((), job.memory()),
+            |job, ()| execute(job, engines, workers, &mut |_| {}).map(|run| run.metrics).map_err(|broken| broken.error),
+        );
+        self.runs += jobs.len();
+        progress(self.runs);
+        let ended = ended.into_iter().zip(wanted);
+        ended
+            .map(|(ended, (job, _))| {
+                ended.map_err(RunError::from).flatten().map_err(|error| EqualError::Run { job: *job, error })
+            })
+            .collect()
+    }
+
+    fn slower(&self, job: usize, factor: f64) -> Job {
+        let mut slower = self.jobs[job].clone();
+        slower.leave_recording_out();
+        slower.measure_only(self.wanted);
+        if factor > 1.0 {
+            slow(&mut slower, times(&self.own[job], factor));
+        }
+        slower
+    }
+
+    /// A step of the factor that is finer than a tenth of a lobe: of a box that lasts as long as all moves together, zeros are 1/(f·T)
+    /// apart, and no part of a move is longer.
+    fn step(
+        &self,
+        index: usize,
+        metrics: &Metrics,
+        quantity: EqualQuantity,
+        metric: Name,
+    ) -> Result<f64, CompareError> {
+        let job = &self.jobs[index];
+        let measured = metrics.get(Name::ResidualVibrationFrequency).map(|found| found.value);
+        let highest = measured.into_iter().chain(job.scenario.measure.mode).fold(0.0, f64::max);
+        if highest > 0.0 {
+            return Ok(OF_A_LOBE / (highest * self.own[index].iter().sum::<f64>()));
+        }
+        let remedy = "; name the mode by measure.mode";
+        match not_measured(job, quantity, metric, metrics) {
+            CompareError::NotMeasured { scenario, what, .. } => Err(CompareError::NotMeasured {
+                scenario,
+                what,
+                metric: Name::ResidualVibrationFrequency.as_str(),
+                why: metrics
+                    .run
+                    .absence(Name::ResidualVibrationFrequency)
+                    .map_or_else(|| "the run has none".to_owned(), ToString::to_string),
+                remedy,
+            }),
+            other => Err(other),
+        }
+    }
+
+    /// Goes on with all of them until each has ended.
+    fn search(&mut self, searches: &mut [Search], metric: Name) -> Result<(), EqualError> {
+        loop {
+            let wanted: Vec<Vec<f64>> = searches.iter().map(Search::wanted).collect();
+            let is_open = |search: &Search, factors: &Vec<f64>| search.found().is_none() && !factors.is_empty();
+            if !searches.iter().zip(&wanted).any(|(search, factors)| is_open(search, factors)) {
+                return Ok(());
+            }
+            let each = wanted.iter().enumerate();
+            let each = each.flat_map(|(job, factors)| factors.iter().map(move |factor| (job, *factor)));
+            let mut measured = self.measured(&each.collect::<Vec<_>>())?.into_iter();
+            for (search, factors) in searches.iter_mut().zip(&wanted) {
+                let values = measured.by_ref().take(factors.len());
+                let values: Vec<_> = values.map(|metrics| metrics.get(metric).map(|found| found.value)).collect();
+                search.learn(factors, &values);
+            }
+        }
+    }
+}
