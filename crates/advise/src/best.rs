@@ -98,7 +98,7 @@ const NEAR: f64 = 1.06;
 const REFINED: usize = 12;
 const OF_EACH_FAMILY: usize = 4;
 /// The same where a price is asked for.
-const REFINED_FOR_A_PRICE: usize = 3;
+const REFINED_FOR_A_PRICE: usize = 2;
 /// Rounds of search and verification, and machines that join the search after each.
 const ROUNDS: u32 = 12;
 const JOINING: usize = 4;

@@ -43,11 +43,23 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 
-/// Levels of velocity and acceleration, and their ratio from one to the next.
-const VELOCITIES: (i32, f64) = (3, 0.8);
-const ACCELERATIONS: (i32, f64) = (9, 0.86);
-/// Levels of the times in which acceleration and jerk rise, and their ratio; the longest is this part of the shortest move of second order.
-const RISES: (i32, f64) = (15, 1.4);
+/// Levels of a limit from its largest value down: how many, and their ratio.
+type Levels = (i32, f64);
+
+/// The levels of a coarse grid.
+struct Grid {
+    velocities: Levels,
+    accelerations: Levels,
+    /// Times in which acceleration and jerk rise, from the longest down.
+    rises: Levels,
+}
+
+/// Of second and third order the lengths of all boxes are near to those with which a mode is met at a zero; the fourth order has neighbours
+/// enough to be refined from, and a shaper meets the mode by itself.
+const FINE: Grid = Grid { velocities: (10, 0.975), accelerations: (20, 0.97), rises: (50, 1.1) };
+const OF_FOURTH_ORDER: Grid = Grid { velocities: (6, 0.96), accelerations: (14, 0.95), rises: (26, 1.2) };
+const WITH_SHAPER: Grid = Grid { velocities: (3, 0.95), accelerations: (6, 0.92), rises: (12, 1.4) };
+/// The longest rise, as part of the shortest move of second order.
 const LONGEST_RISE: f64 = 0.5;
 
 impl SetPoint {
@@ -95,11 +107,16 @@ impl SetPoint {
 
 /// All set-points of a family on a coarse grid; `shortest` is the duration of the move of second order at the ceiling (s).
 pub(crate) fn grid(index: usize, family: &Family, ceiling: &Ceiling, shortest: f64) -> Vec<SetPoint> {
-    let levels = |top: f64, (count, ratio): (i32, f64)| (0..count).map(move |k| top * ratio.powi(k));
-    let rises = || levels(LONGEST_RISE * shortest, (RISES.0, 1.0 / RISES.1));
+    let Grid { velocities, accelerations, rises } = match family.order {
+        _ if !family.settings.is_empty() => WITH_SHAPER,
+        4 => OF_FOURTH_ORDER,
+        _ => FINE,
+    };
+    let levels = |top: f64, (count, ratio): Levels| (0..count).map(move |k| top * ratio.powi(k));
+    let rises = || levels(LONGEST_RISE * shortest, (rises.0, 1.0 / rises.1));
     let mut all = Vec::new();
-    for velocity in levels(ceiling.velocity, VELOCITIES) {
-        for acceleration in levels(ceiling.acceleration, ACCELERATIONS) {
+    for velocity in levels(ceiling.velocity, velocities) {
+        for acceleration in levels(ceiling.acceleration, accelerations) {
             let add = |all: &mut Vec<SetPoint>, rise, rise_of_jerk| {
                 let times = [velocity, acceleration, rise, rise_of_jerk];
                 let point = SetPoint::by_times(index, family.order, times).below(ceiling);
@@ -150,7 +167,7 @@ mod tests {
     fn a_grid_stays_below_the_ceiling() {
         let ceiling = Ceiling { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
         let family = |order| Family { order, settings: vec![], name: String::new() };
-        assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 27);
+        assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 200);
         for order in [3, 4] {
             let all = grid(0, &family(order), &ceiling, 0.6);
             assert!(all.len() > 100 && all.iter().all(|point| point.limits[2] <= 100.0), "{order}");

@@ -133,7 +133,7 @@ mod tests {
         assert!(factors.iter().all(|factor| (factor - 1.25).abs() < 1e-12), "{factors:?}");
         let lasts = durations(&jobs[1]).unwrap();
         let shorter = 1.25 * 2.0 * (0.01_f64 / 5.0).sqrt();
-        assert!(lasts[0] == 0.25 && (lasts[1] - shorter).abs() < 1e-12, "{lasts:?}");
+        assert!((lasts[0] - 0.25).abs() < 1e-12 && (lasts[1] - shorter).abs() < 1e-12, "{lasts:?}");
         let error = to_duration(&mut of([ONE, ONE]), 0.1).unwrap_err().to_string();
         assert!(error.starts_with("`one` takes 200.00 ms at its own limits, longer than the 100.00 ms"), "{error}");
     }
@@ -141,7 +141,10 @@ mod tests {
     #[test]
     fn what_has_times_of_its_own_is_not_slowed() {
         let aborted = format!("{ONE}\n[[program]]\nmove_to = \"10 mm\"\naborts_after = \"0.1 s\"");
-        let passing = ONE.replace("move_to = \"50 mm\"", "move_to = \"50 mm\"\nend_velocity = \"0.1 m/s\"");
+        let passing = ONE.replace(
+            "move_to = \"50 mm\"",
+            "move_to = \"50 mm\"\nend_velocity = \"0.1 m/s\"\n[[program]]\nmove_to = \"90 mm\"",
+        );
         let none = ONE.replace("[[program]]\n        move_to = \"50 mm\"", "[[program]]\nwait = \"1 s\"");
         for (text, why) in [(aborted, "its move 2 breaks"), (passing, "start_velocity"), (none, "it makes no move")] {
             let error = slowable(&of([&text, ONE])[0]).unwrap_err().to_string();

@@ -95,6 +95,10 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         }
         let better = left.iter().filter(|left| **left).count();
         println!("{better} of them keep all limits on all machines of the box");
+        for (row, _) in survivors.iter().zip(&left).filter(|(_, left)| **left) {
+            let limits = axes.iter().zip(row).map(|((key, unit, _), value)| format!("{key} {value} {unit}"));
+            println!("  {}", limits.collect::<Vec<_>>().join(", "));
+        }
         if better > 0 {
             findings.push(format!("{better} set-points of the grid are better by more than 0.5 %"));
         }
