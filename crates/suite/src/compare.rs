@@ -8,7 +8,7 @@ mod setpoints;
 
 pub use duration::{to_duration, to_equal_duration};
 pub use equal::{EqualError, EqualQuantity, Equalized, Measuring, Slowed, equal_metric, to_equal};
-pub use error::CompareError;
+pub use error::{CompareError, NotReached};
 pub use limits::limits_agree;
 pub use setpoints::{only_setpoints_differ, setpoints_have_closed_form};
 

@@ -24,7 +24,7 @@ fn the_page_shows_what_its_commands_print() {
         fits(&printed);
         // The last line is the folder of this test.
         let printed = printed.rsplit_once("look at it: ").unwrap_or_else(|| panic!("{}", said(&output))).0.trim_end();
-        written += &format!("{FENCE}{command}\n{printed}\n```{text}");
+        written.extend([FENCE, command, "\n", printed, "\n```", text]);
         sessions += 1;
     }
     assert_eq!(sessions, 2);

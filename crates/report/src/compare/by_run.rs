@@ -138,10 +138,10 @@ mod tests {
 
     fn eight() -> Vec<(String, RunResult)> {
         let names = ["none", "zv", "mzv", "zvd", "zvdd", "ei", "2hump-ei", "3hump-ei"];
-        let runs = (0..8).map(|k| {
+        let runs = (0..8_u8).zip(names).map(|(k, name)| {
             let f = f64::from(k);
             let vibration = if k == 4 { 3e-9 } else { 3.4e-6 / (1.0 + f) };
-            of_numbers(names[k as usize], [1.3 + 0.01 * f, 0.1, 3.1e-6, vibration, 38.985, 0.0021, 170.0, 61.2])
+            of_numbers(name, [1.3 + 0.01 * f, 0.1, 3.1e-6, vibration, 38.985, 0.0021, 170.0, 61.2])
         });
         names.into_iter().map(str::to_owned).zip(runs).collect()
     }

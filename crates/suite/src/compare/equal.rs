@@ -1,7 +1,7 @@
 //! Moves that are slowed until what is measured of them is equal.
 use super::duration::slowable;
 use super::search::{LONGEST, Search, Steps};
-use super::{CompareError, slow};
+use super::{CompareError, NotReached, slow};
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::execute::execute;
@@ -70,7 +70,7 @@ pub const fn equal_metric(quantity: EqualQuantity) -> Name {
 pub enum EqualError {
     /// They cannot be compared so.
     #[error(transparent)]
-    Compare(#[from] CompareError),
+    Compare(Box<CompareError>),
     /// One of the runs that it takes to find out was not carried out.
     #[error("{error}")]
     Run {
@@ -79,6 +79,12 @@ pub enum EqualError {
         /// Why not.
         error: RunError,
     },
+}
+
+impl From<CompareError> for EqualError {
+    fn from(error: CompareError) -> Self {
+        Self::Compare(Box::new(error))
+    }
 }
 
 /// How runs are measured on the way.
@@ -175,7 +181,7 @@ pub fn to_equal(
     let mut slowed = Vec::new();
     for ((search, (value, _)), job) in searches.iter().zip(&values).zip(making.jobs.iter()) {
         let text = |value| Quantity::new(value, &unit).to_string();
-        let found = search.found().ok_or_else(|| CompareError::NotReached {
+        let not_reached = || NotReached {
             scenario: job.label().to_owned(),
             what: quantity.in_words(),
             target: text(target),
@@ -183,7 +189,8 @@ pub fn to_equal(
             factor: format!("{:.3}", search.reached().min(LONGEST)),
             least: text(search.least()),
             example: quantity.example(&unit),
-        })?;
+        };
+        let found = search.found().ok_or_else(|| CompareError::NotReached(Box::new(not_reached())))?;
         slowed.push(Slowed { factor: found.factor, value: found.value });
     }
     let runs = making.runs;

@@ -110,24 +110,29 @@ pub enum CompareError {
         wanted: String,
     },
     /// However slow it is, it does not come down to what is wanted.
-    #[error(
-        "`{scenario}` does not come down to {what} {target}: at its own limits it has {own}, and with moves up to {factor} × as \
-         long {least} at the least; name a value that all can reach, as in --equal {example}"
-    )]
-    NotReached {
-        /// Name of the run.
-        scenario: String,
-        /// What is to be equal, in words.
-        what: &'static str,
-        /// What is wanted, with its unit.
-        target: String,
-        /// What it has at its own limits.
-        own: String,
-        /// How much longer its moves were made at most.
-        factor: String,
-        /// The least of what was measured of it.
-        least: String,
-        /// What may be written instead.
-        example: &'static str,
-    },
+    #[error(transparent)]
+    NotReached(Box<NotReached>),
+}
+
+/// However slow a run is, it does not come down to what is wanted.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error(
+    "`{scenario}` does not come down to {what} {target}: at its own limits it has {own}, and with moves up to {factor} × as \
+     long {least} at the least; name a value that all can reach, as in --equal {example}"
+)]
+pub struct NotReached {
+    /// Name of the run.
+    pub scenario: String,
+    /// What is to be equal, in words.
+    pub what: &'static str,
+    /// What is wanted, with its unit.
+    pub target: String,
+    /// What it has at its own limits.
+    pub own: String,
+    /// How much longer its moves were made at most.
+    pub factor: String,
+    /// The least of what was measured of it.
+    pub least: String,
+    /// What may be written instead.
+    pub example: &'static str,
 }

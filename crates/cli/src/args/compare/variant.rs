@@ -102,11 +102,10 @@ impl Scan {
             _ if self.is_escaped => self.is_escaped = false,
             (Some('"'), '\\') => self.is_escaped = true,
             (Some(quote), c) if c == quote => self.quote = None,
-            (Some(_), _) => {}
             (None, '"' | '\'') => self.quote = Some(c),
             (None, '[' | '{') => self.depth += 1,
             (None, ']' | '}') => self.depth = self.depth.saturating_sub(1),
-            (None, _) => {}
+            (None | Some(_), _) => {}
         }
     }
 }

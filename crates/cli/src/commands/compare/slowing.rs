@@ -85,7 +85,7 @@ pub(super) fn by_runs(
     workers::dismiss(workers);
     match equalized {
         Ok(equalized) => Ok(Slowing::Metric(term.quantity, equalized)),
-        Err(EqualError::Compare(error)) => Err(error.into()),
+        Err(EqualError::Compare(error)) => Err(CliError::Compare(error)),
         Err(EqualError::Run { job, error }) => {
             Err(CliError::Runs(jobs.get(job).map(|job| FailedRun::new(job, error)).into_iter().collect()))
         }
@@ -151,5 +151,6 @@ fn percent(share: f64) -> String {
 fn lines<'a>(each: impl Iterator<Item = (&'a str, String)>) -> String {
     let all: Vec<(String, String)> = each.map(|(label, words)| (elided(&printable(label), 24), words)).collect();
     let width = all.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-    all.iter().map(|(label, words)| format!("\n  {label:width$}  {words}")).collect()
+    let lines: Vec<String> = all.iter().map(|(label, words)| format!("\n  {label:width$}  {words}")).collect();
+    lines.concat()
 }
