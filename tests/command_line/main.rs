@@ -31,6 +31,7 @@ mod plc;
 mod run;
 mod standard_input;
 mod sweep;
+mod sweep_closed_forms;
 mod timing;
 #[cfg(unix)]
 mod view;

@@ -26,15 +26,18 @@ fn sweep(work: &Path, more: &[&str]) -> std::process::Output {
     servobench(&[&["sweep", file.to_str().unwrap(), "--out", out.to_str().unwrap()], more].concat())
 }
 
+/// A row of a table: heading and cell of each column.
+pub(crate) type Row = Vec<(String, String)>;
+
 /// Rows of a CSV without quotes, by heading.
-fn rows(path: &Path) -> Vec<Vec<(String, String)>> {
+pub(crate) fn rows(path: &Path) -> Vec<Row> {
     let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let heading = lines.next().unwrap();
     lines.map(|cells| heading.iter().cloned().zip(cells).collect()).collect()
 }
 
-fn cell<'a>(row: &'a [(String, String)], heading: &str) -> &'a str {
+pub(crate) fn cell<'a>(row: &'a [(String, String)], heading: &str) -> &'a str {
     &row.iter().find(|(name, _)| name == heading).unwrap_or_else(|| panic!("{heading} in {row:?}")).1
 }
 

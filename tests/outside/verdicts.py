@@ -25,11 +25,11 @@ from pathlib import Path
 # Small matrices only: threads would cost more than they bring. Said before numpy is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from built import program
 from draws import Random, sweep_size
 from verdict_classes import blocks, faults, gains, limits, modulo, torque
 from verdict_classes.case import Case, toml
 
-ROOT = Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get("SERVOBENCH_SEED", "1"))
 CLASSES: dict[str, Callable[[Random], Case | None]] = {
     "gains": gains.draw,
@@ -44,19 +44,6 @@ CHUNK = 100
 """So many scenarios are run at a time: their recordings are thrown away before the next are made."""
 DRAWS = 200
 """So many draws are made for each scenario before a class gives up."""
-
-
-def program() -> Path:
-    """The program that is judged."""
-    given = os.environ.get("SERVOBENCH")
-    if given:
-        return Path(given)
-    command = ["cargo", "metadata", "--no-deps", "--format-version=1"]
-    metadata = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
-    built = Path(json.loads(metadata)["target_directory"]) / "release" / "servobench"
-    if not built.exists():
-        sys.exit(f"{built} is not there: build it (`cargo build --release -p servobench-cli`), or name another in SERVOBENCH")
-    return built
 
 
 def draw(name: str, size: int) -> tuple[list[Case], int]:

@@ -9,6 +9,7 @@ use crate::field::{Field, Reported, Slot, key, written};
 use crate::list::{Many, OneOrMany};
 use crate::load::all_errors;
 use crate::nearest::suggestion;
+use crate::quantity;
 use crate::simple::OneOf;
 use crate::source::{At, Place, SourceId, Sources, Span};
 use crate::table::table;
@@ -173,15 +174,20 @@ impl Field for Amount {
     }
 }
 
-/// A text that is a number with a unit, or any other.
+/// A text that is a number with a unit, or any other. What follows a number without a space is a unit only if there is such a unit:
+/// "2hump-ei" is a name.
 pub(crate) fn amount(text: &str) -> Value {
     let trimmed = text.trim();
     let is_of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
     // The longest beginning that is a number: of "5 e" the 5, of "5e3 m" all but the unit.
     let ends = trimmed.char_indices().map(|(at, c)| (at + c.len_utf8(), c)).take_while(|(_, c)| is_of_number(*c));
     let longest = ends.filter_map(|(end, _)| Some((end, trimmed[..end].parse::<f64>().ok()?))).last();
+    let is_unit =
+        |rest: &str| rest.is_empty() || rest.starts_with(char::is_whitespace) || quantity::Scale::read(rest).is_ok();
     match longest {
-        Some((end, number)) if number.is_finite() => Value::Number(number, trimmed[end..].trim().to_owned()),
+        Some((end, number)) if number.is_finite() && is_unit(&trimmed[end..]) => {
+            Value::Number(number, trimmed[end..].trim().to_owned())
+        }
         _ => Value::Text(text.to_owned()),
     }
 }

@@ -61,6 +61,18 @@ fn values_of_any_kind_go_side_by_side() {
     assert_eq!(found, expected);
 }
 
+/// Names may begin with a digit, and a unit may stand right behind its number.
+#[test]
+fn a_name_that_begins_with_a_number_stays_a_name() {
+    let of = |value: &str| points(&format!("{HEAD}[[vary]]\nkey = \"a\"\nvalues = \"{value}\"\n"));
+    for name in ["2hump-ei", "3hump-ei", "2-mass.toml", "1e", "5 parsecs", "7"] {
+        assert_eq!(of(name), [format!("a={name}")]);
+    }
+    for (value, written) in [("5mm", "5 mm"), ("50m/s3", "50 m/s3"), ("5%", "5 %"), (" 5  m/s ", "5 m/s")] {
+        assert_eq!(of(value), [format!("a={written}")]);
+    }
+}
+
 /// A tolerance is three standard deviations, or half the width.
 #[test]
 fn tolerances_are_drawn() {

@@ -23,7 +23,7 @@ struct Group {
 
 /// All programs. CoFMPy asks for another FMPy than the one that the others hold the project against. Of pyplcopen the C++ is wanted,
 /// which only its source has; what is installed beside it is what pip reads the name and version of a source package with.
-const GROUPS: [Group; 3] = [
+const GROUPS: [Group; 4] = [
     Group {
         environment: "python",
         requirements: &["requirements.txt", "files.txt"],
@@ -49,6 +49,12 @@ const GROUPS: [Group; 3] = [
         requirements: &["pyplcopen.txt"],
         sources: Some("pyplcopen-source.txt"),
         clients: &["blocks_by_pyplcopen.py", "profile_4th_by_pyplcopen.py"],
+    },
+    Group {
+        environment: "python-readers",
+        requirements: &["readers.txt"],
+        sources: None,
+        clients: &["sweep_tables_by_polars_and_duckdb.py"],
     },
 ];
 
