@@ -101,6 +101,8 @@ const OF_EACH_FAMILY: usize = 4;
 const REFINED_FOR_A_PRICE: usize = 2;
 /// Rounds of search and verification, and machines that join the search after each.
 const ROUNDS: u32 = 12;
+/// From this round on draws may fail, as many as the promised share allows.
+const PATIENT: u32 = 6;
 const JOINING: usize = 4;
 /// Confidence of what is promised.
 const CONFIDENCE: f64 = 0.95;
@@ -131,7 +133,8 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
             Outcome::OffGrid(failed) => failed,
             Outcome::Drawn(verification, failed) => {
                 shown = verification.draws.at_least(CONFIDENCE);
-                if shown >= question.share {
+                // A draw on which it fails joins the search, as long as there are rounds for that.
+                if shown >= question.share && (failed.is_empty() || round >= PATIENT) {
                     let prices = prices(question, &mut search, &planned, &found);
                     let others = others(&found, point.family);
                     let worst = worse(&best.worst, &verification.worst);

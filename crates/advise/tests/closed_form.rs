@@ -72,7 +72,8 @@ fn time_of(point: &SetPoint) -> Option<f64> {
     let boxes = boxes(point)?;
     let keeps = (0..=250).all(|k| {
         let reading = Axis::reading(point, &[15.0 + 0.02 * f64::from(k), 11.0]);
-        reading.usage.iter().all(|usage| *usage <= 1.0)
+        // Between the machines of the verification a maximum is higher by 0.11 % at most: (π·0.03/2)²/2 of a lobe.
+        reading.usage.iter().all(|usage| *usage <= 1.0011)
     });
     keeps.then(|| boxes.iter().sum())
 }
