@@ -2,8 +2,9 @@
 use crate::machines::Machines;
 use crate::refine::refined;
 use crate::search::{Allowance, Bench, Found, Planned, Search, Worst};
-use crate::set_point::{Ceiling, Family, SetPoint, grid};
+use crate::set_point::{Family, SetPoint, grid};
 use crate::verify::{Outcome, Plan, Verification, verified};
+use servobench_motion::Limits;
 use servobench_sweep::SweepError;
 use thiserror::Error;
 
@@ -12,8 +13,8 @@ use thiserror::Error;
 pub struct Question {
     /// Kinds of set-points to choose from.
     pub families: Vec<Family>,
-    /// The largest limits.
-    pub ceiling: Ceiling,
+    /// The largest limits that a set-point may have; infinite where none is given.
+    pub ceiling: Limits,
     /// The machines on which it has to do.
     pub machines: Machines,
     /// Natural frequency of the mode that rings (Hz), which says how fine lobes are.
@@ -153,7 +154,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
 
 /// All set-points of the coarse grid.
 fn candidates(question: &Question, search: &mut Search<'_>) -> Result<Vec<Planned>, AdviseError> {
-    let Ceiling { velocity, acceleration, .. } = question.ceiling;
+    let Limits { velocity, acceleration, .. } = question.ceiling;
     let fast = SetPoint { family: 0, limits: [velocity, acceleration, f64::INFINITY, f64::INFINITY] };
     let of_second = question.families.iter().position(|family| family.order == 2);
     let fast = SetPoint { family: of_second.unwrap_or(0), ..fast };

@@ -22,5 +22,5 @@ mod verify;
 pub use best::{Advice, AdviseError, Price, Question, advise};
 pub use machines::{Machines, Range, Stretch};
 pub use search::{Bench, Reading, Worst};
-pub use set_point::{Ceiling, Family, SetPoint};
+pub use set_point::{Family, SetPoint};
 pub use verify::Verification;

@@ -1,6 +1,7 @@
 //! The neighbours of a set-point, nearer and nearer.
 use crate::search::{Allowance, Found, Search};
-use crate::set_point::{Ceiling, Family, SetPoint};
+use crate::set_point::{Family, SetPoint};
+use servobench_motion::Limits;
 
 /// The first step to a neighbour, and the last, as parts of a value.
 const STEPS: (f64, f64) = (0.08, 0.0008);
@@ -10,7 +11,7 @@ const STEPS: (f64, f64) = (0.08, 0.0008);
 pub(crate) fn refined(
     search: &mut Search<'_>,
     families: &[Family],
-    ceiling: &Ceiling,
+    ceiling: &Limits,
     allowed: &Allowance,
     start: Found,
 ) -> Found {
@@ -27,7 +28,7 @@ pub(crate) fn refined(
 }
 
 /// Set-points whose velocity, acceleration and times are each a step less, the same, or a step more.
-fn neighbours(point: &SetPoint, families: &[Family], ceiling: &Ceiling, step: f64) -> Vec<SetPoint> {
+fn neighbours(point: &SetPoint, families: &[Family], ceiling: &Limits, step: f64) -> Vec<SetPoint> {
     let Some(family) = families.get(point.family) else { return Vec::new() };
     let dimensions = family.order as usize;
     let own = point.times();

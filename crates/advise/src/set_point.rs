@@ -1,4 +1,5 @@
 //! Set-points that may be chosen.
+use servobench_motion::Limits;
 
 /// A kind of set-point.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -9,19 +10,6 @@ pub struct Family {
     pub settings: Vec<String>,
     /// What it is called: `order 3, zvd`.
     pub name: String,
-}
-
-/// The largest limits that a set-point may have (SI).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ceiling {
-    /// Velocity.
-    pub velocity: f64,
-    /// Acceleration.
-    pub acceleration: f64,
-    /// Jerk; infinite where none is given.
-    pub jerk: f64,
-    /// Snap; infinite where none is given.
-    pub snap: f64,
 }
 
 /// A set-point: its family, and its limits.
@@ -80,8 +68,8 @@ impl SetPoint {
     }
 
     /// The same with what rounding or a step has carried beyond the ceiling at it.
-    pub(crate) fn below(self, ceiling: &Ceiling) -> Self {
-        let Ceiling { velocity, acceleration, jerk, snap } = *ceiling;
+    pub(crate) fn below(self, ceiling: &Limits) -> Self {
+        let Limits { velocity, acceleration, jerk, snap } = *ceiling;
         let most = [velocity, acceleration, jerk, snap];
         let limits = std::array::from_fn(|k| {
             let limit = self.limits[k];
@@ -92,8 +80,8 @@ impl SetPoint {
     }
 
     /// Whether no limit is above the ceiling.
-    pub(crate) fn is_below(&self, ceiling: &Ceiling) -> bool {
-        let Ceiling { velocity, acceleration, jerk, snap } = *ceiling;
+    pub(crate) fn is_below(&self, ceiling: &Limits) -> bool {
+        let Limits { velocity, acceleration, jerk, snap } = *ceiling;
         let most = [velocity, acceleration, jerk, snap];
         // An order below three has no jerk to bound.
         self.limits.iter().zip(most).all(|(limit, most)| limit.is_infinite() || *limit <= most)
@@ -106,7 +94,7 @@ impl SetPoint {
 }
 
 /// All set-points of a family on a coarse grid; `shortest` is the duration of the move of second order at the ceiling (s).
-pub(crate) fn grid(index: usize, family: &Family, ceiling: &Ceiling, shortest: f64) -> Vec<SetPoint> {
+pub(crate) fn grid(index: usize, family: &Family, ceiling: &Limits, shortest: f64) -> Vec<SetPoint> {
     let Grid { velocities, accelerations, rises } = match family.order {
         _ if !family.settings.is_empty() => WITH_SHAPER,
         4 => OF_FOURTH_ORDER,
@@ -156,7 +144,7 @@ mod tests {
     /// Four digits, and at the ceiling where they would carry it beyond.
     #[test]
     fn limits_are_rounded_and_stay_below_the_ceiling() {
-        let ceiling = Ceiling { velocity: 1.0 / 3.0, acceleration: 2.0 / 3.0, jerk: 1.0, snap: 1.0 };
+        let ceiling = Limits { velocity: 1.0 / 3.0, acceleration: 2.0 / 3.0, jerk: 1.0, snap: 1.0 };
         let rounded = SetPoint::by_times(0, 2, [1.0 / 3.0, 2.0 / 3.0, 0.0, 0.0]);
         assert!(is_same(&rounded.limits[..2], &[0.3333, 0.6667]) && !rounded.is_below(&ceiling));
         let below = rounded.below(&ceiling);
@@ -165,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_grid_stays_below_the_ceiling() {
-        let ceiling = Ceiling { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
+        let ceiling = Limits { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
         let family = |order| Family { order, settings: vec![], name: String::new() };
         assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 200);
         for order in [3, 4] {

@@ -1,8 +1,7 @@
 //! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile rings with X·∏|sin(ωT/2)/(ωT/2)|, T the
 //! boxes of the profile. Oracle: all of many set-points, tried on all machines.
-use servobench_advise::{
-    AdviseError, Bench, Ceiling, Family, Machines, Question, Range, Reading, SetPoint, Stretch, advise,
-};
+use servobench_advise::{AdviseError, Bench, Family, Machines, Question, Range, Reading, SetPoint, Stretch, advise};
+use servobench_motion::Limits;
 use servobench_testkit::Random;
 use std::f64::consts::TAU;
 
@@ -53,7 +52,7 @@ fn question() -> Question {
     let range = |key: &str, ends, stretch| Range { key: key.into(), ends, unit: String::new(), stretch };
     Question {
         families: vec![family(2), family(3), family(4)],
-        ceiling: Ceiling { velocity: 0.5, acceleration: 6.0, jerk: f64::INFINITY, snap: f64::INFINITY },
+        ceiling: Limits { velocity: 0.5, acceleration: 6.0, jerk: f64::INFINITY, snap: f64::INFINITY },
         machines: Machines::new(vec![
             range("frequency", [15.0, 20.0], Stretch::Frequency),
             range("payload", [8.0, 11.0], Stretch::None),

@@ -8,8 +8,9 @@ use crate::exit::Exit;
 use crate::outputs::Outputs;
 use crate::sources;
 use runs::Runs;
-use servobench_advise::{Ceiling, Family, Machines, Question, Range, Stretch, advise as find};
+use servobench_advise::{Family, Machines, Question, Range, Stretch, advise as find};
 use servobench_config::Choice as _;
+use servobench_motion::Limits;
 use servobench_motion::shape::ShaperKind;
 use servobench_report::{AdviceOptions, advice_json, advice_text};
 use servobench_scenario::{KeyRange, root_of};
@@ -134,10 +135,10 @@ fn frequency(machines: &Machines, measured: Option<f64>, mode: Option<&LoadMode>
 }
 
 /// The largest limits of the set-point.
-fn ceiling(args: &AdviseArgs, base: &Source) -> Result<Ceiling, CliError> {
+fn ceiling(args: &AdviseArgs, base: &Source) -> Result<Limits, CliError> {
     let limits = limits_of_set_point(&base.scenario).ok_or(AdviseMistake::NoMove)?;
     let kept = |limit: f64| if args.keep_jerk_and_snap { limit } else { f64::INFINITY };
-    Ok(Ceiling {
+    Ok(Limits {
         velocity: limits.velocity,
         acceleration: limits.acceleration,
         jerk: kept(limits.jerk),

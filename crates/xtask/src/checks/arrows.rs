@@ -27,7 +27,7 @@ const PLAN: [(&str, May); 36] = [
     ("plant", May::On(&["base", "config", "fmi"])),
     ("stability", May::On(&["base", "drive", "plant"])),
     ("sweep", May::On(&["config"])),
-    ("advise", May::On(&["sweep"])),
+    ("advise", May::On(&["motion", "sweep"])),
     ("engine-*", May::On(&["base", "files", "plant"])),
     ("isolation", May::On(&[])),
     ("engine-fmu", May::On(&["base", "plant", "fmi", "isolation"])),
