@@ -138,7 +138,7 @@ fn what_cannot_be_advised_says_why() {
 /// A gain is chosen where that is asked for.
 #[test]
 fn other_keys_are_chosen_where_they_are_named() {
-    let limits = "[limits]\nfollowing_error_peak_load = \"30 um\"\nsettling_time = \"100 ms\"\n";
+    let limits = "[limits]\nfollowing_error_peak_load = \"110 um\"\nsettling_time = \"100 ms\"\n";
     let work = folder(&[("slide.toml", &format!("{}\n{limits}", SLIDE.replace("effort = \"rigid\"", "")))]);
     let (file, out) = (work.path().join("slide.toml"), work.path().join("advice.json"));
     let output = servobench(&[

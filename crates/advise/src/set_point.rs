@@ -47,6 +47,8 @@ struct Grid {
 const FINE: Grid = Grid { velocities: (10, 0.975), accelerations: (20, 0.97), rises: (50, 1.1) };
 const OF_FOURTH_ORDER: Grid = Grid { velocities: (6, 0.96), accelerations: (14, 0.95), rises: (26, 1.2) };
 const WITH_SHAPER: Grid = Grid { velocities: (3, 0.95), accelerations: (6, 0.92), rises: (12, 1.4) };
+/// Accelerations far below the largest, as parts of it: what a weak axis follows.
+const SLOW: [f64; 4] = [0.4, 0.25, 0.15, 0.08];
 /// The longest rise, as part of the shortest move of second order.
 const LONGEST_RISE: f64 = 0.5;
 
@@ -104,7 +106,8 @@ pub(crate) fn grid(index: usize, family: &Family, ceiling: &Limits, shortest: f6
     let rises = || levels(LONGEST_RISE * shortest, (rises.0, 1.0 / rises.1));
     let mut all = Vec::new();
     for velocity in levels(ceiling.velocity, velocities) {
-        for acceleration in levels(ceiling.acceleration, accelerations) {
+        let slow = SLOW.map(|part| part * ceiling.acceleration);
+        for acceleration in levels(ceiling.acceleration, accelerations).chain(slow) {
             let add = |all: &mut Vec<SetPoint>, rise, rise_of_jerk| {
                 let times = [velocity, acceleration, rise, rise_of_jerk];
                 let point = SetPoint::by_times(index, family.order, times).below(ceiling);
@@ -155,7 +158,7 @@ mod tests {
     fn a_grid_stays_below_the_ceiling() {
         let ceiling = Limits { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
         let family = |order| Family { order, settings: vec![], name: String::new() };
-        assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 200);
+        assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 240);
         for order in [3, 4] {
             let all = grid(0, &family(order), &ceiling, 0.6);
             assert!(all.len() > 100 && all.iter().all(|point| point.limits[2] <= 100.0), "{order}");
