@@ -146,7 +146,7 @@ mod tests {
             "move_to = \"50 mm\"\nend_velocity = \"0.1 m/s\"\n[[program]]\nmove_to = \"90 mm\"",
         );
         let none = ONE.replace("[[program]]\n        move_to = \"50 mm\"", "[[program]]\nwait = \"1 s\"");
-        for (text, why) in [(aborted, "its move 2 breaks"), (passing, "start_velocity"), (none, "it makes no move")] {
+        for (text, why) in [(aborted, "its move 2 breaks"), (passing, "end_velocity"), (none, "it makes no move")] {
             let error = slowable(&of([&text, ONE])[0]).unwrap_err().to_string();
             assert!(error.starts_with("`one` cannot be slowed:") && error.contains(why), "{error}");
         }
