@@ -193,6 +193,22 @@ fn recordings_stay_when_asked_for_and_go_with_their_sweep() {
     assert_eq!(left, ["results.json", "slide.exact.parquet"]);
 }
 
+/// A table by somebody else is neither written over nor removed by what comes after it.
+#[test]
+fn a_table_of_the_user_stays() {
+    let work = files();
+    let (file, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let run = || servobench(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&run()), 0);
+    let own = out.join("sweep.csv");
+    fs::write(&own, "my,own,table\n").unwrap();
+    let output = sweep(work.path(), &[]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("is no table of a sweep"), "{}", said(&output));
+    assert_eq!(code(&run()), 0);
+    assert_eq!(fs::read_to_string(own).unwrap(), "my,own,table\n");
+}
+
 /// The sweep of the README, and its picture: `SERVOBENCH_WRITE_DOCS=1` writes it anew.
 #[test]
 fn the_picture_of_the_readme_is_that_of_its_sweep() {

@@ -69,8 +69,8 @@ pub enum AdviseError {
     NoPlan,
     /// No set-point keeps the limits.
     #[error(
-        "none of the {planned} set-points that were planned keeps all limits on all machines; allow more vibration or time in `[limits]`, a \
-         lower velocity or acceleration will not do, or make the box smaller"
+        "none of the {planned} set-points that were planned keeps all limits on all machines: raise `[limits]`, make the box smaller, or let \
+         the run be longer if moves do not come to their end in it"
     )]
     NoneKeeps {
         /// Set-points that were planned.
@@ -89,6 +89,19 @@ pub enum AdviseError {
         /// Rounds of search and verification.
         rounds: u32,
     },
+    /// A box that is too wide to be verified.
+    #[error(
+        "`{key}` moves the mode through {needed} machines that would have to be run, at most {most} are: make its range smaller, or advise \
+         for parts of it"
+    )]
+    TooWide {
+        /// The range.
+        key: String,
+        /// Machines along it.
+        needed: f64,
+        /// The most that are run.
+        most: f64,
+    },
     /// The box cannot be drawn from.
     #[error(transparent)]
     Draws(#[from] SweepError),
@@ -105,8 +118,6 @@ const ROUNDS: u32 = 12;
 /// From this round on draws may fail, as many as the promised share allows.
 const PATIENT: u32 = 6;
 const JOINING: usize = 4;
-/// Confidence of what is promised.
-const CONFIDENCE: f64 = 0.95;
 /// Factors of the priced limit, in ascending order.
 const FACTORS: [f64; 6] = [0.1, 0.25, 0.5, 0.9, 1.1, 2.0];
 
@@ -120,7 +131,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
     let mut search = Search::new(bench, machines);
     let planned = candidates(question, &mut search)?;
     let allowed = vec![1.0; question.limits];
-    let mut shown = 0.0;
+    let (mut shown, mut looks) = (0.0, 0);
     for round in 0..ROUNDS {
         let found = best(question, &mut search, &planned, &allowed, REFINED);
         let Some(best) = found.first().cloned() else {
@@ -129,11 +140,13 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         let Planned { point, duration } = best.planned;
         // Draws that have helped to find it prove nothing.
         let seed = question.seed.wrapping_add(u64::from(round));
-        let plan = Plan { machines: &question.machines, frequency: question.frequency, draws: question.draws, seed };
+        let Question { machines, frequency, draws, .. } = question;
+        let plan = Plan { machines, frequency: *frequency, draws: *draws, seed, looks };
         let failed = match verified(&mut search, point, duration, &allowed, plan)? {
             Outcome::OffGrid(failed) => failed,
             Outcome::Drawn(verification, failed) => {
-                shown = verification.draws.at_least(CONFIDENCE);
+                looks += 1;
+                shown = verification.share;
                 // A draw on which it fails joins the search, as long as there are rounds for that.
                 if shown >= question.share && (failed.is_empty() || round >= PATIENT) {
                     let prices = prices(question, &mut search, &planned, &found);

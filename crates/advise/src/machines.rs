@@ -1,4 +1,5 @@
 //! A box of machines: what a property of the machine may be.
+use crate::best::AdviseError;
 
 /// What a property of the machine is, from the lowest to the highest value (in whatever unit it has).
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +32,7 @@ pub struct Machines {
 }
 
 /// Points of a grid along one range, at most.
-const MOST_ALONG: usize = 2_000;
+const MOST_ALONG: f64 = 2_000.0;
 
 impl Machines {
     /// Those of these ranges.
@@ -62,36 +63,38 @@ impl Machines {
         })
     }
 
-    /// Machines along each range that moves a mode of `frequency` (Hz), between all corners of the others, nearer to each other than a tenth
-    /// of a lobe of a profile whose longest box is `longest` (s): 0.1/longest in frequency. Ends are corners, and left out.
-    #[must_use]
-    pub fn along(&self, frequency: f64, longest: f64, lobe: f64) -> Vec<Vec<f64>> {
+    /// Machines along each range that moves a mode of `frequency` (Hz), between all corners of the others, whose modes are `spacing` (Hz) or
+    /// less from each other. Ends are corners, and left out.
+    ///
+    /// # Errors
+    /// [`AdviseError::TooWide`] names the range that would need more than 2 000 of them.
+    pub fn along(&self, frequency: f64, spacing: f64) -> Result<Vec<Vec<f64>>, AdviseError> {
         let mut all = Vec::new();
         for (k, range) in self.ranges.iter().enumerate() {
             let [low, high] = range.ends;
             let width = match range.stretch {
                 Stretch::Frequency => high - low,
-                Stretch::Root => frequency * (0.5 * (high / low).abs().ln()).abs(),
-                Stretch::None => 0.0,
+                Stretch::Root => frequency * (0.5 * (high / low).ln()).abs(),
+                Stretch::None => continue,
             };
-            let steps = (width * longest / lobe).ceil();
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the bounds")]
-            let steps = if steps.is_finite() { (steps.max(0.0) as usize).min(MOST_ALONG) } else { 0 };
-            let others =
-                Self::new(self.ranges.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, r)| r.clone()).collect());
-            for step in 1..steps {
-                let share = step as f64 / steps as f64;
+            let steps = (width / spacing).ceil();
+            if !(0.0..=MOST_ALONG).contains(&steps) {
+                let needed = if steps.is_finite() { steps } else { f64::INFINITY };
+                return Err(AdviseError::TooWide { key: range.key.clone(), needed, most: MOST_ALONG });
+            }
+            let others = self.ranges.iter().enumerate().filter(|(other, _)| *other != k);
+            let others = Self::new(others.map(|(_, range)| range.clone()).collect()).corners();
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 2 000")]
+            for step in 1..steps as usize {
+                let share = step as f64 / steps;
                 let value = match range.stretch {
                     Stretch::Root => low * (high / low).powf(share),
                     Stretch::Frequency | Stretch::None => low * (1.0 - share) + high * share,
                 };
-                all.extend(others.corners().into_iter().map(|mut corner| {
-                    corner.insert(k, value);
-                    corner
-                }));
+                all.extend(others.iter().map(|corner| [&corner[..k], &[value], &corner[k..]].concat()));
             }
         }
-        all
+        Ok(all)
     }
 }
 
@@ -112,7 +115,7 @@ mod tests {
         assert_eq!(machines.middle(), [18.0, 0.022]);
         assert_eq!(machines.corners(), [vec![14.0, 0.004], vec![22.0, 0.004], vec![14.0, 0.04], vec![22.0, 0.04]]);
         // Nearer than a tenth of 1/0.5 s: 0.2 Hz, 8 Hz wide, at both dampings.
-        let along = machines.along(18.0, 0.5, 0.1);
+        let along = machines.along(18.0, 0.2).unwrap();
         assert_eq!(along.len(), 2 * 39);
         assert!(along.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() < 0.2 + 1e-12));
         assert!(along.iter().all(|machine| machine[0] > 14.0 && machine[0] < 22.0));
@@ -121,10 +124,14 @@ mod tests {
     #[test]
     fn a_mass_moves_a_mode_by_its_root() {
         let machines = Machines::new(vec![range("mass", [8.0, 12.5], Stretch::Root)]);
-        let along = machines.along(20.0, 0.5, 0.1);
+        let along = machines.along(20.0, 0.2).unwrap();
         // 20 Hz·ln(1.25) = 4.46 Hz in steps of less than 0.2 Hz.
         assert_eq!(along.len(), 22);
+        for ends in [[1e-9, 1e300], [-1.0, 8.0], [0.0, 8.0]] {
+            let wide = Machines::new(vec![range("mass", ends, Stretch::Root)]);
+            assert!(matches!(wide.along(20.0, 1e-3), Err(AdviseError::TooWide { .. })), "{ends:?}");
+        }
         let fixed = Machines::new(vec![range("mass", [8.0, 8.0], Stretch::Root)]);
-        assert_eq!((fixed.corners().len(), fixed.along(20.0, 0.5, 0.1).len()), (1, 0));
+        assert_eq!((fixed.corners().len(), fixed.along(20.0, 0.2).unwrap().len()), (1, 0));
     }
 }

@@ -1,4 +1,5 @@
 //! What was found, on machines that the search has not seen.
+use crate::best::AdviseError;
 use crate::machines::{Machines, Stretch};
 use crate::search::{Allowance, Reading, Search, Worst, keeps, worst_of};
 use crate::set_point::SetPoint;
@@ -16,6 +17,9 @@ pub struct Verification {
     pub spacing: Option<f64>,
     /// Draws that keep all limits, and those that do not.
     pub draws: Proportion,
+    /// Share of the machines that keep all limits at least, with 95 % confidence in the whole search: if draws were looked at before and
+    /// led to another set-point, each look has half of the doubt that the one before had.
+    pub share: f64,
     /// The worst of all of them.
     pub worst: Worst,
 }
@@ -28,7 +32,12 @@ pub(crate) struct Plan<'a> {
     pub(crate) frequency: f64,
     pub(crate) draws: u32,
     pub(crate) seed: u64,
+    /// How often draws were looked at before.
+    pub(crate) looks: i32,
 }
+
+/// What a promised share may be wrong with, whatever the search has looked at.
+const DOUBT: f64 = 0.05;
 
 /// What verification came to.
 #[derive(Debug)]
@@ -46,14 +55,14 @@ pub(crate) fn verified(
     longest: f64,
     allowed: &Allowance,
     plan: Plan<'_>,
-) -> Result<Outcome, SweepError> {
+) -> Result<Outcome, AdviseError> {
     let fails = |machines: &[Vec<f64>], readings: &[Reading]| -> Vec<Vec<f64>> {
         let failed = machines.iter().zip(readings).filter(|(_, reading)| !keeps(reading, allowed));
         failed.map(|(machine, _)| machine.clone()).collect()
     };
     let mut grid = plan.machines.corners();
     grid.push(plan.machines.middle());
-    grid.extend(plan.machines.along(plan.frequency, longest, LOBE));
+    grid.extend(plan.machines.along(plan.frequency, LOBE / longest)?);
     let of_grid = search.on(point, &grid);
     let failed = fails(&grid, &of_grid);
     if !failed.is_empty() {
@@ -64,10 +73,12 @@ pub(crate) fn verified(
     let failed = fails(&drawn, &of_draws);
     let all = grid.iter().chain(&drawn).map(Vec::as_slice).zip(of_grid.iter().chain(&of_draws));
     let moves = plan.machines.ranges().iter().any(|range| range.stretch != Stretch::None);
+    let draws = Proportion::new((drawn.len() - failed.len()) as u64, failed.len() as u64);
     let verification = Verification {
         grid: grid.len(),
         spacing: moves.then_some(LOBE / longest),
-        draws: Proportion::new((drawn.len() - failed.len()) as u64, failed.len() as u64),
+        draws,
+        share: draws.at_least(1.0 - DOUBT * 0.5_f64.powi(plan.looks + 1)),
         worst: worst_of(all),
     };
     Ok(Outcome::Drawn(verification, failed))

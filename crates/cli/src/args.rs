@@ -3,12 +3,14 @@ mod advise;
 mod choice;
 mod compare;
 mod mistakes;
+mod shapers;
 mod suite;
 
 pub(crate) use advise::AdviseArgs;
 pub(crate) use choice::choice;
-pub(crate) use compare::{CompareArgs, Equal, EqualTerm, Shapers, Variant};
+pub(crate) use compare::{CompareArgs, Equal, EqualTerm, Variant};
 pub(crate) use mistakes::parse;
+pub(crate) use shapers::Shapers;
 pub(crate) use suite::{FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};

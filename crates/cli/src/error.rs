@@ -66,6 +66,8 @@ pub(crate) enum CliError {
     OtherSuite(PathBuf),
     #[error(transparent)]
     Advise(#[from] AdviseMistake),
+    #[error("`{}` is no table of a sweep and would be lost: name another folder with `--out`, or remove it", .0.display())]
+    OtherTable(PathBuf),
     #[error("name a sweep file")]
     NoSweep,
     #[error(
@@ -214,6 +216,7 @@ impl CliError {
             | Self::OtherCommand { .. }
             | Self::NoValidPoint { .. }
             | Self::NoSweep
+            | Self::OtherTable(_)
             | Self::Advise(_)
             | Self::TrustAgain
             | Self::NothingForTheViewer

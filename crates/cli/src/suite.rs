@@ -16,7 +16,7 @@ use crate::output::{self, Written};
 use crate::outputs::OutputFolder;
 use crate::progress::Progress;
 use crate::workers;
-use servobench_report::brief;
+use servobench_report::{Style, brief, run_count};
 use servobench_results::{Finished, Outcome, RunIdentity, RunResult, Runs, Unfinished};
 use servobench_suite::{Broken, Engines, Job, Run, Workers, execute, map_in_parallel};
 use std::borrow::Cow;
@@ -68,11 +68,15 @@ impl Carrying<'_> {
         end: impl FnOnce(&dyn Runs, &Path) -> Result<(), CliError>,
     ) -> Result<Exit, CliError> {
         let ledger = Arc::new(ledger);
-        let for_signals = Arc::clone(&ledger);
+        let (for_signals, is_sweep) = (Arc::clone(&ledger), self.plan.is_sweep());
         interrupt::watch_suite(ledger.folder().path(), move || {
             if let Some(Closed { kept, troubles }) = for_signals.close() {
-                // What cannot be read is among the troubles.
-                brief(&kept).map_while(Result::ok).for_each(|part| say(&part));
+                if is_sweep {
+                    say(&(run_count(&kept, Style::default()) + "\n"));
+                } else {
+                    // What cannot be read is among the troubles.
+                    brief(&kept).map_while(Result::ok).for_each(|part| say(&part));
+                }
                 say_all(&troubles);
             }
         })?;

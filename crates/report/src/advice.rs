@@ -6,7 +6,7 @@ use crate::text::wrapped;
 use serde_json::{Value, json};
 use servobench_advise::{Advice, Question, SetPoint};
 use servobench_base::Coordinate;
-use servobench_metrics::{Limit, Quantity};
+use servobench_metrics::{Limit, Quantity, digits};
 use servobench_results::{printable, printable_lines};
 
 /// What an advice is about.
@@ -36,6 +36,8 @@ pub struct AdviceOptions<'a> {
 
 /// Confidence of what is promised.
 const CONFIDENCE: f64 = 0.95;
+/// Significant digits of what is not a metric.
+const DIGITS: usize = 4;
 /// Width of a first column.
 const FIRST: usize = 8;
 /// A difference of times that nobody pays for (s).
@@ -97,7 +99,7 @@ pub fn advice_json(question: &Question, advice: &Advice, options: &AdviceOptions
             "spacing": advice.verification.spacing,
             "draws": draws.trials(),
             "kept": draws.hits(),
-            "share_at_least": draws.at_least(CONFIDENCE),
+            "share_at_least": advice.verification.share,
             "confidence": CONFIDENCE,
         },
         "prices": prices.collect::<Vec<_>>(),
@@ -152,7 +154,7 @@ impl Text<'_> {
         let time = Quantity::new(advice.worst.time, "s");
         let what = if options.has_window { "is in position" } else { "has moved" };
         let draws = advice.verification.draws;
-        let share = 100.0 * draws.at_least(CONFIDENCE);
+        let share = 100.0 * advice.verification.share;
         let price = self.price().map_or(String::new(), |words| format!("; {words}"));
         self.broken(&format!(
             "Take {}: {} {what} {time} after the start at worst, and at least {} % of the machines keep all limits ({} of {} draws did, \
@@ -183,7 +185,7 @@ impl Text<'_> {
         let is_near = |time: f64| time <= 1.1 * own;
         let slower = prices.iter().find(|price| price.factor < 1.0 && price.time.is_some_and(is_near));
         let slower = slower.map_or(String::new(), |price| {
-            format!(", and in 10 % more time it could be {} % of its limit", rounded(100.0 * price.factor))
+            format!(", and in 10 % more time it could be {} % of its limit", digits(100.0 * price.factor, DIGITS))
         });
         Some(less + &more + &slower)
     }
@@ -215,7 +217,7 @@ impl Text<'_> {
         let of = |(range, value): (&servobench_advise::Range, &f64)| {
             let name = range.key.rsplit('.').next().unwrap_or_default();
             let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
-            printable(&format!("{name} {}{unit}", rounded(*value)))
+            printable(&format!("{name} {}{unit}", digits(*value, DIGITS)))
         };
         ranges.iter().zip(machine).map(of).collect::<Vec<_>>().join(", ")
     }
@@ -223,14 +225,14 @@ impl Text<'_> {
     fn machines(&self) -> String {
         let ranges = self.question.machines.ranges().iter().map(|range| {
             let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
-            let [low, high] = range.ends.map(rounded);
+            let [low, high] = range.ends.map(|end| digits(end, DIGITS));
             printable(&format!("{} from {low} to {high}{unit}", range.key))
         });
         let assumed = if self.options.is_assumed { " (assumed; say what yours are with --within)" } else { "" };
         let verification = &self.advice.verification;
         let spacing = verification
             .spacing
-            .map_or(String::new(), |spacing| format!(", {} Hz or less from each other", rounded(spacing)));
+            .map_or(String::new(), |spacing| format!(", {} Hz or less from each other", digits(spacing, DIGITS)));
         let ranges: Vec<String> = ranges.collect();
         let text = format!(
             "Machines{assumed}: {}. Verified by runs on {} of them at corners of the box and between these{spacing}, and on {} draws; {} \
@@ -274,10 +276,4 @@ impl Text<'_> {
         let rows: String = self.advice.others.iter().take(OTHERS).map(row).collect();
         self.heading("The best of other kinds, on the machines of the search") + &rows
     }
-}
-
-/// Four digits.
-fn rounded(value: f64) -> String {
-    let text = format!("{value:.3e}");
-    text.parse::<f64>().map_or(text, |value| value.to_string())
 }

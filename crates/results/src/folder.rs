@@ -7,7 +7,7 @@ use servobench_trace::unfinished_by;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -137,7 +137,7 @@ impl Folder {
         let mut former = Former { lists: vec![list], ..Former::default() };
         if list == RESULTS {
             former.lists.push(JOURNAL);
-            if path.exists() {
+            if is_table_of_a_sweep(&self.path.join(TABLE_CSV)).is_ok_and(|is_ours| is_ours) {
                 former.lists.extend(OF_A_SWEEP);
             }
             if let Ok(file) = servobench_files::open(&self.journal(), u64::MAX)
@@ -183,6 +183,19 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// What the heading of a table that `sweep` wrote begins with.
+const HEADING: &str = "point,engine,";
+
+/// Whether the file at `path` is a table that `sweep` wrote, by its heading.
+///
+/// # Errors
+/// Those of the operating system.
+pub fn is_table_of_a_sweep(path: &Path) -> io::Result<bool> {
+    let mut start = Vec::new();
+    servobench_files::open(path, u64::MAX)?.take(HEADING.len() as u64).read_to_end(&mut start)?;
+    Ok(start == HEADING.as_bytes())
 }
 
 /// Removes what programs that were killed had not completed: nobody else writes into a folder that is locked.

@@ -35,7 +35,7 @@ pub use entry::{ExpectedResult, MetricResult, MoveResult};
 pub use error::ResultsError;
 pub use folder::{
     COMPARISON, Folder, FolderError, Former, JOURNAL, OF_A_SWEEP, RESULTS, SWEEP_FRONT, SWEEP_MAP, TABLE_CSV,
-    TABLE_PARQUET,
+    TABLE_PARQUET, is_table_of_a_sweep,
 };
 pub use journal::{Finished, Journal, JournalError, Place, Suite, read as read_journal};
 pub use kept::Kept;

@@ -1,5 +1,6 @@
 //! A key and the values that it takes one after the other.
 use crate::error::SweepError;
+use servobench_base::Shortest;
 use servobench_config::choices;
 
 choices! {
@@ -26,8 +27,8 @@ impl Value {
     #[must_use]
     pub fn written(&self) -> String {
         match self {
-            Self::Number(number, unit) if unit.is_empty() => digits(*number),
-            Self::Number(number, unit) => format!("{} {unit}", digits(*number)),
+            Self::Number(number, unit) if unit.is_empty() => Shortest(*number).to_string(),
+            Self::Number(number, unit) => format!("{} {unit}", Shortest(*number)),
             Self::Text(text) => text.clone(),
         }
     }
@@ -49,13 +50,6 @@ impl Value {
             Self::Text(_) => "",
         }
     }
-}
-
-/// The shortest text that is read as this very number.
-fn digits(number: f64) -> String {
-    let magnitude = number.abs();
-    let is_plain = number == 0.0 || (1e-5..1e16).contains(&magnitude);
-    if is_plain { number.to_string() } else { format!("{number:e}") }
 }
 
 /// A key of a scenario, and the values that it takes.
@@ -170,7 +164,7 @@ mod tests {
             let (low, high) = (from.min(to), from.max(to));
             prop_assert!(found.iter().all(|x| (low..=high).contains(x)));
             for number in found {
-                prop_assert_eq!(digits(number).parse::<f64>().unwrap().to_bits(), number.to_bits());
+                prop_assert_eq!(Shortest(number).to_string().parse::<f64>().unwrap().to_bits(), number.to_bits());
             }
         }
     }

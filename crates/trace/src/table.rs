@@ -10,6 +10,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
+use servobench_base::Shortest;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -67,7 +68,12 @@ impl Table<'_> {
                     line.push(',');
                 }
                 match &column.cells {
-                    Cells::Numbers(number) => line.push_str(&digits(number(row))),
+                    Cells::Numbers(number) => {
+                        let number = number(row);
+                        if !number.is_nan() {
+                            line.push_str(&Shortest(number).to_string());
+                        }
+                    }
                     Cells::Texts(text) => quote(&mut line, &text(row)),
                 }
             }
@@ -181,16 +187,6 @@ fn quote(line: &mut String, text: &str) {
         line.push('"');
     } else {
         line.push_str(text);
-    }
-}
-
-/// The shortest text that is read as this very number; nothing for none.
-fn digits(number: f64) -> String {
-    let magnitude = number.abs();
-    match number {
-        _ if number.is_nan() => String::new(),
-        _ if number == 0.0 || (1e-5..1e16).contains(&magnitude) => number.to_string(),
-        _ => format!("{number:e}"),
     }
 }
 

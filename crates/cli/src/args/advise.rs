@@ -1,4 +1,5 @@
 //! Arguments of `advise`.
+use super::shapers::{self, Shapers};
 use super::{FmuTrustArgs, MemoryArgs, OverrideArgs, engine, file, time};
 use clap::Args;
 use servobench_plant::EngineName;
@@ -20,8 +21,8 @@ pub(crate) struct AdviseArgs {
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(2..=4))]
     pub(crate) order: Vec<u32>,
     /// Input shapers to choose from, behind orders 2 and 3 [default: none and every kind].
-    #[arg(long, value_name = "KIND", value_delimiter = ',')]
-    pub(crate) shaper: Vec<String>,
+    #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = shapers::parser())]
+    pub(crate) shaper: Vec<Shapers>,
     /// Another key to choose, and its values, as in "drive.position.bandwidth=20 Hz,30 Hz"; may be given several times.
     #[arg(long, value_name = "KEY=VALUES")]
     pub(crate) choose: Vec<String>,
@@ -57,11 +58,6 @@ pub(crate) struct AdviseArgs {
 
 /// A share of all, as "99 %" or "0.99".
 fn share(text: &str) -> Result<f64, String> {
-    let text = text.trim();
-    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| format!("`{text}` is not a number"));
-    let share = match text.strip_suffix('%') {
-        Some(percent) => number(percent)? / 100.0,
-        None => number(text)?,
-    };
+    let share = servobench_scenario::ratio(text.trim()).map_err(|error| error.message)?;
     if (0.0..1.0).contains(&share) { Ok(share) } else { Err("it must be at least 0 and below 100 %".into()) }
 }

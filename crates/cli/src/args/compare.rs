@@ -1,12 +1,11 @@
 //! Arguments of `compare`.
 mod equal;
-mod shapers;
 mod variant;
 
 pub(crate) use equal::{Equal, EqualTerm};
-pub(crate) use shapers::Shapers;
 pub(crate) use variant::Variant;
 
+use super::shapers::{self, Shapers};
 use super::{FmuTrustArgs, MemoryArgs, OverrideArgs, engine, file, time};
 use clap::Args;
 use servobench_plant::EngineName;

@@ -1,7 +1,7 @@
 //! `servobench advise`: the fastest set-point that keeps the limits of a scenario on every machine of a box.
 mod runs;
 
-use crate::args::AdviseArgs;
+use crate::args::{AdviseArgs, Shapers};
 use crate::console::{print, program, say, style};
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -10,6 +10,7 @@ use crate::sources;
 use runs::Runs;
 use servobench_advise::{Family, Machines, Question, Range, Stretch, advise as find};
 use servobench_config::Choice as _;
+use servobench_metrics::digits;
 use servobench_motion::Limits;
 use servobench_motion::shape::ShaperKind;
 use servobench_report::{AdviceOptions, advice_json, advice_text};
@@ -31,8 +32,6 @@ pub(crate) enum AdviseMistake {
     NoMove,
     #[error("nothing of this axis is coupled by a spring: say with `--within KEY=RANGE` what its machines may be")]
     NoMode,
-    #[error("--shaper: there is no shaper `{given}`; it is none of none, {known}")]
-    NoShaper { given: String, known: String },
     #[error("--choose: `{0}` is no key with values; write it as drive.position.bandwidth=20 Hz,30 Hz")]
     NoChoice(String),
     #[error("--within: with {settings} the scenario is invalid:\n{why}")]
@@ -68,12 +67,14 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         draws: args.draws,
         seed: args.seed,
     };
-    let output = Outputs::default().optional("-o", args.output.as_deref())?;
+    let mut outputs = Outputs::default();
+    let output = args.output.as_deref().map(|path| outputs.anywhere("-o", path)).transpose()?;
     let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
     runs.check()?;
     say(&format!("looking for a set-point among {} kinds\n", question.families.len()));
-    let advice = find(&question, &mut runs)?;
+    let advice = find(&question, &mut runs);
     runs.finish();
+    let advice = advice?;
     let options = AdviceOptions {
         scenario: &scenario.name,
         engine: runs.engine().name(),
@@ -86,13 +87,12 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         has_window: scenario.measure.window.is_some(),
         shaper_frequency: frequency,
     };
-    if let Some(output) = output {
-        output.write_text(
-            &(serde_json::to_string_pretty(&advice_json(&question, &advice, &options)).map_err(CliError::Schema)?
-                + "\n"),
-        )?;
-    }
+    // What cannot be written does not keep the advice from being said.
     print(&advice_text(&question, &advice, &options, style()))?;
+    if let Some(output) = output {
+        let json = advice_json(&question, &advice, &options);
+        output.write_text(&(serde_json::to_string_pretty(&json).map_err(CliError::Schema)? + "\n"))?;
+    }
     Ok(Exit::Passed)
 }
 
@@ -158,8 +158,10 @@ fn families(
     for order in orders {
         families.push(Family { order, settings: without_shaper(base), name: format!("order {order}") });
         let Some(frequency) = frequency.filter(|_| order < 4) else { continue };
-        let (frequency, damping) = (digits(frequency), digits(mode.map_or(0.0, |mode| mode.damping_ratio)));
-        for kind in shapers(args)? {
+        let (frequency, damping) =
+            (digits(frequency, DIGITS), digits(mode.map_or(0.0, |mode| mode.damping_ratio), DIGITS));
+        let wanted = if args.shaper.is_empty() { &[Shapers::All][..] } else { &args.shaper };
+        for kind in Shapers::kinds(wanted).into_iter().flatten().map(ShaperKind::name) {
             let table =
                 format!("setpoint.shaper={{ kind = \"{kind}\", frequency = \"{frequency} Hz\", damping = {damping} }}");
             families.push(Family { order, settings: vec![table], name: format!("order {order}, {kind}") });
@@ -181,24 +183,8 @@ fn families(
     Ok(families)
 }
 
-/// Four significant digits: nobody sets more.
-fn digits(value: f64) -> String {
-    format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
-}
-
-/// The kinds of shapers to choose from, without none.
-fn shapers(args: &AdviseArgs) -> Result<Vec<&'static str>, CliError> {
-    let known: Vec<&'static str> = ShaperKind::ALL.iter().map(|(name, ..)| *name).collect();
-    if args.shaper.is_empty() {
-        return Ok(known);
-    }
-    let wanted = args.shaper.iter().filter(|kind| *kind != "none");
-    let found = wanted.map(|kind| {
-        let own = known.iter().copied().find(|name| name == kind);
-        own.ok_or_else(|| AdviseMistake::NoShaper { given: kind.clone(), known: known.join(", ") }.into())
-    });
-    found.collect()
-}
+/// Significant digits of what a shaper is made for: nobody sets more.
+const DIGITS: usize = 4;
 
 /// What takes the shaper of the scenario away, if it has one.
 fn without_shaper(base: &Source) -> Vec<String> {

@@ -11,7 +11,7 @@ use crate::sources;
 use crate::suite::{Begun, Carrying, Files, Found, Ledger, exit_of, suite_in};
 use points::Points;
 use servobench_report::run_count;
-use servobench_results::{Folder, OF_A_SWEEP, RESULTS, Runs, Suite};
+use servobench_results::{Folder, OF_A_SWEEP, RESULTS, Runs, Suite, TABLE_CSV, is_table_of_a_sweep};
 use std::path::Path;
 
 /// Runs every point of a sweep, judges it and says what the values cost; or goes on with a sweep that was ended before its time.
@@ -38,6 +38,9 @@ fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
     let out = args.out.clone().unwrap_or_else(|| points::default_folder(path));
     let files = files(args, &out, &points)?;
     let folder = Folder::open(&out)?;
+    if is_table_of_a_sweep(&out.join(TABLE_CSV)).is_ok_and(|is_ours| !is_ours) {
+        return Err(CliError::OtherTable(out.join(TABLE_CSV)));
+    }
     folder.remove(&folder.former(RESULTS)?);
     let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
     let suite = Suite::new(points.digest(), args::command_line(), here, sources::stdin(), points.stems());

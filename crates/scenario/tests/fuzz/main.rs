@@ -2,6 +2,7 @@
 //! places in their files. `docs/testing.md` says how to run more of them.
 mod points;
 mod quantities;
+mod ranges;
 mod sound;
 mod sweeps;
 

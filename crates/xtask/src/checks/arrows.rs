@@ -26,7 +26,7 @@ const PLAN: [(&str, May); 36] = [
     ("fmi", May::On(&["base", "config", "files"])),
     ("plant", May::On(&["base", "config", "fmi"])),
     ("stability", May::On(&["base", "drive", "plant"])),
-    ("sweep", May::On(&["config"])),
+    ("sweep", May::On(&["base", "config"])),
     ("advise", May::On(&["motion", "sweep"])),
     ("engine-*", May::On(&["base", "files", "plant"])),
     ("isolation", May::On(&[])),

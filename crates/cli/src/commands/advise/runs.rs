@@ -3,17 +3,19 @@ use super::AdviseMistake;
 use crate::args::AdviseArgs;
 use crate::console::say;
 use crate::engines;
-use crate::error::CliError;
+use crate::error::{CliError, FailedRun};
 use crate::sources;
 use crate::workers;
 use servobench_advise::{Bench, Question, Reading, SetPoint};
-use servobench_base::Coordinate;
+use servobench_base::{Coordinate, Shortest};
 use servobench_metrics::{Limit, Name};
 use servobench_plant::EngineName;
 use servobench_scenario::Override;
 use servobench_sim::Program;
-use servobench_suite::{AtATime, Engines, Job, Source, Usage, Workers, execute, map_in_parallel};
+use servobench_suite::{AtATime, Engines, Job, RunError, Source, Usage, Workers, execute, map_in_parallel};
+use servobench_sweep::Value;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time from one word to the next.
@@ -33,6 +35,8 @@ pub(super) struct Runs<'a> {
     wanted: Vec<Name>,
     made: usize,
     told: Instant,
+    /// What could not be carried out: how many runs, and why the first one.
+    broken: Mutex<Option<(usize, RunError)>>,
 }
 
 impl<'a> Runs<'a> {
@@ -58,6 +62,7 @@ impl<'a> Runs<'a> {
             wanted: vec![Name::MoveTime, Name::MoveAndSettlingTime],
             made: 0,
             told: Instant::now(),
+            broken: Mutex::default(),
         })
     }
 
@@ -65,9 +70,15 @@ impl<'a> Runs<'a> {
         self.engine
     }
 
-    /// Ends worker processes.
+    /// Ends worker processes, and says what could not be carried out.
     pub(super) fn finish(&self) {
         workers::dismiss(&self.workers);
+        if let Some((count, first)) = &*self.broken.lock().unwrap_or_else(PoisonError::into_inner) {
+            say(&format!(
+                "{count} of {} runs could not be carried out and do not count; the first: {first}\n",
+                self.made
+            ));
+        }
     }
 
     /// What makes a run of `point` on the machine of the scenario, as on the command line.
@@ -75,7 +86,7 @@ impl<'a> Runs<'a> {
         self.args.with.overrides.iter().map(ToString::to_string).chain(self.set_point(point)).collect()
     }
 
-    /// Refuses a box whose corners are no valid scenarios.
+    /// Refuses a box whose corners are no valid scenarios, and a scenario that cannot be run on its engine.
     pub(super) fn check(&self) -> Result<(), CliError> {
         let ceiling = &self.question.ceiling;
         for (index, family) in self.question.families.iter().enumerate() {
@@ -88,7 +99,18 @@ impl<'a> Runs<'a> {
                 }
             }
         }
-        Ok(())
+        let job = self.job(self.base.clone());
+        match execute(&job, &self.engines, &self.workers, &mut |_| {}) {
+            Ok(_) => Ok(()),
+            Err(broken) => Err(CliError::Runs(vec![FailedRun::new(&job, broken.error)])),
+        }
+    }
+
+    fn job(&self, source: Source) -> Job {
+        let mut job = Job::new("advise".into(), source, self.engine);
+        job.leave_recording_out();
+        job.measure_only(&self.wanted);
+        job
     }
 
     /// A set-point as on the command line.
@@ -100,7 +122,7 @@ impl<'a> Runs<'a> {
         for ((name, limit), power) in names.iter().zip(point.limits).zip(1_u32..) {
             if power <= family.order && limit.is_finite() {
                 let power = if power > 1 { power.to_string() } else { String::new() };
-                settings.push(format!("setpoint.{name}={limit} {unit}/s{power}"));
+                settings.push(format!("setpoint.{name}={} {unit}/s{power}", Shortest(limit)));
             }
         }
         settings.extend(family.settings.iter().cloned());
@@ -111,7 +133,7 @@ impl<'a> Runs<'a> {
     fn machine(&self, machine: &[f64]) -> Vec<String> {
         let mut settings = Vec::new();
         for (range, value) in self.question.machines.ranges().iter().zip(machine) {
-            let written = if range.unit.is_empty() { value.to_string() } else { format!("{value} {}", range.unit) };
+            let written = Value::Number(*value, range.unit.clone()).written();
             settings.push(format!("{}={written}", range.key));
             if range.key.ends_with(".frequency") && self.base.scenario.measure.mode.is_some() {
                 settings.push(format!("measure.mode={written}"));
@@ -132,11 +154,14 @@ impl<'a> Runs<'a> {
     fn reading(&self, point: &SetPoint, machine: &[f64]) -> Option<Usage> {
         let source = self.source(point, machine).ok()?;
         let has_window = source.scenario.measure.window.is_some();
-        let mut job = Job::new("advise".into(), source, self.engine);
-        job.leave_recording_out();
-        job.measure_only(&self.wanted);
-        let run = execute(&job, &self.engines, &self.workers, &mut |_| {}).ok()?;
-        Some(run.usage(self.limits, has_window))
+        match execute(&self.job(source), &self.engines, &self.workers, &mut |_| {}) {
+            Ok(run) => Some(run.usage(self.limits, has_window)),
+            Err(error) => {
+                let mut broken = self.broken.lock().unwrap_or_else(PoisonError::into_inner);
+                broken.get_or_insert((0, error.error)).0 += 1;
+                None
+            }
+        }
     }
 
     fn tell(&mut self, more: usize) {

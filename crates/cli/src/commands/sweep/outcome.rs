@@ -35,7 +35,8 @@ pub(super) fn say_what_came(
     let table = table_of(points, &engines, columns);
     // What is chosen is compared at the worst of what is given.
     let chosen = points.sweep().chosen();
-    let compared = chosen.as_ref().map_or_else(|| table.clone(), |chosen| table.at_worst(chosen));
+    let at_its_worst = chosen.as_ref().map(|chosen| table.at_worst(chosen));
+    let compared = at_its_worst.as_ref().unwrap_or(&table);
     let at_worst = match chosen {
         None => String::new(),
         Some(_) => format!("each at its worst over {}", points.sweep().given_keys().join(", ")),
@@ -47,7 +48,7 @@ pub(super) fn say_what_came(
         ..SweepOptions::default()
     };
     let mut has_pictures = false;
-    let drawings = [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(&compared, &options))];
+    let drawings = [(SWEEP_MAP, sweep_map(&table, &options)), (SWEEP_FRONT, sweep_front(compared, &options))];
     for (name, drawing) in drawings {
         if let Some(drawing) = drawing {
             out.file(name)?.write(drawing)?;
@@ -68,7 +69,7 @@ pub(super) fn say_what_came(
     let folder = out.path().display();
     let pictures = if has_pictures { " and pictures" } else { "" };
     let where_it_is = format!("results, tables{pictures}: {folder}\n{resume}");
-    print(&[described.join("\n"), sweep_table(&compared, style, &options), "\n".into(), count, where_it_is].concat())
+    print(&[described.join("\n"), sweep_table(compared, style, &options), "\n".into(), count, where_it_is].concat())
 }
 
 /// The runs as the crate of sweeps counts them, with the metrics that were asked for: others are limited, and in the files.

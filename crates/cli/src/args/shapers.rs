@@ -45,7 +45,7 @@ impl Shapers {
 
 /// Takes the name of a kind, `all` or `none`; the help lists them with their meanings.
 pub(super) fn parser() -> impl TypedValueParser<Value = Shapers> {
-    let kinds = ShaperKind::ALL.iter().map(|(name, _, meaning)| (*name, super::super::choice::plain(meaning)));
+    let kinds = ShaperKind::ALL.iter().map(|(name, _, meaning)| (*name, super::choice::plain(meaning)));
     let others =
         [(NONE, "no shaper, also where the scenario has one".to_owned()), (ALL, "one of every kind".to_owned())];
     let names = kinds.chain(others).map(|(name, meaning)| PossibleValue::new(name).help(meaning));
