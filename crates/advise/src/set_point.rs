@@ -54,7 +54,7 @@ const LONGEST_RISE: f64 = 0.5;
 
 impl SetPoint {
     /// By velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; of those the first `order − 2` count. Limits
-    /// are rounded to [`DIGITS`], so that what was run is what is told.
+    /// are rounded to four significant digits, so that what was run is what is told.
     #[must_use]
     pub fn by_times(family: usize, order: u32, [velocity, acceleration, rise, rise_of_jerk]: [f64; 4]) -> Self {
         let jerk = if order > 2 { acceleration / rise } else { f64::INFINITY };
