@@ -71,13 +71,20 @@ pub(crate) fn say_panics() {
 }
 
 /// This program for commands to be pasted: by its name where that is enough, otherwise as it was started.
-pub(crate) fn program() -> String {
+fn program() -> String {
     let started = std::env::args().next().unwrap_or_else(|| "servobench".into());
     let path = Path::new(&started);
     let search = std::env::var_os("PATH").unwrap_or_default();
     path.file_name()
         .filter(|name| found_by(name, &search).is_some_and(|found| path.canonicalize().is_ok_and(|own| own == found)))
         .map_or_else(|| started.clone(), |name| name.to_string_lossy().into_owned())
+}
+
+/// A command to be pasted into a shell: this program with `words`, each read as it is.
+pub(crate) fn command(words: &[&str]) -> String {
+    let quoted = |word: &str| shlex::try_quote(word).map_or_else(|_| word.to_owned(), Into::into);
+    let words: Vec<String> = std::iter::once(program().as_str()).chain(words.iter().copied()).map(quoted).collect();
+    words.join(" ")
 }
 
 /// What a shell starts that is told `name` alone, with this list of folders.
@@ -89,4 +96,16 @@ fn found_by(name: &OsStr, search: &OsStr) -> Option<PathBuf> {
 /// How tables are shown on standard output.
 pub(crate) fn style() -> Style {
     Style { colour: has_colour(&std::io::stdout()), ..Style::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::command;
+
+    #[test]
+    fn a_pasted_command_has_the_words_it_was_made_of() {
+        let words = ["view", "runs of today/it's $HOME.rrd"];
+        let pasted = shlex::split(&command(&words)).unwrap();
+        assert_eq!(pasted[1..], words);
+    }
 }

@@ -8,7 +8,7 @@ pub(crate) use ledger::{Closed, Ledger, write_junit};
 pub(crate) use resume::{Begun, Found, suite_in};
 
 use crate::args::{Keep, SuiteArgs};
-use crate::console::{program, say};
+use crate::console::{command, say};
 use crate::error::CliError;
 use crate::exit::{Exit, of_outcome, of_run_error};
 use crate::interrupt;
@@ -214,9 +214,10 @@ fn say_all(troubles: &[CliError]) {
 
 /// What brings the runs that are left, or that ended with an error: `3 of 8 runs have no result yet; to run them: servobench run
 /// --resume DIR`; empty where none is.
-pub(crate) fn how_to_resume(runs: &dyn Runs, command: &str, args: &SuiteArgs, out: &Path) -> String {
-    let trust = if args.fmus.allow_unisolated_fmus { " --allow-unisolated-fmus" } else { "" };
-    let resume = format!("{} {command} --resume {}{trust}\n", program(), out.display());
+pub(crate) fn how_to_resume(runs: &dyn Runs, subcommand: &str, args: &SuiteArgs, out: &Path) -> String {
+    let out = out.to_string_lossy();
+    let trust: &[&str] = if args.fmus.allow_unisolated_fmus { &["--allow-unisolated-fmus"] } else { &[] };
+    let resume = command(&[&[subcommand, "--resume", &out], trust].concat()) + "\n";
     let (unfinished, errors) = (runs.unfinished().count(), runs.count_of(Outcome::Error));
     if unfinished > 0 {
         let of = unfinished + runs.heads().count();

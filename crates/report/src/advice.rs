@@ -20,10 +20,8 @@ pub struct AdviceOptions<'a> {
     pub limits: &'a [Limit],
     /// Whether the axis moves along a line or turns.
     pub motion: Coordinate,
-    /// The program, as it is called.
-    pub program: &'a str,
-    /// File of the scenario.
-    pub file: String,
+    /// The command that runs the scenario as it is.
+    pub command: &'a str,
     /// The set-point as on the command line: `setpoint.jerk=50 m/s3`.
     pub settings: Vec<String>,
     /// Whether the box was assumed and not given.
@@ -117,9 +115,9 @@ struct Text<'a> {
 impl Text<'_> {
     /// The command that makes a run of the set-point on the machine of the scenario.
     fn command(&self) -> String {
-        let AdviceOptions { program, file, settings, .. } = self.options;
-        let sets: Vec<String> = settings.iter().map(|one| format!("  --set '{one}'")).collect();
-        let command = [vec![format!("{program} run {file}")], sets].concat().join(" \\\n");
+        let AdviceOptions { command, settings, .. } = self.options;
+        let set = |all: String, one: &String| format!("{all} \\\n  --set '{one}'");
+        let command = settings.iter().fold((*command).to_owned(), set);
         printable_lines(&format!("\nrun it on the machine of the scenario:\n{command}\n"))
     }
 

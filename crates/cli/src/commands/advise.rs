@@ -2,7 +2,7 @@
 mod runs;
 
 use crate::args::{AdviseArgs, Shapers};
-use crate::console::{print, program, say, style};
+use crate::console::{command, print, say, style};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::outputs::Outputs;
@@ -71,7 +71,8 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     let output = args.output.as_deref().map(|path| outputs.anywhere("-o", path)).transpose()?;
     let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
     runs.check()?;
-    say(&format!("looking for a set-point among {} kinds\n", question.families.len()));
+    let kinds = if question.families.len() == 1 { "kind" } else { "kinds" };
+    say(&format!("looking for a set-point among {} {kinds}\n", question.families.len()));
     let advice = find(&question, &mut runs);
     runs.finish();
     let advice = advice?;
@@ -80,8 +81,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         engine: runs.engine().name(),
         limits: &limits,
         motion: scenario.axis.motion,
-        program: &program(),
-        file: args.scenario.display().to_string(),
+        command: &command(&["run", &args.scenario.to_string_lossy()]),
         settings: runs.settings(&advice.point),
         is_assumed: args.within.is_empty(),
         has_window: scenario.measure.window.is_some(),

@@ -7,7 +7,7 @@ mod slowing;
 mod variants;
 
 use crate::args::{CompareArgs, Equal};
-use crate::console::{print, program, style};
+use crate::console::{command, print, style};
 use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::exit::{Exit, of_outcome};
@@ -143,7 +143,7 @@ fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, [heading, failed]: [
         comparison.table(style) + "\n",
         comparison.words(style.width) + "\n",
         failed.to_owned(),
-        format!("look at it: {} view {}\n", program(), args.out.join(recording).display()),
+        format!("look at it: {}\n", command(&["view", &args.out.join(recording).to_string_lossy()])),
     ]
     .concat()
 }

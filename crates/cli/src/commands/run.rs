@@ -2,7 +2,7 @@
 mod wanted;
 
 use crate::args::{self, Command, Keep, RunArgs};
-use crate::console::{print, print_parts, program, say, style};
+use crate::console::{command, print, print_parts, say, style};
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -144,6 +144,8 @@ fn say_what_came(runs: &dyn Runs, args: &RunArgs, out: &Path, removed: usize) ->
     print_parts(verdict_table(runs, style(), args.verbose))?;
     let mut parts = vec![format!("{what}: {}{older}{removed}\n", out.display())];
     parts.push(how_to_resume(runs, "run", &args.suite, out));
-    parts.extend((args.suite.rrd && kept > 0).then(|| format!("look at them: {} view {}\n", program(), out.display())));
+    parts.extend(
+        (args.suite.rrd && kept > 0).then(|| format!("look at them: {}\n", command(&["view", &out.to_string_lossy()]))),
+    );
     print(&parts.concat())
 }
