@@ -67,6 +67,12 @@ fn an_advice_has_been_run() {
         assert!(flat.contains(expected), "{expected}: {text}");
     }
     let advice = json(&fs::read(out).unwrap());
+    // What keeps a tighter limit keeps this one, too: no price of less vibration is a shorter time.
+    let prices = advice["prices"].as_array().unwrap();
+    let times: Vec<f64> = prices.iter().map(|price| price["time"].as_f64().unwrap_or(f64::INFINITY)).collect();
+    assert!(times.is_sorted_by(|one, other| one >= other) && times.len() == 6, "{advice}");
+    let own = advice["time"].as_f64().unwrap();
+    assert!(times[3] >= own - 1e-9 && own >= times[4] - 1e-9, "{advice}");
     assert!(advice["verified"]["share_at_least"].as_f64().unwrap() >= 0.97, "{advice}");
     // Finer than a tenth of a lobe: 2 Hz in steps of less than 0.1/T.
     assert!(advice["verified"]["spacing"].as_f64().unwrap() < 0.1 / advice["move_time"].as_f64().unwrap());
@@ -163,4 +169,5 @@ fn other_keys_are_chosen_where_they_are_named() {
     let advice = json(&fs::read(out).unwrap());
     // The stiffer loop follows better, so that the move may be faster.
     assert!(advice["kind"].as_str().unwrap().contains("drive.position.gain 100 1/s"), "{advice}");
+    assert!(!String::from_utf8(output.stdout).unwrap().contains("shaper"));
 }

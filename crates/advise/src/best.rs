@@ -1,9 +1,9 @@
 //! From a question to an answer that was verified.
 use crate::machines::Machines;
 use crate::refine::refined;
-use crate::search::{Allowance, Bench, Found, Planned, Search, Worst};
+use crate::search::{Allowance, Bench, Found, Planned, SAME, Search, Worst};
 use crate::set_point::{Family, SetPoint, grid};
-use crate::verify::{Outcome, Plan, Verification, verified};
+use crate::verify::{Plan, Verification, on_draws, on_grid};
 use servobench_motion::Limits;
 use servobench_sweep::SweepError;
 use thiserror::Error;
@@ -113,13 +113,13 @@ const REFINED: usize = 12;
 const OF_EACH_FAMILY: usize = 4;
 /// The same where a price is asked for.
 const REFINED_FOR_A_PRICE: usize = 2;
-/// Rounds of search and verification, and machines that join the search after each.
-const ROUNDS: u32 = 12;
+/// Rounds of search and verification.
+const ROUNDS: u32 = 16;
 /// From this round on draws may fail, as many as the promised share allows.
-const PATIENT: u32 = 6;
-const JOINING: usize = 4;
+const PATIENT: u32 = 8;
 /// Factors of the priced limit, in ascending order.
-const FACTORS: [f64; 6] = [0.1, 0.25, 0.5, 0.9, 1.1, 2.0];
+const TIGHTER: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
+const WIDER: [f64; 2] = [1.1, 2.0];
 
 /// The fastest set-point that keeps all limits on the machines of the box.
 ///
@@ -129,7 +129,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
     let mut machines = question.machines.corners();
     machines.push(question.machines.middle());
     let mut search = Search::new(bench, machines);
-    let planned = candidates(question, &mut search)?;
+    let mut planned = candidates(question, &mut search)?;
     let allowed = vec![1.0; question.limits];
     let (mut shown, mut looks) = (0.0, 0);
     for round in 0..ROUNDS {
@@ -137,30 +137,43 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         let Some(best) = found.first().cloned() else {
             return Err(AdviseError::NoneKeeps { planned: planned.len() });
         };
-        let Planned { point, duration } = best.planned;
         // Draws that have helped to find it prove nothing.
         let seed = question.seed.wrapping_add(u64::from(round));
         let Question { machines, frequency, draws, .. } = question;
         let plan = Plan { machines, frequency: *frequency, draws: *draws, seed, looks };
-        let failed = match verified(&mut search, point, duration, &allowed, plan)? {
-            Outcome::OffGrid(failed) => failed,
-            Outcome::Drawn(verification, failed) => {
-                looks += 1;
-                shown = verification.share;
-                // A draw on which it fails joins the search, as long as there are rounds for that.
-                if shown >= question.share && (failed.is_empty() || round >= PATIENT) {
-                    let prices = prices(question, &mut search, &planned, &found);
-                    let others = others(&found, point.family);
-                    let worst = worse(&best.worst, &verification.worst);
-                    let (runs, planned) = (search.runs(), planned.len());
-                    return Ok(Advice { point, duration, worst, verification, others, prices, runs, planned });
-                }
-                failed
-            }
-        };
-        for machine in spread(&failed) {
-            search.add(machine);
+        let grid = on_grid(&mut search, &best.planned, plan)?;
+        let off_grid = grid.failed(&allowed);
+        if !off_grid.is_empty() {
+            search.add_some(&off_grid);
+            continue;
         }
+        let tighter = priced(question, &mut search, &planned, &TIGHTER);
+        if let Some(faster) = fastest(&tighter).filter(|found| found.worst.time < best.worst.time - SAME) {
+            // What keeps a tighter limit keeps this one, too: the search begins again with it.
+            let place = planned.partition_point(|one| one.duration <= faster.planned.duration);
+            planned.insert(place, faster.planned);
+            continue;
+        }
+        let (verification, failed) = on_draws(&mut search, &best.planned, &grid, &allowed, plan)?;
+        looks += 1;
+        shown = verification.share;
+        // A draw on which it fails joins the search, as long as there are rounds for that.
+        if shown < question.share || (!failed.is_empty() && round < PATIENT) {
+            search.add_some(&failed);
+            continue;
+        }
+        let wider = priced(question, &mut search, &planned, &WIDER);
+        let Planned { point, duration } = best.planned;
+        return Ok(Advice {
+            point,
+            duration,
+            worst: worse(&best.worst, &verification.worst),
+            verification,
+            others: others(&found, point.family),
+            prices: prices(&tighter, &best, &wider),
+            runs: search.runs(),
+            planned: planned.len(),
+        });
     }
     Err(AdviseError::NotVerified { wanted: 100.0 * question.share, found: 100.0 * shown, rounds: ROUNDS })
 }
@@ -217,26 +230,41 @@ fn others(found: &[Found], but: usize) -> Vec<(SetPoint, f64)> {
     others
 }
 
-/// The fastest with other values of the priced limit. What keeps a tighter limit keeps a wider one too.
-fn prices(question: &Question, search: &mut Search<'_>, planned: &[Planned], known: &[Found]) -> Vec<Price> {
+/// The fastest with other values of the priced limit, each with its factor.
+fn priced(
+    question: &Question,
+    search: &mut Search<'_>,
+    planned: &[Planned],
+    factors: &[f64],
+) -> Vec<(f64, Option<Found>)> {
     let Some(priced) = question.priced else { return Vec::new() };
-    let mut fastest = f64::INFINITY;
-    let mut prices = Vec::new();
-    for factor in FACTORS {
+    let with = |factor: &f64| {
         let mut allowed = vec![1.0; question.limits];
-        allowed[priced] = factor;
+        allowed[priced] = *factor;
         let found = best(question, search, planned, &allowed, REFINED_FOR_A_PRICE);
-        let known = if factor > 1.0 { known } else { &[] };
-        fastest = found.iter().chain(known).map(|found| found.worst.time).fold(fastest, f64::min);
-        prices.push(Price { factor, time: fastest.is_finite().then_some(fastest) });
-    }
-    prices
+        (*factor, found.into_iter().next())
+    };
+    factors.iter().map(with).collect()
 }
 
-/// A few of the machines on which it failed, as far from each other in their order as they are.
-fn spread(failed: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let count = failed.len().min(JOINING);
-    (0..count).map(|k| failed[k * (failed.len() - 1) / (count - 1).max(1)].clone()).collect()
+/// The fastest of all.
+fn fastest(priced: &[(f64, Option<Found>)]) -> Option<&Found> {
+    let found = priced.iter().filter_map(|(_, found)| found.as_ref());
+    found.min_by(|one, other| one.worst.time.total_cmp(&other.worst.time))
+}
+
+/// What tighter and wider limits than that of `own` cost and save. What keeps a tighter limit keeps a wider one, too.
+fn prices(tighter: &[(f64, Option<Found>)], own: &Found, wider: &[(f64, Option<Found>)]) -> Vec<Price> {
+    let mut fastest = f64::INFINITY;
+    let mut prices = Vec::new();
+    for (all, known) in [(tighter, f64::INFINITY), (wider, own.worst.time)] {
+        fastest = fastest.min(known);
+        for (factor, found) in all {
+            fastest = found.as_ref().map_or(fastest, |found| fastest.min(found.worst.time));
+            prices.push(Price { factor: *factor, time: fastest.is_finite().then_some(fastest) });
+        }
+    }
+    prices
 }
 
 /// The worse of both in each respect.

@@ -45,11 +45,14 @@ pub(crate) struct Found {
     pub(crate) worst: Worst,
 }
 
+/// Machines that join the search at a time.
+const JOINING: usize = 4;
+
 /// Set-points that are looked at together.
 const CHUNK: usize = 32;
 
 /// By how much two times differ at least where one is the better (s).
-const SAME: f64 = 1e-9;
+pub(crate) const SAME: f64 = 1e-9;
 
 /// What is known of all runs until now.
 pub(crate) struct Search<'b> {
@@ -75,10 +78,13 @@ impl<'b> Search<'b> {
         self.runs
     }
 
-    /// From now on a set-point has to do on this machine too.
-    pub(crate) fn add(&mut self, machine: Vec<f64>) {
-        self.machines.push(machine);
-        self.ended.push(0);
+    /// From now on a set-point has to do on a few of these machines too, as far from each other in their order as they are.
+    pub(crate) fn add_some(&mut self, machines: &[Vec<f64>]) {
+        let count = machines.len().min(JOINING);
+        for k in 0..count {
+            self.machines.push(machines[k * (machines.len() - 1) / (count - 1).max(1)].clone());
+            self.ended.push(0);
+        }
     }
 
     /// The set-points with the durations of their moves, the shortest first; those that cannot be planned are left out.

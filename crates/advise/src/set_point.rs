@@ -6,7 +6,9 @@ use servobench_motion::Limits;
 pub struct Family {
     /// Order of the profile, 2 to 4.
     pub order: u32,
-    /// Further keys as on the command line: `setpoint.shaper.kind=zvd`.
+    /// The input shaper behind it: `zvd`.
+    pub shaper: Option<String>,
+    /// Further keys as on the command line: `setpoint.shaper.kind=zvd`, `drive.position.bandwidth=20 Hz`.
     pub settings: Vec<String>,
     /// What it is called: `order 3, zvd`.
     pub name: String,
@@ -98,7 +100,7 @@ impl SetPoint {
 /// All set-points of a family on a coarse grid; `shortest` is the duration of the move of second order at the ceiling (s).
 pub(crate) fn grid(index: usize, family: &Family, ceiling: &Limits, shortest: f64) -> Vec<SetPoint> {
     let Grid { velocities, accelerations, rises } = match family.order {
-        _ if !family.settings.is_empty() => WITH_SHAPER,
+        _ if family.shaper.is_some() => WITH_SHAPER,
         4 => OF_FOURTH_ORDER,
         _ => FINE,
     };
@@ -157,7 +159,7 @@ mod tests {
     #[test]
     fn a_grid_stays_below_the_ceiling() {
         let ceiling = Limits { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
-        let family = |order| Family { order, settings: vec![], name: String::new() };
+        let family = |order| Family { order, shaper: None, settings: vec![], name: String::new() };
         assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 240);
         for order in [3, 4] {
             let all = grid(0, &family(order), &ceiling, 0.6);

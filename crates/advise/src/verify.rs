@@ -1,7 +1,7 @@
 //! What was found, on machines that the search has not seen.
 use crate::best::AdviseError;
 use crate::machines::{Machines, Stretch};
-use crate::search::{Allowance, Reading, Search, Worst, keeps, worst_of};
+use crate::search::{Allowance, Planned, Reading, Search, Worst, keeps, worst_of};
 use crate::set_point::SetPoint;
 use servobench_sweep::{Distribution, Drawn, Draws, Method, Proportion, SweepError};
 
@@ -39,49 +39,58 @@ pub(crate) struct Plan<'a> {
 /// What a promised share may be wrong with, whatever the search has looked at.
 const DOUBT: f64 = 0.05;
 
-/// What verification came to.
+/// A set-point on machines, and what it gave there.
 #[derive(Debug)]
-pub(crate) enum Outcome {
-    /// Machines of the grid on which it fails; nothing was drawn.
-    OffGrid(Vec<Vec<f64>>),
-    /// It does on the grid; and draws on which it fails.
-    Drawn(Verification, Vec<Vec<f64>>),
+pub(crate) struct Tried {
+    machines: Vec<Vec<f64>>,
+    readings: Vec<Reading>,
 }
 
-/// Tries `point`, whose moves take `longest` (s), on the grid, and where it does there on draws.
-pub(crate) fn verified(
-    search: &mut Search<'_>,
-    point: SetPoint,
-    longest: f64,
-    allowed: &Allowance,
-    plan: Plan<'_>,
-) -> Result<Outcome, AdviseError> {
-    let fails = |machines: &[Vec<f64>], readings: &[Reading]| -> Vec<Vec<f64>> {
-        let failed = machines.iter().zip(readings).filter(|(_, reading)| !keeps(reading, allowed));
+impl Tried {
+    fn on(machines: Vec<Vec<f64>>, point: SetPoint, search: &mut Search<'_>) -> Self {
+        let readings = search.on(point, &machines);
+        Self { machines, readings }
+    }
+
+    /// The machines on which it is not within `allowed`.
+    pub(crate) fn failed(&self, allowed: &Allowance) -> Vec<Vec<f64>> {
+        let failed = self.machines.iter().zip(&self.readings).filter(|(_, reading)| !keeps(reading, allowed));
         failed.map(|(machine, _)| machine.clone()).collect()
-    };
+    }
+
+    fn each(&self) -> impl Iterator<Item = (&[f64], &Reading)> {
+        self.machines.iter().map(Vec::as_slice).zip(&self.readings)
+    }
+}
+
+/// `planned` on corners, in the middle, and between them along everything that moves the mode.
+pub(crate) fn on_grid(search: &mut Search<'_>, planned: &Planned, plan: Plan<'_>) -> Result<Tried, AdviseError> {
     let mut grid = plan.machines.corners();
     grid.push(plan.machines.middle());
-    grid.extend(plan.machines.along(plan.frequency, LOBE / longest)?);
-    let of_grid = search.on(point, &grid);
-    let failed = fails(&grid, &of_grid);
-    if !failed.is_empty() {
-        return Ok(Outcome::OffGrid(failed));
-    }
-    let drawn = drawn(plan)?;
-    let of_draws = search.on(point, &drawn);
-    let failed = fails(&drawn, &of_draws);
-    let all = grid.iter().chain(&drawn).map(Vec::as_slice).zip(of_grid.iter().chain(&of_draws));
+    grid.extend(plan.machines.along(plan.frequency, LOBE / planned.duration)?);
+    Ok(Tried::on(grid, planned.point, search))
+}
+
+/// `planned`, which is within `allowed` on the grid, on draws: what both show, and the draws on which it is not.
+pub(crate) fn on_draws(
+    search: &mut Search<'_>,
+    planned: &Planned,
+    grid: &Tried,
+    allowed: &Allowance,
+    plan: Plan<'_>,
+) -> Result<(Verification, Vec<Vec<f64>>), AdviseError> {
+    let drawn = Tried::on(drawn(plan)?, planned.point, search);
+    let failed = drawn.failed(allowed);
     let moves = plan.machines.ranges().iter().any(|range| range.stretch != Stretch::None);
-    let draws = Proportion::new((drawn.len() - failed.len()) as u64, failed.len() as u64);
+    let draws = Proportion::new((drawn.machines.len() - failed.len()) as u64, failed.len() as u64);
     let verification = Verification {
-        grid: grid.len(),
-        spacing: moves.then_some(LOBE / longest),
+        grid: grid.machines.len(),
+        spacing: moves.then_some(LOBE / planned.duration),
         draws,
         share: draws.at_least(1.0 - DOUBT * 0.5_f64.powi(plan.looks + 1)),
-        worst: worst_of(all),
+        worst: worst_of(grid.each().chain(drawn.each())),
     };
-    Ok(Outcome::Drawn(verification, failed))
+    Ok((verification, failed))
 }
 
 /// Machines drawn at random, every one of the box as likely as any other.

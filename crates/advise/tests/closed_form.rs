@@ -48,7 +48,7 @@ impl Bench for Axis {
 }
 
 fn question() -> Question {
-    let family = |order| Family { order, settings: vec![], name: format!("order {order}") };
+    let family = |order| Family { order, shaper: None, settings: vec![], name: format!("order {order}") };
     let range = |key: &str, ends, stretch| Range { key: key.into(), ends, unit: String::new(), stretch };
     Question {
         families: vec![family(2), family(3), family(4)],

@@ -220,6 +220,7 @@ impl CliError {
             | Self::Advise(_)
             | Self::TrustAgain
             | Self::NothingForTheViewer
+            | Self::View(ViewError::Label { .. })
             | Self::ReadRecording(_)
             | Self::Timing { .. }
             | Self::Output(_)

@@ -155,7 +155,7 @@ impl Text<'_> {
         let share = 100.0 * advice.verification.share;
         let price = self.price().map_or(String::new(), |words| format!("; {words}"));
         self.broken(&format!(
-            "Take {}: {} {what} {time} after the start at worst, and at least {} % of the machines keep all limits ({} of {} draws did, \
+            "Take {}: {} {what} {time} after the start of a move at worst, and at least {} % of the machines keep all limits ({} of {} draws did, \
              95 % certain){price}.",
             self.point(&advice.point),
             printable(options.scenario),

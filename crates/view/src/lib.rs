@@ -37,7 +37,7 @@ mod verdict;
 pub use error::ViewError;
 pub use layout::Layout;
 pub use options::{Outcome, Verdict, ViewOptions};
-pub use presentation::Presentation;
+pub use presentation::{Presentation, check_labels};
 
 use servobench_trace::Recording;
 use std::path::Path;

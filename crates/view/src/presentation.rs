@@ -23,6 +23,26 @@ const APPLICATION: &str = "servobench";
 /// Labels that the first parts of other entity paths have.
 const RESERVED: [&str; 3] = [BOUND, ALLOWED, WINDOW];
 
+/// Whether runs that lie over each other may be called that.
+///
+/// # Errors
+/// [`ViewError::Label`] for a label that is empty, reserved or used twice.
+pub fn check_labels(labels: &[&str]) -> Result<(), ViewError> {
+    for (index, label) in labels.iter().enumerate() {
+        let reason = if label.is_empty() {
+            "is empty"
+        } else if label.starts_with("__") || RESERVED.contains(label) {
+            "is reserved"
+        } else if labels[..index].contains(label) {
+            "an earlier run has already"
+        } else {
+            continue;
+        };
+        return Err(ViewError::Label { number: index + 1, label: (*label).to_owned(), reason });
+    }
+    Ok(())
+}
+
 /// One run, or several over each other, ready for any Rerun stream: a file, or a viewer that is open.
 #[derive(Debug)]
 pub struct Presentation<'a> {
@@ -51,19 +71,9 @@ impl<'a> Presentation<'a> {
         if runs.len() < 2 {
             return Err(ViewError::TooFewRuns { found: runs.len() });
         }
-        for (index, (label, _)) in runs.iter().enumerate() {
-            let reason = if label.is_empty() {
-                "is empty"
-            } else if label.starts_with("__") || RESERVED.contains(label) {
-                "is reserved"
-            } else if runs[..index].iter().any(|(other, _)| other == label) {
-                "an earlier run has already"
-            } else {
-                continue;
-            };
-            return Err(ViewError::Label { number: index + 1, label: (*label).to_owned(), reason });
-        }
-        let labels = runs.iter().map(|(label, _)| *label).collect::<Vec<_>>().join(" against ");
+        let labels: Vec<&str> = runs.iter().map(|(label, _)| *label).collect();
+        check_labels(&labels)?;
+        let labels = labels.join(" against ");
         let mut engines: Vec<&str> = runs.iter().map(|(_, recording)| recording.about.engine.as_str()).collect();
         engines.dedup();
         // Variants of one scenario are told apart by their labels.

@@ -146,6 +146,7 @@ fn what_is_wrong_with_variants_is_said() {
         (&[a, "--variant", "one:"], "a comparison needs two runs at least"),
         (&[a, "--variant", "setpoint.order=3"], "there is no name with a colon"),
         (&[a, "--variant", "one:", "--variant", "one: setpoint.order=2"], "two are called `one`"),
+        (&[a, "--variant", "one:", "--variant", "limit:"], "the label `limit`, which is reserved"),
         (&[a, "--variant", "one:", "--variant", "two: setpoint.ordre=2"], "variant `two` of"),
         (&[a, "--shaper", "zv,zvd"], "`a` names no mode: give its frequency"),
         (&[a, "--shaper", "zv,zzz", "--shaper-frequency", "40Hz"], "invalid value 'zzz'"),

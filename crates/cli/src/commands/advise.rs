@@ -156,7 +156,7 @@ fn families(
     let orders = if args.order.is_empty() { vec![2, 3, 4] } else { args.order.clone() };
     let mut families = Vec::new();
     for order in orders {
-        families.push(Family { order, settings: without_shaper(base), name: format!("order {order}") });
+        families.push(Family { order, shaper: None, settings: without_shaper(base), name: format!("order {order}") });
         let Some(frequency) = frequency.filter(|_| order < 4) else { continue };
         let (frequency, damping) =
             (digits(frequency, DIGITS), digits(mode.map_or(0.0, |mode| mode.damping_ratio), DIGITS));
@@ -164,7 +164,12 @@ fn families(
         for kind in Shapers::kinds(wanted).into_iter().flatten().map(ShaperKind::name) {
             let table =
                 format!("setpoint.shaper={{ kind = \"{kind}\", frequency = \"{frequency} Hz\", damping = {damping} }}");
-            families.push(Family { order, settings: vec![table], name: format!("order {order}, {kind}") });
+            families.push(Family {
+                order,
+                shaper: Some(kind.to_owned()),
+                settings: vec![table],
+                name: format!("order {order}, {kind}"),
+            });
         }
     }
     for choice in &args.choose {
@@ -175,6 +180,7 @@ fn families(
         }
         let with = |family: &Family, value: &str| Family {
             order: family.order,
+            shaper: family.shaper.clone(),
             settings: [&family.settings[..], &[format!("{key}={value}")]].concat(),
             name: format!("{}, {key} {value}", family.name),
         };

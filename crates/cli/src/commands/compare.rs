@@ -33,6 +33,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     if wanted.len() + earlier.len() < 2 {
         return Err(CliError::TooFewScenarios);
     }
+    if let labels @ [_, _, ..] = wanted.iter().map(|one| one.label.as_str()).collect::<Vec<_>>().as_slice() {
+        servobench_view::check_labels(labels)?;
+    }
     let mut jobs: Vec<Job> = wanted.iter().map(|one| one.job.clone()).collect();
     comparable(&jobs)?;
     let has_closed_form = earlier.is_empty() && only_setpoints_differ(&jobs) && setpoints_have_closed_form(&jobs);

@@ -73,7 +73,7 @@ pub(super) fn words(question: &Question, advice: &Advice, options: &AdviceOption
             ),
         ));
     }
-    if let (Some((_, kind)), Some(frequency)) = (family.name.split_once(", "), options.shaper_frequency) {
+    if let (Some(kind), Some(frequency)) = (&family.shaper, options.shaper_frequency) {
         rows.push(("shaper", format!("{kind} at {} Hz behind the profile", number(frequency))));
     }
     let row = |(name, text): &(&str, String)| {
