@@ -1,10 +1,12 @@
 //! Power stage: from the drive's command to the effort on the motor body.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod synchronous;
+
 use crate::mechanics::BodyState;
+use crate::pmsm;
 use crate::source::IdealSource;
-use crate::{inverter, pmsm};
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError, PowerCommand};
-use std::sync::Arc;
+use servobench_base::{AlphaBeta, Dq, KnownRotation, ParamError, PowerCommand};
+use synchronous::Synchronous;
 
 /// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
 #[derive(Debug, Clone)]
@@ -13,22 +15,7 @@ pub struct PowerStage(Stage);
 #[derive(Debug, Clone)]
 enum Stage {
     /// Inverter and synchronous motor.
-    Pmsm {
-        motor: Arc<pmsm::Ticks>,
-        state: pmsm::State,
-        /// DC-link voltage (V).
-        u_dc: f64,
-        /// Motor speed a tick ago (rad/s), to tell the mean over the coming tick.
-        last_speed: f64,
-        /// Rotor at this tick.
-        rotor: KnownRotation,
-        /// Whether the inverter gives less voltage than it is asked for.
-        shortens: bool,
-        /// What the inverter gives over the coming tick, as the rotor meets it in the middle of the tick (V, peak).
-        voltage: Dq,
-        /// Mean powers of the motor over the tick, where they are wanted.
-        power: Option<pmsm::Power>,
-    },
+    Synchronous(Synchronous),
     /// Ideal source: effort = gain · output, |output| ≤ limit.
     Ideal { gain: f64, limit: f64 },
     /// Off, or a motor that follows its set-point: no effort.
@@ -51,28 +38,14 @@ impl PowerStage {
     /// # Errors
     /// [`ParamError`] names the parameter of the motor that is out of its bound.
     pub fn pmsm(motor: pmsm::Params, dc_link: f64, speed: f64, h: f64) -> Result<Self, ParamError> {
-        motor.check()?;
-        Ok(Self(Stage::Pmsm {
-            motor: Arc::new(pmsm::Ticks::new(motor, h)),
-            state: pmsm::State::default(),
-            u_dc: dc_link,
-            last_speed: speed,
-            rotor: KnownRotation::default(),
-            shortens: false,
-            voltage: Dq::default(),
-            power: Some(pmsm::Power::default()),
-        }))
+        Ok(Self(Stage::Synchronous(Synchronous::new(motor, dc_link, speed, h)?)))
     }
 
     /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
     #[inline(always)]
     pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         match &mut self.0 {
-            Stage::Pmsm { motor: synchronous, state, rotor, .. } => {
-                let ratio = synchronous.params().electrical_ratio;
-                *rotor = KnownRotation::of(ElectricalAngle::from_mechanical(motor.position, ratio));
-                state.current.to_alpha_beta(rotor.rotation())
-            }
+            Stage::Synchronous(synchronous) => synchronous.measured_current(motor),
             Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
         }
     }
@@ -81,10 +54,7 @@ impl PowerStage {
     #[inline(always)]
     #[must_use]
     pub fn rotation(&self) -> KnownRotation {
-        match &self.0 {
-            Stage::Pmsm { rotor, .. } => *rotor,
-            Stage::Ideal { .. } | Stage::Off => KnownRotation::default(),
-        }
+        self.synchronous().map_or_else(KnownRotation::default, Synchronous::rotor)
     }
 
     /// A voltage in the rotor's frame (V, peak) in the stator's, with the motor at `motor`.
@@ -92,20 +62,14 @@ impl PowerStage {
     #[must_use]
     pub fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
         self.measured_current(motor);
-        match &mut self.0 {
-            Stage::Pmsm { rotor, .. } => voltage.to_alpha_beta(rotor.rotation()),
-            Stage::Ideal { .. } | Stage::Off => AlphaBeta::default(),
-        }
+        self.synchronous().map_or_else(AlphaBeta::default, |one| voltage.to_alpha_beta(one.rotor().rotation()))
     }
 
     /// Stator current in the rotor frame (A, peak).
     #[inline(always)]
     #[must_use]
     pub fn current(&self) -> Dq {
-        match &self.0 {
-            Stage::Pmsm { state, .. } => state.current,
-            Stage::Ideal { .. } | Stage::Off => Dq::default(),
-        }
+        self.synchronous().map_or_else(Dq::default, Synchronous::current)
     }
 
     /// Output of an ideal source after its limit; 0 for others.
@@ -122,34 +86,28 @@ impl PowerStage {
     #[inline(always)]
     #[must_use]
     pub fn shortens_voltage(&self) -> bool {
-        matches!(self.0, Stage::Pmsm { shortens: true, .. })
+        self.synchronous().is_some_and(Synchronous::shortens)
     }
 
     /// What the inverter gives over the last tick that was advanced, as the rotor meets it in the middle of that tick (V).
     #[inline(always)]
     #[must_use]
     pub fn voltage(&self) -> Dq {
-        match &self.0 {
-            Stage::Pmsm { voltage, .. } => *voltage,
-            Stage::Ideal { .. } | Stage::Off => Dq::default(),
-        }
+        self.synchronous().map_or_else(Dq::default, Synchronous::voltage)
     }
 
     /// Mean powers of the motor over that tick (W); zero where nobody wants them.
     #[inline(always)]
     #[must_use]
     pub fn power(&self) -> pmsm::Power {
-        match &self.0 {
-            Stage::Pmsm { power, .. } => power.unwrap_or_default(),
-            Stage::Ideal { .. } | Stage::Off => pmsm::Power::default(),
-        }
+        self.synchronous().map_or_else(pmsm::Power::default, Synchronous::power)
     }
 
     /// Leaves the powers of the motor out from now on.
     #[inline]
     pub fn leave_power_out(&mut self) {
-        if let Stage::Pmsm { power, .. } = &mut self.0 {
-            *power = None;
+        if let Stage::Synchronous(synchronous) = &mut self.0 {
+            synchronous.leave_power_out();
         }
     }
 
@@ -158,45 +116,23 @@ impl PowerStage {
     pub fn advance(&mut self, command: PowerCommand, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
         match (&mut self.0, command) {
-            (
-                Stage::Pmsm { motor: ticks, state, u_dc, last_speed, rotor, shortens, voltage, power },
-                PowerCommand::Voltage(wanted),
-            ) => {
-                // Straight on from the last two ticks: second order.
-                let mean_speed = motor.velocity + (motor.velocity - *last_speed) / 2.0;
-                *last_speed = motor.velocity;
-                let given = inverter::output(wanted, *u_dc);
-                *shortens = is_shorter(given, wanted);
-                let input = pmsm::Input {
-                    voltage: given,
-                    rotor: rotor.rotation(),
-                    omega_e: ticks.params().electrical_ratio * mean_speed,
-                };
-                *voltage = input.voltage_at_middle(h);
-                match power {
-                    None => ticks.step(state, &input),
-                    Some(power) => ticks.step_with_power(state, &input, power),
-                }
-            }
-            // The current is gone within the tick, which takes a real inverter some milliseconds, and its energy back in
-            // the DC link; no current flows back as long as the back-EMF is below the DC link.
-            (Stage::Pmsm { motor: ticks, state, last_speed, shortens, voltage, power, .. }, PowerCommand::Off) => {
-                let returned = -ticks.params().stored_energy(state.current) / h;
-                *power = power.map(|_| pmsm::Power { electrical: returned, stored: returned, ..Default::default() });
-                *state = pmsm::State::default();
-                (*last_speed, *shortens, *voltage) = (motor.velocity, false, Dq::default());
+            (Stage::Synchronous(synchronous), PowerCommand::Voltage(wanted)) => synchronous.advance(wanted, motor, h),
+            (Stage::Synchronous(synchronous), PowerCommand::Off) => {
+                synchronous.switch_off(motor, h);
                 0.0
             }
             (Stage::Ideal { gain, .. }, PowerCommand::Output(_)) => *gain * output,
             _ => 0.0,
         }
     }
-}
 
-/// Whether `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
-fn is_shorter(given: AlphaBeta, wanted: AlphaBeta) -> bool {
-    let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
-    given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)
+    #[inline(always)]
+    const fn synchronous(&self) -> Option<&Synchronous> {
+        match &self.0 {
+            Stage::Synchronous(synchronous) => Some(synchronous),
+            Stage::Ideal { .. } | Stage::Off => None,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -261,8 +197,8 @@ mod tests {
     #[test]
     fn the_measured_current_is_in_the_stator_frame() {
         let mut stage = stage(0.0);
-        let Stage::Pmsm { state, .. } = &mut stage.0 else { panic!("a motor") };
-        state.current = Dq { d: 0.0, q: 2.0 };
+        let Stage::Synchronous(synchronous) = &mut stage.0 else { panic!("a motor") };
+        synchronous.set_current(Dq { d: 0.0, q: 2.0 });
         // A sixth of a turn times three pole pairs: half a turn electrical, q against β.
         let motor = BodyState { position: std::f64::consts::PI / 3.0, velocity: 0.0 };
         let AlphaBeta { alpha, beta } = stage.measured_current(motor);
