@@ -19,8 +19,11 @@
 //! P_electrical = P_copper + P_stored + P_air-gap
 //! ```
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod envelope;
 mod maps;
 mod table;
+
+pub use envelope::{Bounds, MostEffort};
 
 use maps::{Forms, Maps};
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
