@@ -5,15 +5,17 @@ use crate::error::CliError;
 use crate::outputs::OutputFolder;
 use jiff::Timestamp;
 use servobench_metrics::{Metrics, Verdict};
+use servobench_plant::inverter;
+use servobench_plant::pmsm::Bounds;
 use servobench_report::{TimingOptions, timing_diagram};
 use servobench_results::{
     COMPARISON, Digest, Digester, LimitPlace, Outcome, RunIdentity, RunResult, Runs, Unfinished, files_of_results,
     printable_lines,
 };
-use servobench_scenario::{Parameter, Scenario, Step};
+use servobench_scenario::{Actuator, Parameter, Scenario, Step};
 use servobench_suite::{Job, channel_limits};
 use servobench_trace::{Recording, seal_of};
-use servobench_view::ViewOptions;
+use servobench_view::{MotorLimits, ViewOptions};
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -215,8 +217,24 @@ pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
         allowed: scenario.limits.iter().filter_map(|limit| Some((limit.metric, limit.max?))).collect(),
         window: scenario.measure.window,
         residual_from: scenario.measure.from,
+        motor: motor_limits(scenario),
         ..ViewOptions::default()
     }
+}
+
+/// The synchronous motor of `scenario` and what bounds it.
+fn motor_limits(scenario: &Scenario) -> Option<MotorLimits> {
+    let Actuator::Pmsm { motor, dc_link, drive, .. } = &scenario.actuator else { return None };
+    let (current, _) = drive.params.current_loop()?;
+    let direction = scenario.bus.as_ref().map_or(1.0, |bus| 1.0_f64.copysign(bus.units.axis));
+    Some(MotorLimits {
+        motor: *motor,
+        bounds: Bounds { current: current.max_current, voltage: inverter::voltage_limit(*dc_link) },
+        dc_link: *dc_link,
+        effort: scenario.actuator.max_effort(),
+        transmission: direction * scenario.axis.transmission,
+        turns: scenario.axis.motor_motion,
+    })
 }
 
 #[cfg(test)]

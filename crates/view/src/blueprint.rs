@@ -3,6 +3,7 @@ use crate::catalogue::Page;
 use crate::curves::TIMELINE;
 use crate::layout::{Layout, Node, View};
 use crate::legend;
+use crate::plane::Plane;
 use crate::planned::PlannedPlot;
 use crate::reached::Reached;
 use crate::rerun::EntityPath;
@@ -46,6 +47,8 @@ pub(crate) struct Parts<'p, 'a> {
     pub(crate) signals: Lanes,
     /// Lanes of limits.
     pub(crate) reached: Option<Reached>,
+    /// Where the motor works.
+    pub(crate) planes: &'p [Plane],
     /// What came of it.
     pub(crate) head: &'p Head,
     /// Length of the longest run (s).
@@ -74,7 +77,7 @@ type Column<'p, 'a> = Vec<(Room, Part<'p, 'a>)>;
 
 /// The layout of `parts`.
 pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
-    let Parts { plots, scene, timeline_events, signals, reached, head, duration } = parts;
+    let Parts { plots, scene, timeline_events, signals, reached, planes, head, duration } = parts;
     let is_first = |name: &str| (name == "Program") == signals.has_program;
     let height = |name: &str| PAGE - head_height(head, ["Axis", "Program"].contains(&name) && is_first(name));
     let on =
@@ -91,6 +94,7 @@ pub(crate) fn layout(parts: Parts<'_, '_>) -> Layout {
         ("Program", program),
         ("Set-point", in_columns(on(Page::SetPoint).collect(), COLUMN.1, height("Set-point"))),
         ("Drive", stack(drive, height("Drive"))),
+        ("Motor", operating(planes)),
         ("Other", in_columns(on(Page::Other).collect(), COLUMN.0, height("Other"))),
         ("Log", log_view(&timeline_events)),
     ];
@@ -122,6 +126,15 @@ fn axis<'p, 'a>(
     let columns = [(0.45, left), (0.55, right)];
     let columns = columns.into_iter().filter_map(|(share, parts)| Some((share, stack(parts, height)?)));
     Node::of(ContainerKind::Horizontal, None, columns.collect())
+}
+
+/// The page of the motor: two planes beside each other.
+fn operating(planes: &[Plane]) -> Option<Node> {
+    let rows = planes.chunks(2).filter_map(|row| {
+        let columns = row.iter().map(|plane| (0.5, plane.view())).collect();
+        Some((0.5, Node::of(ContainerKind::Horizontal, None, columns)?))
+    });
+    Node::of(ContainerKind::Vertical, None, rows.collect())
 }
 
 /// The page of signals: the motion, calls that came to no end, and a lane for each signal.

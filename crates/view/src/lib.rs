@@ -14,8 +14,10 @@ mod lanes;
 mod layout;
 mod legend;
 mod linear;
+mod operating;
 mod options;
 mod plan;
+mod plane;
 mod planned;
 mod presentation;
 mod reached;
@@ -36,7 +38,7 @@ mod verdict;
 
 pub use error::ViewError;
 pub use layout::Layout;
-pub use options::{Outcome, Verdict, ViewOptions};
+pub use options::{MotorLimits, Outcome, Verdict, ViewOptions};
 pub use presentation::{Presentation, check_labels};
 
 use servobench_trace::Recording;

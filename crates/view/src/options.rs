@@ -1,5 +1,7 @@
 //! What the caller knows and a recording does not.
+use servobench_base::Coordinate;
 use servobench_metrics::Name;
+use servobench_plant::pmsm;
 
 /// What to show beside the recorded channels.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,25 @@ pub struct ViewOptions {
     /// Factor by which the deflection of the load against the motor is enlarged in the 3D view; `None` chooses one at
     /// which the largest deflection can be seen.
     pub exaggeration: Option<f64>,
+    /// The motor and what bounds it, for the page of its operating point; `None` without a synchronous motor.
+    pub motor: Option<MotorLimits>,
+}
+
+/// A synchronous motor and what bounds it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorLimits {
+    /// The motor.
+    pub motor: pmsm::Params,
+    /// Largest current that the drive asks for, and voltage that the inverter gives in every direction.
+    pub bounds: pmsm::Bounds,
+    /// Voltage of the DC link (V).
+    pub dc_link: f64,
+    /// Largest effort that the drive asks for (N·m or N); may be infinite.
+    pub effort: f64,
+    /// Axis coordinate per motor coordinate; negative for a motor that is mounted the other way round.
+    pub transmission: f64,
+    /// Whether the motor turns or moves along a line.
+    pub turns: Coordinate,
 }
 
 /// What came of a run, in words: the head of every page.
@@ -58,6 +79,7 @@ impl Default for ViewOptions {
             residual_from: None,
             max_instants: 20_000,
             exaggeration: None,
+            motor: None,
         }
     }
 }

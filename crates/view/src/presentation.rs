@@ -4,8 +4,10 @@ use crate::catalogue::BOUND;
 use crate::curves;
 use crate::error::ViewError;
 use crate::layout::Layout;
+use crate::operating;
 use crate::options::ViewOptions;
 use crate::plan;
+use crate::plane::Plane;
 use crate::planned::{ALLOWED, PlannedPlot, WINDOW};
 use crate::reached::{self, Reached};
 use crate::rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
@@ -50,6 +52,7 @@ pub struct Presentation<'a> {
     runs: Vec<Run<'a>>,
     plots: Vec<PlannedPlot<'a>>,
     scene: Option<Scene>,
+    planes: Vec<Plane>,
     head: Head,
     max_instants: usize,
 }
@@ -89,7 +92,8 @@ impl<'a> Presentation<'a> {
         let plots = plan::plots(&runs, options);
         let scene = Scene::of(&name, &runs, options);
         let head = Head::of(name.clone(), &runs, options);
-        Self { name, runs, plots, scene, head, max_instants: options.max_instants }
+        let planes = options.motor.map_or_else(Vec::new, |motor| operating::planes(&runs, &motor));
+        Self { name, runs, plots, scene, planes, head, max_instants: options.max_instants }
     }
 
     /// How the viewer arranges it.
@@ -102,6 +106,7 @@ impl<'a> Presentation<'a> {
             timeline_events: Happenings::of(&self.runs),
             signals: signals::lanes(&self.runs),
             reached: Reached::of(&self.runs),
+            planes: &self.planes,
             head: &self.head,
             duration,
         })
@@ -129,6 +134,7 @@ impl<'a> Presentation<'a> {
         self.runs.iter().enumerate().try_for_each(|(index, run)| timeline_events::log(stream, run, index))?;
         self.runs.iter().try_for_each(|run| signals::log(stream, run))?;
         self.runs.iter().try_for_each(|run| reached::log(stream, run))?;
+        self.planes.iter().try_for_each(|plane| plane.log(stream))?;
         self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))
     }
 

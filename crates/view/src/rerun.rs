@@ -8,11 +8,13 @@ pub(crate) use re_sdk::{
     SerializedComponentBatch,
 };
 pub(crate) use re_sdk_types::archetypes::{
-    Arrows3D, Boxes3D, Cylinders3D, LineStrips3D, Points3D, Scalars, SeriesLines, StateChange, StateConfiguration,
-    TextDocument, TextLog, Transform3D, ViewCoordinates,
+    Arrows3D, Boxes3D, Cylinders3D, LineStrips2D, LineStrips3D, Points2D, Points3D, Scalars, SeriesLines, StateChange,
+    StateConfiguration, TextDocument, TextLog, Transform3D, ViewCoordinates,
 };
-pub(crate) use re_sdk_types::components::{Color, FillMode, InterpolationMode};
-pub(crate) use re_sdk_types::datatypes::{Angle, Mat3x3, RotationAxisAngle, TimeInt, TimeRange, TimeRangeBoundary};
+pub(crate) use re_sdk_types::components::{Color, FillMode, InterpolationMode, ShowLabels};
+pub(crate) use re_sdk_types::datatypes::{
+    Angle, Mat3x3, Range2D, RotationAxisAngle, TimeInt, TimeRange, TimeRangeBoundary,
+};
 pub(crate) use re_sdk_types::external::uuid::Uuid;
 
 /// How the viewer is arranged.

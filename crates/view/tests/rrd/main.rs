@@ -3,6 +3,7 @@
 mod axis;
 mod content;
 mod judged;
+mod motor;
 mod readable;
 mod scene;
 

@@ -97,7 +97,7 @@ const PLAN: [(&str, May); 36] = [
             "results", "sweep", "advise",
         ]),
     ),
-    ("view", May::On(&["base", "signals", "trace", "metrics"])),
+    ("view", May::On(&["base", "plant", "signals", "trace", "metrics"])),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
     ("bare-metal", May::On(&["base", "cia402", "motion", "fieldbus", "plcopen"])),

@@ -45,6 +45,7 @@ fn agreed(mut one: ViewOptions, other: &ViewOptions) -> ViewOptions {
     one.limits.retain(|limit| other.limits.contains(limit));
     one.allowed.retain(|allowed| other.allowed.contains(allowed));
     one.window = one.window.filter(|_| one.window == other.window);
+    one.motor = one.motor.filter(|_| one.motor == other.motor);
     one.residual_from = one.residual_from.filter(|_| one.residual_from == other.residual_from);
     one
 }

@@ -1,0 +1,218 @@
+//! Where a motor works, beside what it can give: effort over speed in its envelope, current in the circle of the drive, voltage in the
+//! hexagon of the inverter, and effort over the angle.
+use crate::options::MotorLimits;
+use crate::plane::{Axis, Curve, Plane};
+use crate::rerun::EntityPath;
+use crate::run::{Run, range};
+use crate::scale::Scale;
+use crate::style;
+use servobench_base::{Coordinate, Dq, ElectricalAngle};
+use servobench_plant::pmsm::Bounds;
+use servobench_signals::Signal;
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// Points of a curve that a run gives.
+const POINTS: usize = 20_000;
+/// Points of a bound.
+const OF_A_BOUND: u32 = 240;
+/// How far beyond the fastest point of a run, or beyond its corner, an envelope goes.
+const BEYOND: f64 = 1.25;
+/// Part of the standstill effort that the corner of an envelope still has.
+const CORNER: f64 = 0.98;
+/// Turns of the angle from which on an effort is shown over it.
+const TURNS: f64 = 1.0;
+
+/// The planes of `runs`, all on the motor of `limits`.
+pub(crate) fn planes(runs: &[Run<'_>], limits: &MotorLimits) -> Vec<Plane> {
+    let all =
+        [effort_over_speed(runs, limits), currents(runs, limits), voltages(runs, limits), over_angle(runs, limits)];
+    all.into_iter().flatten().collect()
+}
+
+fn effort_over_speed(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
+    let ratio = limits.motor.electrical_ratio;
+    let of_runs = curves(runs, "effort_over_speed", |run| {
+        let (speed, effort) =
+            (run.recording.channel(Signal::MotorVelocity)?, run.recording.channel(Signal::EffortMotor)?);
+        Some(strips(speed.len(), |k| [speed[k] / limits.transmission, effort[k]]))
+    })?;
+    let fastest = largest(&of_runs, 0);
+    let bounds = limits.bounds;
+    let standing = limits.motor.most_effort(bounds, 0.0)?.effort;
+    let end = limits.motor.fastest_with(bounds, 0.0, 1e6) / ratio;
+    let corner = limits.motor.fastest_with(bounds, CORNER * standing.min(limits.effort), 1e6) / ratio;
+    let to = (BEYOND * fastest.max(corner)).min(end);
+    let most = |speed: f64| limits.motor.most_effort(bounds, ratio * speed).map(|most| most.effort.min(limits.effort));
+    // From standstill either way, driving and braking: it ends where the motor can go no faster, or where nobody went.
+    let ways = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let quarters = ways.map(|(way, side)| {
+        let speeds = (0..=OF_A_BOUND).map(|k| way * to * f64::from(k) / f64::from(OF_A_BOUND));
+        speeds.filter_map(|speed| Some([speed, side * most(side * speed)?])).collect()
+    });
+    let envelope = bound(&["effort_over_speed", "envelope"], "most that motor and drive give", quarters.to_vec());
+    let unit = limits.turns;
+    Some(Plane {
+        title: format!("{} over speed", effort_name(unit)),
+        path: EntityPath::from("effort_over_speed"),
+        axes: [speed_axis(unit), effort_axis(unit)],
+        is_isometric: false,
+        curves: [vec![envelope], of_runs].concat(),
+    })
+}
+
+fn currents(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
+    let of_runs = curves(runs, "current_plane", |run| {
+        let (d, q) = (run.recording.channel(Signal::CurrentD)?, run.recording.channel(Signal::CurrentQ)?);
+        Some(strips(d.len(), |k| [d[k], q[k]]))
+    })?;
+    let Bounds { current, .. } = limits.bounds;
+    let mut bounds = Vec::new();
+    if current.is_finite() {
+        bounds.push(bound(&["current_plane", "limit"], "largest current", vec![circle(current)]));
+    }
+    let scale = Scale { factor: 1.0, unit: "Apk".into() };
+    Some(Plane {
+        title: "Current in the rotor's frame: q over d (Apk)".into(),
+        path: EntityPath::from("current_plane"),
+        axes: [Axis { name: "d", scale: scale.clone() }, Axis { name: "q", scale }],
+        is_isometric: true,
+        curves: [bounds, of_runs].concat(),
+    })
+}
+
+fn voltages(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
+    let of_runs = curves(runs, "voltage_plane", |run| {
+        let [d, q] = [Signal::VoltageD, Signal::VoltageQ].map(|signal| run.recording.channel(signal));
+        let [position, velocity] =
+            [Signal::MotorPosition, Signal::MotorVelocity].map(|signal| run.recording.channel(signal));
+        let (d, q, position, velocity) = (d?, q?, position?, velocity?);
+        let half_a_tick = 0.5 * run.recording.rate.period();
+        let in_the_stator = |k: usize| {
+            // The voltage is that of the middle of a tick.
+            let motor = (position[k] + half_a_tick * velocity[k]) / limits.transmission;
+            let angle = ElectricalAngle::from_mechanical(motor, limits.motor.electrical_ratio);
+            let voltage = Dq { d: d[k], q: q[k] }.to_alpha_beta(angle.rotation());
+            [voltage.alpha, voltage.beta]
+        };
+        Some(strips(d.len(), in_the_stator))
+    })?;
+    let corner = |k: u32| {
+        let (sin, cos) = (f64::from(k) * FRAC_PI_3).sin_cos();
+        [cos, sin].map(|part| 2.0 / 3.0 * limits.dc_link * part)
+    };
+    // From the middle of its lower side, where its name has room.
+    let start = [0.0, -limits.dc_link / 3_f64.sqrt()];
+    let hexagon = vec![std::iter::once(start).chain((5..=10).map(corner)).chain([start]).collect()];
+    let scale = Scale { factor: 1.0, unit: "Vpk".into() };
+    Some(Plane {
+        title: "Voltage in the stator's frame: β over α (Vpk)".into(),
+        path: EntityPath::from("voltage_plane"),
+        axes: [Axis { name: "α", scale: scale.clone() }, Axis { name: "β", scale }],
+        is_isometric: true,
+        curves: [
+            vec![
+                bound(&["voltage_plane", "hexagon"], "hexagon of the DC link", hexagon),
+                bound(&["voltage_plane", "circle"], "circle: in every direction", vec![circle(limits.bounds.voltage)]),
+            ],
+            of_runs,
+        ]
+        .concat(),
+    })
+}
+
+/// Effort over the angle within a turn of the motor, or within two poles of a linear one.
+fn over_angle(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
+    let period = match limits.turns {
+        Coordinate::Rotary => TAU,
+        Coordinate::Linear => TAU / limits.motor.electrical_ratio,
+    };
+    let of_runs = curves(runs, "effort_over_angle", |run| {
+        let (position, effort) =
+            (run.recording.channel(Signal::MotorPosition)?, run.recording.channel(Signal::EffortMotor)?);
+        let (low, high) = range(position)?;
+        if (high - low) / limits.transmission < TURNS * period {
+            return None;
+        }
+        let turn = |k: usize| (position[k] / limits.transmission / period).floor();
+        let angle = |k: usize| position[k] / limits.transmission - turn(k) * period;
+        let all = strips(position.len(), |k| [angle(k), effort[k]]);
+        // A line does not go back through the plane where a turn ends.
+        let is_whole = |pair: &[f64; 2], next: &[f64; 2]| (pair[0] - next[0]).abs() < 0.5 * period;
+        Some(all.iter().flat_map(|strip| strip.chunk_by(is_whole).map(<[_]>::to_vec)).collect())
+    })?;
+    let (name, scale) = match limits.turns {
+        Coordinate::Rotary => ("angle of the motor", Scale { factor: 1_f64.to_degrees(), unit: "°".into() }),
+        Coordinate::Linear => ("place within a pole pair", Scale::for_peak("m", period)),
+    };
+    Some(Plane {
+        title: format!("{} over {}", effort_name(limits.turns), scale.title(name)),
+        path: EntityPath::from("effort_over_angle"),
+        axes: [Axis { name, scale }, effort_axis(limits.turns)],
+        is_isometric: false,
+        curves: of_runs,
+    })
+}
+
+fn speed_axis(turns: Coordinate) -> Axis {
+    let scale = match turns {
+        Coordinate::Rotary => Scale { factor: 60.0 / TAU, unit: "rpm".into() },
+        Coordinate::Linear => Scale { factor: 1.0, unit: "m/s".into() },
+    };
+    Axis { name: "speed", scale }
+}
+
+fn effort_axis(turns: Coordinate) -> Axis {
+    let unit = match turns {
+        Coordinate::Rotary => "N·m",
+        Coordinate::Linear => "N",
+    };
+    Axis { name: "effort", scale: Scale { factor: 1.0, unit: unit.into() } }
+}
+
+const fn effort_name(turns: Coordinate) -> &'static str {
+    match turns {
+        Coordinate::Rotary => "Torque",
+        Coordinate::Linear => "Force",
+    }
+}
+
+/// A curve for each run that has one; `None` where none has.
+fn curves(
+    runs: &[Run<'_>],
+    plane: &str,
+    strips: impl Fn(&Run<'_>) -> Option<Vec<Vec<[f64; 2]>>>,
+) -> Option<Vec<Curve>> {
+    let all = runs.iter().enumerate().filter_map(|(index, run)| {
+        let strips = strips(run)?;
+        let colour = run.label.map_or(style::MOTOR, |_| style::of_run(index));
+        let label = run.label.map(str::to_owned);
+        (!strips.is_empty()).then(|| Curve { path: run.path(&[plane, "run"]), label, colour, width: 1.5, strips })
+    });
+    let all: Vec<Curve> = all.collect();
+    (!all.is_empty()).then_some(all)
+}
+
+/// Every n-th of `count` points, in lines that end at what is not finite.
+fn strips(count: usize, point: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let points: Vec<[f64; 2]> = (0..count).step_by(count.div_ceil(POINTS).max(1)).map(point).collect();
+    let is_finite = |point: &[f64; 2]| point.iter().all(|value| value.is_finite());
+    points.split(|point| !is_finite(point)).filter(|strip| strip.len() > 1).map(<[_]>::to_vec).collect()
+}
+
+fn bound(path: &[&str], label: &str, strips: Vec<Vec<[f64; 2]>>) -> Curve {
+    let path = EntityPath::from(path.join("/"));
+    Curve { path, label: Some(label.to_owned()), colour: style::LIMIT, width: 1.5, strips }
+}
+
+fn circle(radius: f64) -> Vec<[f64; 2]> {
+    (0..=OF_A_BOUND)
+        .map(|k| (TAU * f64::from(k) / f64::from(OF_A_BOUND)).sin_cos())
+        .map(|(sin, cos)| [radius * sin, radius * cos])
+        .collect()
+}
+
+/// The largest magnitude that any point has on an axis.
+fn largest(curves: &[Curve], axis: usize) -> f64 {
+    let points = curves.iter().flat_map(|curve| curve.strips.iter().flatten());
+    points.map(|point| point[axis].abs()).fold(0.0, f64::max)
+}
