@@ -57,7 +57,8 @@ pub struct Advice {
 pub struct Price {
     /// The limit, in parts of what it is.
     pub factor: f64,
-    /// The fastest set-point (s) with that limit, on the machines of the search; `None`: there is none.
+    /// The worst time (s) with that limit: that of the advice, and what the fastest set-point differs from it on the machines of the
+    /// search; `None`: there is none.
     pub time: Option<f64>,
 }
 
@@ -164,13 +165,14 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         }
         let wider = priced(question, &mut search, &planned, &WIDER);
         let Planned { point, duration } = best.planned;
+        let worst = worse(&best.worst, &verification.worst);
         return Ok(Advice {
             point,
             duration,
-            worst: worse(&best.worst, &verification.worst),
+            prices: prices(&tighter, &wider, best.worst.time, worst.time),
+            worst,
             verification,
             others: others(&found, point.family),
-            prices: prices(&tighter, &best, &wider),
             runs: search.runs(),
             planned: planned.len(),
         });
@@ -253,15 +255,16 @@ fn fastest(priced: &[(f64, Option<Found>)]) -> Option<&Found> {
     found.min_by(|one, other| one.worst.time.total_cmp(&other.worst.time))
 }
 
-/// What tighter and wider limits than that of `own` cost and save. What keeps a tighter limit keeps a wider one, too.
-fn prices(tighter: &[(f64, Option<Found>)], own: &Found, wider: &[(f64, Option<Found>)]) -> Vec<Price> {
+/// What tighter and wider limits cost and save beside an advice that takes `own` (s) on the machines of the search and `worst` on those of
+/// the verification, too. What keeps a tighter limit keeps a wider one, too.
+fn prices(tighter: &[(f64, Option<Found>)], wider: &[(f64, Option<Found>)], own: f64, worst: f64) -> Vec<Price> {
     let mut fastest = f64::INFINITY;
     let mut prices = Vec::new();
-    for (all, known) in [(tighter, f64::INFINITY), (wider, own.worst.time)] {
+    for (all, known) in [(tighter, f64::INFINITY), (wider, own)] {
         fastest = fastest.min(known);
         for (factor, found) in all {
             fastest = found.as_ref().map_or(fastest, |found| fastest.min(found.worst.time));
-            prices.push(Price { factor: *factor, time: fastest.is_finite().then_some(fastest) });
+            prices.push(Price { factor: *factor, time: fastest.is_finite().then_some(worst + (fastest - own)) });
         }
     }
     prices

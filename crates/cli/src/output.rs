@@ -226,14 +226,13 @@ pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
 fn motor_limits(scenario: &Scenario) -> Option<MotorLimits> {
     let Actuator::Pmsm { motor, dc_link, drive, .. } = &scenario.actuator else { return None };
     let (current, _) = drive.params.current_loop()?;
-    let direction = scenario.bus.as_ref().map_or(1.0, |bus| 1.0_f64.copysign(bus.units.axis));
     Some(MotorLimits {
         motor: *motor,
         bounds: Bounds { current: current.max_current, voltage: inverter::voltage_limit(*dc_link) },
         dc_link: *dc_link,
         effort: scenario.actuator.max_effort(),
-        transmission: direction * scenario.axis.transmission,
-        turns: scenario.axis.motor_motion,
+        transmission: scenario.direction() * scenario.axis.transmission,
+        motion: scenario.axis.motor_motion,
     })
 }
 

@@ -29,8 +29,7 @@ impl Model {
         if part == Part::Drive && scenario.actuator.drive().is_none() {
             return Err(FmuError::NoDrive { scenario: name() });
         }
-        let is_reversed = scenario.bus.as_ref().is_some_and(|bus| bus.units.axis < 0.0);
-        if part == Part::Drive && is_reversed {
+        if part == Part::Drive && scenario.direction() < 0.0 {
             return Err(FmuError::Reversed { scenario: name() });
         }
         let own = part.of(scenario);

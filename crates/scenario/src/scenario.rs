@@ -95,6 +95,14 @@ pub struct Scenario {
     pub made_of: Vec<MadeOf>,
 }
 
+impl Scenario {
+    /// −1 for a motor that is mounted the other way round, so that it and its encoders count against the axis; otherwise 1.
+    #[must_use]
+    pub fn direction(&self) -> f64 {
+        self.bus.as_ref().map_or(1.0, |bus| bus.units.direction())
+    }
+}
+
 /// What to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {

@@ -96,7 +96,7 @@ impl Bench {
         let disturbances = Disturbances::new(&scenario.disturbances, base_rate, ticks)?;
 
         let (mechanics, bodies) = plant::mechanics(scenario, engine)?;
-        let direction = bus.map_or(1.0, |bus| 1.0_f64.copysign(bus.units.axis));
+        let direction = scenario.direction();
         let motor = mechanics.bodies()[0];
         let motor_before = direction * motor.position;
         let mut power = plant::power_stage(&scenario.actuator, direction * motor.velocity, base_rate.period())?;

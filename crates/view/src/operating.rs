@@ -9,79 +9,89 @@ use crate::style;
 use servobench_base::{Coordinate, Dq, ElectricalAngle};
 use servobench_plant::pmsm::Bounds;
 use servobench_signals::Signal;
+use servobench_trace::envelope;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Points of a curve that a run gives.
-const POINTS: usize = 20_000;
+/// First parts of the entity paths of the planes.
+const EFFORT_OVER_SPEED: &str = "effort_over_speed";
+const CURRENT_PLANE: &str = "current_plane";
+const VOLTAGE_PLANE: &str = "voltage_plane";
+const EFFORT_OVER_ANGLE: &str = "effort_over_angle";
+pub(crate) const PATHS: [&str; 4] = [EFFORT_OVER_SPEED, CURRENT_PLANE, VOLTAGE_PLANE, EFFORT_OVER_ANGLE];
+
 /// Points of a bound.
 const OF_A_BOUND: u32 = 240;
 /// How far beyond the fastest point of a run, or beyond its corner, an envelope goes.
 const BEYOND: f64 = 1.25;
 /// Part of the standstill effort that the corner of an envelope still has.
 const CORNER: f64 = 0.98;
-/// Turns of the angle from which on an effort is shown over it.
-const TURNS: f64 = 1.0;
+/// The fastest that an envelope is looked for (electrical, rad/s).
+const FASTEST: f64 = 1e6;
 
-/// The planes of `runs`, all on the motor of `limits`.
-pub(crate) fn planes(runs: &[Run<'_>], limits: &MotorLimits) -> Vec<Plane> {
-    let all =
-        [effort_over_speed(runs, limits), currents(runs, limits), voltages(runs, limits), over_angle(runs, limits)];
+/// The planes of `runs`, all on the motor of `limits`, with about `most` points of each run.
+pub(crate) fn planes(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Vec<Plane> {
+    let all = [
+        effort_over_speed(runs, limits, most),
+        currents(runs, limits, most),
+        voltages(runs, limits, most),
+        over_angle(runs, limits, most),
+    ];
     all.into_iter().flatten().collect()
 }
 
-fn effort_over_speed(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
+fn effort_over_speed(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Plane> {
     let ratio = limits.motor.electrical_ratio;
-    let of_runs = curves(runs, "effort_over_speed", |run| {
+    let of_runs = curves(runs, EFFORT_OVER_SPEED, |run| {
         let (speed, effort) =
             (run.recording.channel(Signal::MotorVelocity)?, run.recording.channel(Signal::EffortMotor)?);
-        Some(strips(speed.len(), |k| [speed[k] / limits.transmission, effort[k]]))
+        Some(strips(speed.len(), most, |k| [speed[k] / limits.transmission, effort[k]]))
     })?;
     let fastest = largest(&of_runs, 0);
     let bounds = limits.bounds;
     let standing = limits.motor.most_effort(bounds, 0.0)?.effort;
-    let end = limits.motor.fastest_with(bounds, 0.0, 1e6) / ratio;
-    let corner = limits.motor.fastest_with(bounds, CORNER * standing.min(limits.effort), 1e6) / ratio;
+    let end = limits.motor.fastest_with(bounds, 0.0, FASTEST) / ratio;
+    let corner = limits.motor.fastest_with(bounds, CORNER * standing.min(limits.effort), FASTEST) / ratio;
     let to = (BEYOND * fastest.max(corner)).min(end);
-    let most = |speed: f64| limits.motor.most_effort(bounds, ratio * speed).map(|most| most.effort.min(limits.effort));
+    let given = |speed: f64| limits.motor.most_effort(bounds, ratio * speed).map(|most| most.effort.min(limits.effort));
     // From standstill either way, driving and braking: it ends where the motor can go no faster, or where nobody went.
     let ways = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     let quarters = ways.map(|(way, side)| {
         let speeds = (0..=OF_A_BOUND).map(|k| way * to * f64::from(k) / f64::from(OF_A_BOUND));
-        speeds.filter_map(|speed| Some([speed, side * most(side * speed)?])).collect()
+        speeds.filter_map(|speed| Some([speed, side * given(side * speed)?])).collect()
     });
-    let envelope = bound(&["effort_over_speed", "envelope"], "most that motor and drive give", quarters.to_vec());
-    let unit = limits.turns;
+    let envelope = bound(&[EFFORT_OVER_SPEED, "envelope"], "most that motor and drive give", quarters.to_vec());
+    let motion = limits.motion;
     Some(Plane {
-        title: format!("{} over speed", effort_name(unit)),
-        path: EntityPath::from("effort_over_speed"),
-        axes: [speed_axis(unit), effort_axis(unit)],
+        title: format!("{} over speed", effort_name(motion)),
+        path: EntityPath::from(EFFORT_OVER_SPEED),
+        axes: [speed_axis(motion), effort_axis(motion)],
         is_isometric: false,
         curves: [vec![envelope], of_runs].concat(),
     })
 }
 
-fn currents(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
-    let of_runs = curves(runs, "current_plane", |run| {
+fn currents(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Plane> {
+    let of_runs = curves(runs, CURRENT_PLANE, |run| {
         let (d, q) = (run.recording.channel(Signal::CurrentD)?, run.recording.channel(Signal::CurrentQ)?);
-        Some(strips(d.len(), |k| [d[k], q[k]]))
+        Some(strips(d.len(), most, |k| [d[k], q[k]]))
     })?;
     let Bounds { current, .. } = limits.bounds;
     let mut bounds = Vec::new();
     if current.is_finite() {
-        bounds.push(bound(&["current_plane", "limit"], "largest current", vec![circle(current)]));
+        bounds.push(bound(&[CURRENT_PLANE, "limit"], "largest current", vec![circle(current)]));
     }
     let scale = Scale { factor: 1.0, unit: "Apk".into() };
     Some(Plane {
         title: "Current in the rotor's frame: q over d (Apk)".into(),
-        path: EntityPath::from("current_plane"),
+        path: EntityPath::from(CURRENT_PLANE),
         axes: [Axis { name: "d", scale: scale.clone() }, Axis { name: "q", scale }],
         is_isometric: true,
         curves: [bounds, of_runs].concat(),
     })
 }
 
-fn voltages(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
-    let of_runs = curves(runs, "voltage_plane", |run| {
+fn voltages(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Plane> {
+    let of_runs = curves(runs, VOLTAGE_PLANE, |run| {
         let [d, q] = [Signal::VoltageD, Signal::VoltageQ].map(|signal| run.recording.channel(signal));
         let [position, velocity] =
             [Signal::MotorPosition, Signal::MotorVelocity].map(|signal| run.recording.channel(signal));
@@ -94,7 +104,7 @@ fn voltages(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
             let voltage = Dq { d: d[k], q: q[k] }.to_alpha_beta(angle.rotation());
             [voltage.alpha, voltage.beta]
         };
-        Some(strips(d.len(), in_the_stator))
+        Some(strips(d.len(), most, in_the_stator))
     })?;
     let corner = |k: u32| {
         let (sin, cos) = (f64::from(k) * FRAC_PI_3).sin_cos();
@@ -106,13 +116,13 @@ fn voltages(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
     let scale = Scale { factor: 1.0, unit: "Vpk".into() };
     Some(Plane {
         title: "Voltage in the stator's frame: β over α (Vpk)".into(),
-        path: EntityPath::from("voltage_plane"),
+        path: EntityPath::from(VOLTAGE_PLANE),
         axes: [Axis { name: "α", scale: scale.clone() }, Axis { name: "β", scale }],
         is_isometric: true,
         curves: [
             vec![
-                bound(&["voltage_plane", "hexagon"], "hexagon of the DC link", hexagon),
-                bound(&["voltage_plane", "circle"], "circle: in every direction", vec![circle(limits.bounds.voltage)]),
+                bound(&[VOLTAGE_PLANE, "hexagon"], "hexagon of the DC link", hexagon),
+                bound(&[VOLTAGE_PLANE, "circle"], "circle: in every direction", vec![circle(limits.bounds.voltage)]),
             ],
             of_runs,
         ]
@@ -121,56 +131,56 @@ fn voltages(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
 }
 
 /// Effort over the angle within a turn of the motor, or within two poles of a linear one.
-fn over_angle(runs: &[Run<'_>], limits: &MotorLimits) -> Option<Plane> {
-    let period = match limits.turns {
+fn over_angle(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Plane> {
+    let period = match limits.motion {
         Coordinate::Rotary => TAU,
         Coordinate::Linear => TAU / limits.motor.electrical_ratio,
     };
-    let of_runs = curves(runs, "effort_over_angle", |run| {
+    let of_runs = curves(runs, EFFORT_OVER_ANGLE, |run| {
         let (position, effort) =
             (run.recording.channel(Signal::MotorPosition)?, run.recording.channel(Signal::EffortMotor)?);
         let (low, high) = range(position)?;
-        if (high - low) / limits.transmission < TURNS * period {
+        if (high - low) / limits.transmission.abs() < period {
             return None;
         }
         let turn = |k: usize| (position[k] / limits.transmission / period).floor();
         let angle = |k: usize| position[k] / limits.transmission - turn(k) * period;
-        let all = strips(position.len(), |k| [angle(k), effort[k]]);
+        let all = strips(position.len(), most, |k| [angle(k), effort[k]]);
         // A line does not go back through the plane where a turn ends.
         let is_whole = |pair: &[f64; 2], next: &[f64; 2]| (pair[0] - next[0]).abs() < 0.5 * period;
         Some(all.iter().flat_map(|strip| strip.chunk_by(is_whole).map(<[_]>::to_vec)).collect())
     })?;
-    let (name, scale) = match limits.turns {
+    let (name, scale) = match limits.motion {
         Coordinate::Rotary => ("angle of the motor", Scale { factor: 1_f64.to_degrees(), unit: "°".into() }),
         Coordinate::Linear => ("place within a pole pair", Scale::for_peak("m", period)),
     };
     Some(Plane {
-        title: format!("{} over {}", effort_name(limits.turns), scale.title(name)),
-        path: EntityPath::from("effort_over_angle"),
-        axes: [Axis { name, scale }, effort_axis(limits.turns)],
+        title: format!("{} over {}", effort_name(limits.motion), scale.title(name)),
+        path: EntityPath::from(EFFORT_OVER_ANGLE),
+        axes: [Axis { name, scale }, effort_axis(limits.motion)],
         is_isometric: false,
         curves: of_runs,
     })
 }
 
-fn speed_axis(turns: Coordinate) -> Axis {
-    let scale = match turns {
+fn speed_axis(motion: Coordinate) -> Axis {
+    let scale = match motion {
         Coordinate::Rotary => Scale { factor: 60.0 / TAU, unit: "rpm".into() },
         Coordinate::Linear => Scale { factor: 1.0, unit: "m/s".into() },
     };
     Axis { name: "speed", scale }
 }
 
-fn effort_axis(turns: Coordinate) -> Axis {
-    let unit = match turns {
+fn effort_axis(motion: Coordinate) -> Axis {
+    let unit = match motion {
         Coordinate::Rotary => "N·m",
         Coordinate::Linear => "N",
     };
     Axis { name: "effort", scale: Scale { factor: 1.0, unit: unit.into() } }
 }
 
-const fn effort_name(turns: Coordinate) -> &'static str {
-    match turns {
+const fn effort_name(motion: Coordinate) -> &'static str {
+    match motion {
         Coordinate::Rotary => "Torque",
         Coordinate::Linear => "Force",
     }
@@ -192,11 +202,17 @@ fn curves(
     (!all.is_empty()).then_some(all)
 }
 
-/// Every n-th of `count` points, in lines that end at what is not finite.
-fn strips(count: usize, point: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let points: Vec<[f64; 2]> = (0..count).step_by(count.div_ceil(POINTS).max(1)).map(point).collect();
+/// `count` points in lines that end at what is not finite. Of more than `most` the extremes of both quantities stay, each where it is, so
+/// that no ripple is lost.
+fn strips(count: usize, most: usize, point: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let points: Vec<[f64; 2]> = (0..count).map(point).collect();
+    let extremes = |axis: usize| envelope(&points.iter().map(|point| point[axis]).collect::<Vec<f64>>(), most / 4);
+    let mut kept = [extremes(0), extremes(1)].concat();
+    kept.sort_unstable();
+    kept.dedup();
+    let kept: Vec<[f64; 2]> = kept.into_iter().map(|index| points[index]).collect();
     let is_finite = |point: &[f64; 2]| point.iter().all(|value| value.is_finite());
-    points.split(|point| !is_finite(point)).filter(|strip| strip.len() > 1).map(<[_]>::to_vec).collect()
+    kept.split(|point| !is_finite(point)).filter(|line| line.len() > 1).map(<[_]>::to_vec).collect()
 }
 
 fn bound(path: &[&str], label: &str, strips: Vec<Vec<[f64; 2]>>) -> Curve {

@@ -43,7 +43,7 @@ pub struct MotorLimits {
     /// Axis coordinate per motor coordinate; negative for a motor that is mounted the other way round.
     pub transmission: f64,
     /// Whether the motor turns or moves along a line.
-    pub turns: Coordinate,
+    pub motion: Coordinate,
 }
 
 /// What came of a run, in words: the head of every page.

@@ -22,8 +22,10 @@ use std::path::Path;
 /// Application id of all our recordings: the viewer keeps one blueprint for them.
 const APPLICATION: &str = "servobench";
 
-/// Labels that the first parts of other entity paths have.
-const RESERVED: [&str; 3] = [BOUND, ALLOWED, WINDOW];
+/// Whether the first part of another entity path is called that.
+fn is_reserved(label: &str) -> bool {
+    label.starts_with("__") || [BOUND, ALLOWED, WINDOW].contains(&label) || operating::PATHS.contains(&label)
+}
 
 /// Whether runs that lie over each other may be called that.
 ///
@@ -33,7 +35,7 @@ pub fn check_labels(labels: &[&str]) -> Result<(), ViewError> {
     for (index, label) in labels.iter().enumerate() {
         let reason = if label.is_empty() {
             "is empty"
-        } else if label.starts_with("__") || RESERVED.contains(label) {
+        } else if is_reserved(label) {
             "is reserved"
         } else if labels[..index].contains(label) {
             "an earlier run has already"
@@ -92,7 +94,8 @@ impl<'a> Presentation<'a> {
         let plots = plan::plots(&runs, options);
         let scene = Scene::of(&name, &runs, options);
         let head = Head::of(name.clone(), &runs, options);
-        let planes = options.motor.map_or_else(Vec::new, |motor| operating::planes(&runs, &motor));
+        let planes =
+            options.motor.map_or_else(Vec::new, |motor| operating::planes(&runs, &motor, options.max_instants));
         Self { name, runs, plots, scene, planes, head, max_instants: options.max_instants }
     }
 

@@ -90,6 +90,14 @@ pub struct DriveUnits {
     pub axis: f64,
 }
 
+impl DriveUnits {
+    /// −1 where positions on the bus count against the axis, otherwise 1.
+    #[must_use]
+    pub const fn direction(&self) -> f64 {
+        1.0_f64.copysign(self.axis)
+    }
+}
+
 /// A value for an object of the drive. Whether the drive takes it is for its object dictionary to say.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ObjectWrite {

@@ -154,7 +154,7 @@ impl Network {
             asked: Setpoint::default(),
             failure: None,
             bus_position: 0.0,
-            direction: 1.0_f64.copysign(bus.units.axis),
+            direction: bus.units.direction(),
             increment,
             index_increment: index_increment(&counted, increment, loops),
             index: None,

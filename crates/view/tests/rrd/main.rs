@@ -247,6 +247,7 @@ fn labels_and_numbers_of_runs_are_checked() {
     );
     assert!(refusal(&[("", &recording), ("one", &recording)]).contains("which is empty"));
     assert!(refusal(&[("limit", &recording), ("one", &recording)]).contains("which is reserved"));
+    assert!(refusal(&[("current_plane", &recording), ("one", &recording)]).contains("which is reserved"));
 }
 
 #[test]

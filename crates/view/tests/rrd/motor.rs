@@ -16,7 +16,7 @@ const LIMITS: MotorLimits = MotorLimits {
     dc_link: 560.0,
     effort: f64::INFINITY,
     transmission: 1.0,
-    turns: Coordinate::Linear,
+    motion: Coordinate::Linear,
 };
 
 #[test]
@@ -38,4 +38,12 @@ fn a_motor_is_shown_beside_what_it_can_give() {
     assert!(!content.entities.iter().any(|entity| entity.starts_with("/voltage_plane")));
     assert_views_are_fed(&content);
     assert!(!written(&example(4), &options()).entities.iter().any(|entity| entity.starts_with("/effort_over")));
+}
+
+/// Mounted the other way round it turns as far.
+#[test]
+fn a_motor_that_counts_against_the_axis_has_all_planes() {
+    let reversed = MotorLimits { transmission: -1.0, ..LIMITS };
+    let content = written(&example(3), &ViewOptions { motor: Some(reversed), ..options() });
+    assert!(content.entities.contains("/effort_over_angle/run"), "{:?}", content.entities);
 }
