@@ -41,10 +41,13 @@ impl Suite {
 
     /// The suite when its first run has ended and the second is under way.
     fn under_way(&self, out: &str) -> Child {
-        let child = self.command(out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = self.command(out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let journal = self.out(out).join("results.journal");
         // The journal's own record, the invalid file, the first run.
         wait_until(|| fs::read_to_string(&journal).is_ok_and(|text| text.lines().count() >= 3));
+        // Until the second one begins nothing computes.
+        let before = processor_time(&child);
+        wait_until(|| processor_time(&child) >= before + 2 || child.try_wait().unwrap().is_some());
         child
     }
 
@@ -72,6 +75,13 @@ fn wait_until(mut is_so: impl FnMut() -> bool) {
     while !is_so() {
         std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+/// Time that a process has computed (clock ticks): proc_pid_stat(5), `utime`, the twelfth after the name in brackets.
+fn processor_time(child: &Child) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
+    let (_, after_the_name) = status.rsplit_once(')').unwrap();
+    after_the_name.split_whitespace().nth(11).unwrap().parse().unwrap()
 }
 
 fn send(signal: &str, child: &Child) {
