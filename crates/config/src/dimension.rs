@@ -1,33 +1,38 @@
 //! Dimensions as exponents.
 //!
-//! Beside the SI base there are three that the SI counts as 1, because mistaking them is what goes wrong in practice:
+//! Beside the SI base there are some that the SI counts as 1, because mistaking them is what goes wrong in practice:
 //! the angle (rad, deg, rev), the cycle (Hz: `1 kHz` of bandwidth is 2π·1000 rad/s, `1/s` is no frequency), and whether
-//! an alternating current or voltage is given by its amplitude or effective value (`Apk`, `Arms`; plain `A` is neither).
+//! an alternating current or voltage is given by its amplitude or effective value (`Apk`, `Arms`; plain `A` is neither). And
+//! whether kelvin are a difference or counted from the zero of a scale (`K`, `degC`).
 use core::fmt;
 
-/// Exponents of metre, kilogram, second, ampere, radian, cycle and amplitude, in this order.
+/// Exponents of metre, kilogram, second, ampere, radian, cycle, amplitude, kelvin and zero of the scale of temperature, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Dimension([i32; 7]);
+pub struct Dimension([i32; 9]);
 
-const SYMBOLS: [&str; 7] = ["m", "kg", "s", "A", "rad", "cycle", "amplitude"];
+const SYMBOLS: [&str; 9] = ["m", "kg", "s", "A", "rad", "cycle", "amplitude", "K", "above 0 °C"];
 
 impl Dimension {
     /// A pure number.
-    pub const ONE: Self = Self([0; 7]);
+    pub const ONE: Self = Self([0; 9]);
     /// Metre.
-    pub const METRE: Self = Self([1, 0, 0, 0, 0, 0, 0]);
+    pub const METRE: Self = Self([1, 0, 0, 0, 0, 0, 0, 0, 0]);
     /// Kilogram.
-    pub const KILOGRAM: Self = Self([0, 1, 0, 0, 0, 0, 0]);
+    pub const KILOGRAM: Self = Self([0, 1, 0, 0, 0, 0, 0, 0, 0]);
     /// Second.
-    pub const SECOND: Self = Self([0, 0, 1, 0, 0, 0, 0]);
+    pub const SECOND: Self = Self([0, 0, 1, 0, 0, 0, 0, 0, 0]);
     /// Ampere.
-    pub const AMPERE: Self = Self([0, 0, 0, 1, 0, 0, 0]);
+    pub const AMPERE: Self = Self([0, 0, 0, 1, 0, 0, 0, 0, 0]);
     /// Radian.
-    pub const RADIAN: Self = Self([0, 0, 0, 0, 1, 0, 0]);
+    pub const RADIAN: Self = Self([0, 0, 0, 0, 1, 0, 0, 0, 0]);
     /// A cycle of something that repeats.
-    pub const CYCLE: Self = Self([0, 0, 0, 0, 0, 1, 0]);
+    pub const CYCLE: Self = Self([0, 0, 0, 0, 0, 1, 0, 0, 0]);
     /// That a voltage or current is given by its amplitude.
-    pub const AMPLITUDE: Self = Self([0, 0, 0, 0, 0, 0, 1]);
+    pub const AMPLITUDE: Self = Self([0, 0, 0, 0, 0, 0, 1, 0, 0]);
+    /// Kelvin.
+    pub const KELVIN: Self = Self([0, 0, 0, 0, 0, 0, 0, 1, 0]);
+    /// Degrees Celsius: kelvin above the zero of that scale, which are no difference of temperatures.
+    pub const CELSIUS: Self = Self([0, 0, 0, 0, 0, 0, 0, 1, 1]);
     /// Cycles per second.
     pub const HERTZ: Self = Self::CYCLE.times(Self::SECOND, -1);
     /// Newton.
@@ -93,7 +98,7 @@ impl Dimension {
     fn product(self, sign: i32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut is_first = true;
         // Kilogram before metre, as everybody writes it.
-        for i in [1, 0, 2, 3, 4, 5, 6] {
+        for i in [1, 0, 2, 3, 4, 5, 6, 7, 8] {
             if self.0[i].signum() == sign {
                 f.write_str(if is_first { "" } else { "·" })?;
                 f.write_str(SYMBOLS[i])?;

@@ -11,6 +11,7 @@ const SECOND: D = D::SECOND;
 const VELOCITY_L: D = D::METRE.times(SECOND, -1);
 const VELOCITY_R: D = D::RADIAN.times(SECOND, -1);
 const KG_M2: D = D::KILOGRAM.times(D::METRE, 2);
+const WATT: D = D::NEWTON_METRE.times(SECOND, -1);
 const PER_SECOND: D = D::ONE.times(SECOND, -1);
 const VOLT_PEAK: D = D::VOLT.times(D::AMPLITUDE, 1);
 const AMPERE_PEAK: D = D::AMPERE.times(D::AMPLITUDE, 1);
@@ -91,6 +92,17 @@ pub static POSITION: Counterparts = Counterparts {
     linear: physical("a length", "mm", &[(D::METRE, 1.0)]),
     rotary: physical("an angle", "deg", &[(D::RADIAN, 1.0)]),
 };
+/// Degrees Celsius.
+pub static TEMPERATURE: Physical = physical("a temperature (degC)", "degC", &[(D::CELSIUS, 1.0)]);
+/// Kelvin per watt.
+pub static THERMAL_RESISTANCE: Physical = physical("a thermal resistance", "K/W", &[(D::KELVIN.times(WATT, -1), 1.0)]);
+/// Joules per kelvin.
+pub static HEAT_CAPACITY: Physical = physical("a heat capacity", "J/K", &[(D::NEWTON_METRE.times(D::KELVIN, -1), 1.0)]);
+/// A part per kelvin.
+pub static PER_KELVIN: Physical =
+    physical("a temperature coefficient (1/K)", "1/K", &[(D::ONE.times(D::KELVIN, -1), 1.0)]);
+/// Angle of something that repeats.
+pub static PHASE: Physical = physical("an angle", "deg", &[(D::RADIAN, 1.0)]);
 /// Velocity.
 pub static VELOCITY: Counterparts = Counterparts {
     linear: physical("a velocity", "m/s", &[(VELOCITY_L, 1.0)]),
@@ -148,7 +160,7 @@ pub static SOURCE_GAIN: Counterparts = Counterparts {
 };
 
 /// Everything that has a name here, to name what a user wrote.
-pub static NAMED: [&Physical; 36] = [
+pub static NAMED: [&Physical; 40] = [
     &POSITION.linear,
     &POSITION.rotary,
     &TIME,
@@ -185,4 +197,8 @@ pub static NAMED: [&Physical; 36] = [
     &SOURCE_GAIN.rotary,
     &EFFORT_RATE.linear,
     &EFFORT_RATE.rotary,
+    &TEMPERATURE,
+    &THERMAL_RESISTANCE,
+    &HEAT_CAPACITY,
+    &PER_KELVIN,
 ];

@@ -34,13 +34,15 @@ pub(crate) fn definition(symbol: &str) -> Result<Unit, NoUnit> {
                 (&mut exponents.m, own.m),
                 (&mut exponents.s, own.s),
                 (&mut exponents.a, own.a),
+                (&mut exponents.k, own.k),
                 (&mut exponents.rad, own.rad),
             ] {
                 *sum += sign * power * one;
             }
         }
     }
-    let base = Some(BaseUnit { exponents, factor: 1.0, offset: 0.0 });
+    let offset = if symbol == "°C" { 273.15 } else { 0.0 };
+    let base = Some(BaseUnit { exponents, factor: 1.0, offset });
     let shown = |(name, factor): &(&str, f64)| DisplayUnit {
         name: (*name).into(),
         factor: *factor,
@@ -65,6 +67,7 @@ fn derived(symbol: &str) -> Option<Exponents> {
         "m" => Exponents { m: 1, ..none },
         "s" => Exponents { s: 1, ..none },
         "A" => Exponents { a: 1, ..none },
+        "°C" => Exponents { k: 1, ..none },
         "rad" => Exponents { rad: 1, ..none },
         "N" => Exponents { kg: 1, m: 1, s: -2, ..none },
         "W" => Exponents { kg: 1, m: 2, s: -3, ..none },
@@ -75,7 +78,7 @@ fn derived(symbol: &str) -> Option<Exponents> {
 
 /// The name as the standard recommends it: `kg.m2`, `N.m.s/rad`.
 fn ascii(symbol: &str) -> String {
-    symbol.replace(' ', ".").replace('²', "2").replace('³', "3").replace('⁴', "4")
+    symbol.replace('°', "deg").replace(' ', ".").replace('²', "2").replace('³', "3").replace('⁴', "4")
 }
 
 #[cfg(test)]
@@ -104,6 +107,15 @@ mod tests {
             assert_eq!(of(symbol), (name.to_owned(), exponents));
         }
         assert_eq!(definition("furlong").unwrap_err().to_string(), "the unit `furlong` has no definition for FMI");
+    }
+
+    /// Oracle: the zero of the Celsius scale in kelvin.
+    #[test]
+    fn degrees_celsius_are_kelvin_above_their_zero() {
+        let unit = definition("°C").unwrap();
+        let BaseUnit { exponents, factor, offset } = unit.base.unwrap();
+        assert_eq!((unit.name.as_str(), exponents), ("degC", Exponents { k: 1, ..Exponents::default() }));
+        assert!((factor - 1.0).abs() < 1e-15 && (offset - 273.15).abs() < 1e-12);
     }
 
     /// Oracle: 1 rad/s is 60/2π rpm.

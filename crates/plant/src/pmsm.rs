@@ -19,18 +19,30 @@
 //! P_electrical = P_copper + P_stored + P_air-gap
 //! ```
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod cogging;
+mod effects;
 mod envelope;
+mod flux_harmonics;
+mod iron;
 mod maps;
+mod phases;
 mod table;
+mod temperature;
+mod varying;
 
+pub use cogging::{Cogging, CoggingParameter};
+pub use effects::{Effects, RealTicks, Travel};
 pub use envelope::{Bounds, MostEffort};
-
+pub use flux_harmonics::{FluxHarmonic, FluxHarmonicParameter};
+pub use iron::{IronLoss, IronLossParameter};
 use maps::{Forms, Maps};
+pub use phases::PhaseParameter;
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
 use table::{Solution, Tables};
+pub use temperature::{COPPER, Temperature, TemperatureParameter, Temperatures, ThermalNetwork};
 
 servobench_config::parameters! {
     /// A parameter of a synchronous motor.
@@ -133,14 +145,16 @@ impl Input {
     }
 }
 
-/// Mean powers over a tick (W): `electrical = copper + stored + air_gap`.
+/// Mean powers over a tick (W): `electrical = copper + iron + stored + air_gap`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Power {
     /// Into the terminals.
     pub electrical: f64,
     /// Lost in the resistance.
     pub copper: f64,
-    /// Into the field of the inductances.
+    /// Lost in the iron; zero unless the motor has such a loss ([`IronLoss`]).
+    pub iron: f64,
+    /// Into the field of the inductances, and with cogging of the magnets.
     pub stored: f64,
     /// Over the air gap: torque times the speed that the motor's equations used.
     pub air_gap: f64,
@@ -279,6 +293,7 @@ impl Params {
         let power = Power {
             electrical: 1.5 * input,
             copper: 1.5 * self.resistance * square,
+            iron: 0.0,
             stored: 0.75 * energy / h,
             air_gap: torque * omega_e / self.electrical_ratio,
         };

@@ -41,6 +41,17 @@ impl PowerStage {
         Ok(Self(Stage::Synchronous(Synchronous::new(motor, dc_link, speed, h)?)))
     }
 
+    /// The same, in ticks of `h` (s), with a motor that has `effects`; a stage without one stays as it is.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter that is out of its bound.
+    pub fn with_effects(self, effects: &pmsm::Effects, h: f64) -> Result<Self, ParamError> {
+        Ok(match self.0 {
+            Stage::Synchronous(synchronous) => Self(Stage::Synchronous(synchronous.with_effects(effects, h)?)),
+            other => Self(other),
+        })
+    }
+
     /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
     #[inline(always)]
     pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
@@ -103,6 +114,13 @@ impl PowerStage {
         self.synchronous().map_or_else(pmsm::Power::default, Synchronous::power)
     }
 
+    /// Temperatures of the motor at this tick (°C); zero where nothing warms up.
+    #[inline(always)]
+    #[must_use]
+    pub fn temperatures(&self) -> pmsm::Temperatures {
+        self.synchronous().map_or_else(pmsm::Temperatures::default, Synchronous::temperatures)
+    }
+
     /// Leaves the powers of the motor out from now on.
     #[inline]
     pub fn leave_power_out(&mut self) {
@@ -117,10 +135,7 @@ impl PowerStage {
         let output = self.output(command);
         match (&mut self.0, command) {
             (Stage::Synchronous(synchronous), PowerCommand::Voltage(wanted)) => synchronous.advance(wanted, motor, h),
-            (Stage::Synchronous(synchronous), PowerCommand::Off) => {
-                synchronous.switch_off(motor, h);
-                0.0
-            }
+            (Stage::Synchronous(synchronous), PowerCommand::Off) => synchronous.switch_off(motor, h),
             (Stage::Ideal { gain, .. }, PowerCommand::Output(_)) => *gain * output,
             _ => 0.0,
         }

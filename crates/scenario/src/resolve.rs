@@ -21,6 +21,7 @@ mod keys;
 mod loops;
 mod mode;
 mod motor;
+mod motor_effects;
 mod plc;
 mod points;
 mod profile;

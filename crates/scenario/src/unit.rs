@@ -29,7 +29,7 @@ const VOLT_AMPLITUDE: D = D::VOLT.times(D::AMPLITUDE, 1);
 const AMPERE_AMPLITUDE: D = D::AMPERE.times(D::AMPLITUDE, 1);
 const OHM: Unit = si(D::VOLT.times(D::AMPERE, -1));
 
-const UNITS: [Row; 31] = [
+const UNITS: [Row; 34] = [
     ("m", si(D::METRE), true),
     ("g", scaled(D::KILOGRAM, 1.0, 1.0, -3), true),
     ("s", si(D::SECOND), true),
@@ -60,6 +60,9 @@ const UNITS: [Row; 31] = [
     ("arcsec", scaled(D::RADIAN, PI, 648_000.0, 0), false),
     ("rev", scaled(D::RADIAN, 2.0 * PI, 1.0, 0), false),
     ("rpm", scaled(D::RADIAN.times(D::SECOND, -1), 2.0 * PI, 60.0, 0), true),
+    ("K", si(D::KELVIN), false),
+    ("degC", si(D::CELSIUS), false),
+    ("°C", si(D::CELSIUS), false),
     ("%", scaled(D::ONE, 1.0, 1.0, -2), false),
     ("1", si(D::ONE), false),
 ];
@@ -142,7 +145,8 @@ fn run_together(symbol: &str) -> Option<String> {
         .char_indices()
         .skip(1)
         .map(|(at, _)| symbol.split_at(at))
-        .filter(|(first, second)| unit(first).is_some() && unit(second).is_some())
+        // "Kg" is a slip of case.
+        .filter(|(first, second)| *first != "K" && unit(first).is_some() && unit(second).is_some())
         .map(|(first, second)| format!("`{first} {second}`"))
         .collect();
     (!parted.is_empty()).then(|| format!("write {}", parted.join(" or ")))

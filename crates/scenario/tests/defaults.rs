@@ -104,6 +104,34 @@ outputs.load = { position = "load.position", velocity = "load.velocity" }
 kind = "prescribed"
 "#;
 
+/// A motor with every effect.
+const OF_A_MOTOR: &str = r#"
+[run]
+base_rate = "16 kHz"
+[axis]
+motion = "rotary"
+[axis.motor_side]
+inertia = "3 kg cm2"
+[motor]
+kind = "pmsm"
+pole_pairs = 4
+resistance = "1.615 Ohm"
+inductance = "3.485 mH"
+flux_linkage = "0.0606 V s"
+max_current = "13.3 Arms"
+[[motor.cogging]]
+per_rev = 36
+amplitude = "25 mNm"
+[[motor.flux_harmonic]]
+order = 6
+[motor.iron_loss]
+speed = "3000 rpm"
+[motor.temperature]
+winding = "80 degC"
+[drive]
+model = "servo-16khz"
+"#;
+
 /// Of a table of points, what only moves use: no block chooses velocities by these rules.
 const OF_MOVES: [&str; 2] = ["call[].table.passes", "call[].table.velocities"];
 
@@ -184,7 +212,11 @@ fn a_key_that_is_written_with_its_default_changes_nothing() {
         ("max_force = \"300 N\"", "max_torque = \"10 Nm\""),
     ];
     let screw = on_a_screw.into_iter().fold(MORE.to_owned(), |text, (from, to)| text.replace(from, to));
-    let more = PROGRAMS.map(|program| MORE.to_owned() + program).into_iter().chain([screw, OF_FMU.to_owned()]);
+    let more = PROGRAMS.map(|program| MORE.to_owned() + program).into_iter().chain([
+        screw,
+        OF_FMU.to_owned(),
+        OF_A_MOTOR.to_owned(),
+    ]);
     let more: Vec<_> = more.map(|text| (text, repository())).collect();
     for (text, folder) in &more {
         parse("more", text, Some(folder)).unwrap_or_else(|error| panic!("{error}"));

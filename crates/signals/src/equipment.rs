@@ -16,10 +16,21 @@ pub struct Equipment {
     pub end_stops: bool,
     /// Whether there is a fieldbus between the motion task and the drive.
     pub bus: bool,
+    /// What the motor has beside its equations.
+    pub effects: MotorEffects,
     /// What the firmware commands; `None` without firmware.
     pub amplifier: Option<Amplifier>,
     /// What the motor has: by the firmware, or by an FMU in its place.
     pub motor: Motor,
+}
+
+/// What a motor has beside its equations, as far as that has signals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MotorEffects {
+    /// Whether there is a loss in its iron.
+    pub iron_loss: bool,
+    /// Whether winding and housing warm up.
+    pub thermal_model: bool,
 }
 
 /// What there is of a motor.
@@ -70,6 +81,10 @@ pub enum Presence {
     LoadDisturbed,
     /// With stops at the ends of the travel.
     WithEndStops,
+    /// With a motor that has a loss in its iron.
+    WithIronLoss,
+    /// With a motor that warms up.
+    WithThermalModel,
 }
 
 impl Presence {
@@ -88,6 +103,8 @@ impl Presence {
             Self::MotorDisturbed => equipment.disturbed[0],
             Self::LoadDisturbed => equipment.disturbed[1],
             Self::WithEndStops => equipment.end_stops,
+            Self::WithIronLoss => equipment.effects.iron_loss,
+            Self::WithThermalModel => equipment.effects.thermal_model,
         }
     }
 }

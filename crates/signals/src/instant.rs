@@ -1,7 +1,7 @@
 //! All that is known at one tick.
 use servobench_base::{Dq, Setpoint};
 use servobench_plant::BodyState;
-use servobench_plant::pmsm::Power;
+use servobench_plant::pmsm::{Power, Temperatures};
 
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
 #[derive(Debug, Clone, Copy, Default)]
@@ -44,6 +44,8 @@ pub struct Instant {
     pub voltage: Dq,
     /// Mean powers over the tick that ends here.
     pub power: Power,
+    /// Temperatures of the motor; zero where nothing warms up.
+    pub temperatures: Temperatures,
     /// Mean power on the shaft over the tick that ends here.
     pub shaft_power: f64,
     /// Output of an ideal source.

@@ -17,6 +17,8 @@ pub enum Unit {
     Volt,
     /// W.
     Watt,
+    /// °C.
+    Celsius,
     /// That of what an ideal source puts out: V, or that of its effort.
     Output,
     /// A pure number.
@@ -36,6 +38,7 @@ impl Unit {
             Self::Ampere => "A".into(),
             Self::Volt => "V".into(),
             Self::Watt => "W".into(),
+            Self::Celsius => "°C".into(),
             Self::Output => match equipment.amplifier {
                 Some(Amplifier::Ideal { output_unit }) => output_unit.into(),
                 Some(Amplifier::Current) | None => String::new(),
@@ -55,6 +58,7 @@ impl fmt::Display for Unit {
             Self::Ampere => f.write_str("A"),
             Self::Volt => f.write_str("V"),
             Self::Watt => f.write_str("W"),
+            Self::Celsius => f.write_str("°C"),
             Self::Output => f.write_str("V or E"),
             Self::One => f.write_str("1"),
         }

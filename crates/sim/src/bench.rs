@@ -17,7 +17,7 @@ use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
 use servobench_plant::{Chain, Encoder, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
-use servobench_signals::{Amplifier, Equipment, Motor, NotRecorded, Rates, Selection, Signal, Unit};
+use servobench_signals::{Amplifier, Equipment, Motor, MotorEffects, NotRecorded, Rates, Selection, Signal, Unit};
 use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -232,6 +232,12 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let effort_unit = scenario.axis.motor_motion.effort_unit();
     let is_replaced = coupled::replaces_the_drive(scenario);
     let gives = |signal| scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal);
+    let effects = match &scenario.actuator {
+        Actuator::Pmsm { effects, .. } => {
+            MotorEffects { iron_loss: effects.iron.is_some(), thermal_model: effects.warms_up() }
+        }
+        Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => MotorEffects::default(),
+    };
     let amplifier = match &scenario.actuator {
         Actuator::Prescribed | Actuator::Off => None,
         Actuator::Pmsm { .. } => Some(Amplifier::Current),
@@ -250,6 +256,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         table,
         end_stops: scenario.axis.end_stops.is_some(),
         bus: scenario.bus.is_some(),
+        effects,
         amplifier: if is_replaced { None } else { amplifier },
         motor: match amplifier {
             _ if gives(LoopSignal::Effort) => Motor::Effort,

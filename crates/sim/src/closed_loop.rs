@@ -149,6 +149,7 @@ impl ClosedLoop {
     fn account(&self, position: f64, now: &mut Instant) {
         let Shaft { effort, position: before } = self.state.shaft;
         now.power = self.state.power.power();
+        now.temperatures = self.state.power.temperatures();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 

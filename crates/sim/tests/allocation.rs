@@ -29,10 +29,17 @@ fn allocations(scenario: &Scenario, duration: f64) -> (u64, usize) {
 }
 
 /// Oracle: a run of 1.2 s allocates as often as one of 0.3 s. A synchronous motor whose table sticks and slips, an ideal
-/// source behind two bodies, a prescribed motion.
+/// source behind two bodies, a prescribed motion, and motors with effects.
 #[test]
 fn ticks_allocate_nothing() {
-    for file in ["feed-axis-stick-slip.toml", "lambrechts-snap.toml", "vibration-snap.toml"] {
+    for file in [
+        "feed-axis-stick-slip.toml",
+        "lambrechts-snap.toml",
+        "vibration-snap.toml",
+        "hardware/cogging.toml",
+        "hardware/flux-harmonics.toml",
+        "hardware/warming-up.toml",
+    ] {
         let scenario = scenario_without(0, file);
         let ((short, few), (long, many)) = (allocations(&scenario, 0.3), allocations(&scenario, 1.2));
         assert!(few > 4_000 && many > 3 * few, "{file}: {few} and {many} rows");

@@ -180,7 +180,7 @@ proptest! {
         let rotor = ElectricalAngle(-1.1).rotation();
         let voltage = Dq { d: u_d, q: u_q + turn / h * flux_linkage }.to_alpha_beta(rotor);
         let (mut x, input) = (State { current: Dq { d: i_d, q: i_q } }, Input { voltage, rotor, omega_e: turn / h });
-        let Power { electrical, copper, stored, air_gap } = stepped(&Ticks::new(p, h), &mut x, &input).power;
+        let Power { electrical, copper, stored, air_gap, .. } = stepped(&Ticks::new(p, h), &mut x, &input).power;
         let largest = [electrical, copper, stored, air_gap].into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
         prop_assert!((electrical - copper - stored - air_gap).abs() < 1e-12 * largest,
             "{electrical} {copper} {stored} {air_gap}");
@@ -261,8 +261,8 @@ fn both_kinds_of_processors_give_the_same_bits() {
         let (with, mut power) = (stepped(&ticks, &mut here, &input), Power::default());
         let any = Output { torque: ticks.solved_with_power(&mut in_any, &input, &mut power), power };
         let bits = |output: Output, state: State| {
-            let Output { torque, power: Power { electrical, copper, stored, air_gap } } = output;
-            [torque, electrical, copper, stored, air_gap, state.current.d, state.current.q].map(f64::to_bits)
+            let Output { torque, power: Power { electrical, copper, iron, stored, air_gap } } = output;
+            [torque, electrical, copper, iron, stored, air_gap, state.current.d, state.current.q].map(f64::to_bits)
         };
         assert_eq!(bits(with, here), bits(any, in_any), "{input:?}");
         let (mut here, mut in_any) = (State { current }, State { current });

@@ -26,6 +26,8 @@ pub(super) struct Synchronous {
     voltage: Dq,
     /// Mean powers of the motor over the tick, where they are wanted.
     power: Option<pmsm::Power>,
+    /// What the motor does beside its equations.
+    effects: Option<Box<pmsm::RealTicks>>,
 }
 
 impl Synchronous {
@@ -44,7 +46,22 @@ impl Synchronous {
             shortens: false,
             voltage: Dq::default(),
             power: Some(pmsm::Power::default()),
+            effects: None,
         })
+    }
+
+    /// The same, in ticks of `h` (s), with a motor that has `effects`.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter that is out of its bound.
+    pub(super) fn with_effects(self, effects: &pmsm::Effects, h: f64) -> Result<Self, ParamError> {
+        effects.check()?;
+        let params = *self.motor.params();
+        let real = pmsm::RealTicks::new(&params, effects, h).map(Box::new);
+        let warm = effects.at_the_beginning(&params);
+        warm.check()?;
+        let motor = if warm == params { self.motor } else { Arc::new(pmsm::Ticks::new(warm, h)) };
+        Ok(Self { motor, effects: real, ..self })
     }
 
     /// Brings the rotor to `motor`, and gives the stator current as the drive's sensors see it (A, peak).
@@ -90,6 +107,12 @@ impl Synchronous {
         self.power.unwrap_or_default()
     }
 
+    /// Temperatures at this tick; zero where nothing warms up.
+    #[inline(always)]
+    pub(super) fn temperatures(&self) -> pmsm::Temperatures {
+        self.effects.as_ref().and_then(|effects| effects.temperatures()).unwrap_or_default()
+    }
+
     /// Leaves the powers out from now on.
     pub(super) const fn leave_power_out(&mut self) {
         self.power = None;
@@ -98,8 +121,7 @@ impl Synchronous {
     /// Goes from tick k to k+1 (`h` s) with the voltage `wanted` of the inverter and returns the mean effort over it (N·m or N).
     #[inline(always)]
     pub(super) fn advance(&mut self, wanted: AlphaBeta, motor: BodyState, h: f64) -> f64 {
-        // Straight on from the last two ticks: second order.
-        let mean_speed = motor.velocity + (motor.velocity - self.last_speed) / 2.0;
+        let mean_speed = self.mean_speed(motor);
         self.last_speed = motor.velocity;
         let given = inverter::output(wanted, self.u_dc);
         self.shortens = is_shorter(given, wanted);
@@ -107,20 +129,41 @@ impl Synchronous {
         let omega_e = ticks.params().electrical_ratio * mean_speed;
         let input = pmsm::Input { voltage: given, rotor: self.rotor.rotation(), omega_e };
         self.voltage = input.voltage_at_middle(h);
-        match &mut self.power {
-            None => ticks.step(&mut self.state, &input),
-            Some(power) => ticks.step_with_power(&mut self.state, &input, power),
+        match (&mut self.effects, &mut self.power) {
+            (None, None) => ticks.step(&mut self.state, &input),
+            (None, Some(power)) => ticks.step_with_power(&mut self.state, &input, power),
+            (Some(effects), power) => {
+                let travel = pmsm::Travel { position: motor.position, speed: mean_speed };
+                let pmsm::Output { torque, power: found } = effects.step(ticks, &mut self.state, &input, travel);
+                *power = power.map(|_| found);
+                torque
+            }
         }
     }
 
-    /// The power goes off, for a tick of `h` (s). The current is gone within the tick, which takes a real inverter some milliseconds,
+    /// Mean speed of the coming tick: straight on from the last two ticks, of second order.
+    #[inline(always)]
+    fn mean_speed(&self, motor: BodyState) -> f64 {
+        motor.velocity + (motor.velocity - self.last_speed) / 2.0
+    }
+
+    /// The power goes off, for a tick of `h` (s); gives the mean effort of the motor over it. The current is gone within the tick, which takes a real inverter some milliseconds,
     /// and its energy back in the DC link; no current flows back as long as the back-EMF is below the DC link.
     #[inline(always)]
-    pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) {
+    pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) -> f64 {
         let returned = -self.motor.params().stored_energy(self.state.current) / h;
-        self.power = self.power.map(|_| pmsm::Power { electrical: returned, stored: returned, ..Default::default() });
+        let travel = pmsm::Travel { position: motor.position, speed: self.mean_speed(motor) };
+        let pmsm::Output { torque, power } = match &mut self.effects {
+            None => pmsm::Output {
+                torque: 0.0,
+                power: pmsm::Power { electrical: returned, stored: returned, ..Default::default() },
+            },
+            Some(effects) => effects.step_to_no_current(&self.motor, self.state, returned, travel),
+        };
+        self.power = self.power.map(|_| power);
         self.state = pmsm::State::default();
         (self.last_speed, self.shortens, self.voltage) = (motor.velocity, false, Dq::default());
+        torque
     }
 }
 

@@ -1,5 +1,7 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
+use crate::file::motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
+use crate::list::Many;
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_config::Kind::{Motor as InMotor, Plain};
@@ -60,6 +62,18 @@ table! {
         gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
         /// Largest output of an ideal source, in volts or as force or torque; default: unlimited.
         limit: Either = EitherMeasure { first: Plain(&VOLTAGE), second: InMotor(&EFFORT), example: "10 V" },
+        /// Harmonics of the cogging; `[[motor.cogging]]` for each.
+        cogging: Many<Cogging> = (),
+        /// Harmonics of the flux linkage; `[[motor.flux_harmonic]]` for each.
+        flux_harmonic: Many<FluxHarmonic> = (),
+        /// Loss in the iron.
+        iron_loss: IronLoss = (),
+        /// Resistances of the phases a, b and c as parts of `resistance`, [1, 1, 1.02]; default: equal.
+        phase_resistance: Many<f64> = pmsm::PhaseParameter::RESISTANCE,
+        /// Temperature of winding and magnets.
+        temperature: Temperature = (),
+        /// How the losses warm them; without it the temperature stays.
+        thermal: Thermal = (),
         /// Encoder on the motor; default: ideal.
         encoder: Encoder = (),
     }

@@ -82,9 +82,13 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let drive = Drive { params, position_feedback, estimate, current_tuning };
     match known.motor? {
         Motor::Prescribed => None,
-        Motor::Pmsm { motor, encoder, .. } => {
-            Some(Actuator::Pmsm { motor: *motor, encoder: *encoder, dc_link: dc_link?, drive })
-        }
+        Motor::Pmsm { motor, effects, encoder, .. } => Some(Actuator::Pmsm {
+            motor: *motor,
+            effects: effects.clone(),
+            encoder: *encoder,
+            dc_link: dc_link?,
+            drive,
+        }),
         Motor::IdealSource { source, encoder } => {
             Some(Actuator::IdealSource { source: *source, encoder: *encoder, drive })
         }

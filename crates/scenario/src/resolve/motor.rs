@@ -6,7 +6,7 @@ use servobench_plant::{Encoder, IdealSource, SourceOutput, pmsm};
 
 use crate::file;
 use crate::file::MotorKind;
-use crate::resolve::{Alternative, need, one_of, refuse};
+use crate::resolve::{Alternative, motor_effects, need, one_of, refuse};
 use crate::source::Span;
 use std::f64::consts::{PI, TAU};
 
@@ -17,6 +17,7 @@ pub(super) enum Motor {
     /// A synchronous motor and its largest phase current, peak (A).
     Pmsm {
         motor: pmsm::Params,
+        effects: Box<pmsm::Effects>,
         encoder: Encoder,
         max_current: f64,
     },
@@ -43,6 +44,12 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
         ("force_constant", motor.force_constant.span()),
         ("back_emf", motor.back_emf.span()),
         ("max_current", motor.max_current.span()),
+        ("cogging", motor.cogging.span()),
+        ("flux_harmonic", motor.flux_harmonic.span()),
+        ("iron_loss", motor.iron_loss.span()),
+        ("phase_resistance", motor.phase_resistance.span()),
+        ("temperature", motor.temperature.span()),
+        ("thermal", motor.thermal.span()),
     ];
     let ideal: &Keys<'_> = &[("gain", motor.gain.span()), ("limit", motor.limit.span())];
     let encoder = encoder(&motor.encoder, report);
@@ -72,13 +79,14 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
     let inductances = inductances(motor, report);
     let flux_linkage = flux_linkage(motor, electrical_ratio, report);
     let max_current = need(&motor.max_current, "motor", "max_current", header, report);
-    let motor = pmsm::Params {
+    let params = pmsm::Params {
         inductance: inductances?,
         electrical_ratio: electrical_ratio?,
         resistance: resistance?,
         flux_linkage: flux_linkage?,
     };
-    Some(Motor::Pmsm { motor, encoder: encoder?, max_current: max_current? })
+    let effects = Box::new(motor_effects::resolve(motor, &params, report).ok()?);
+    Some(Motor::Pmsm { motor: params, effects, encoder: encoder?, max_current: max_current? })
 }
 
 /// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.

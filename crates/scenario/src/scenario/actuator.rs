@@ -14,6 +14,8 @@ pub enum Actuator {
     Pmsm {
         /// The motor.
         motor: pmsm::Params,
+        /// What it does beside its equations.
+        effects: Box<pmsm::Effects>,
         /// Encoder on the motor.
         encoder: Encoder,
         /// DC-link voltage of the inverter (V).

@@ -19,8 +19,8 @@ pub(crate) fn check(scenario: &Scenario) {
     }
     match actuator {
         Actuator::Prescribed | Actuator::Off => {}
-        Actuator::Pmsm { motor, encoder, dc_link, drive } => {
-            assert_eq!((motor.check(), encoder.check()), (Ok(()), Ok(())));
+        Actuator::Pmsm { motor, effects, encoder, dc_link, drive } => {
+            assert_eq!((motor.check(), effects.check(), encoder.check()), (Ok(()), Ok(()), Ok(())));
             positive("dc_link", *dc_link);
             assert!(drive.params.current_loop().is_some() && drive.current_tuning.is_some());
             self::drive(drive, *base_rate);

@@ -2,6 +2,7 @@
 mod coupling;
 mod files;
 mod loops;
+mod motor_effects;
 mod motors;
 mod moves;
 mod tables;

@@ -91,6 +91,8 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
     Ok(match actuator {
         Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
         Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
-        Actuator::Pmsm { motor, dc_link, .. } => PowerStage::pmsm(*motor, *dc_link, speed, h)?,
+        Actuator::Pmsm { motor, effects, dc_link, .. } => {
+            PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?
+        }
     })
 }

@@ -1,0 +1,72 @@
+//! Parts of `[motor]`: what a real one does beside its equations.
+use crate::table::table;
+use servobench_plant::pmsm::{
+    CoggingParameter, FluxHarmonic as Harmonic, FluxHarmonicParameter, IronLossParameter, TemperatureParameter,
+};
+
+table! {
+    /// A harmonic of the cogging: torque or force F·sin(n·x + φ) on the rotor, with or without current. Give its order n in one
+    /// of the two ways.
+    pub(crate) struct Cogging requires ["amplitude"] {
+        /// Order per revolution of a motor that turns: the slots, or the least common multiple of slots and poles.
+        per_rev: u32 = 1..=100_000,
+        /// Order per pair of poles; of a linear motor per two pole pitches.
+        per_pole_pair: u32 = 1..=1000,
+        amplitude: f64 = CoggingParameter::AMPLITUDE,
+        /// default: 0.
+        phase: f64 = CoggingParameter::PHASE,
+    }
+}
+
+table! {
+    /// A harmonic of the magnets' flux linkage in the rotor frame, which ripples torque and back-EMF:
+    /// ψ_d = ψ·(1 + d·cos(n·θ + φ)), ψ_q = ψ·q·sin(n·θ + φ). Orders 5 and 7 of a phase are order 6 here.
+    pub(crate) struct FluxHarmonic requires ["order"] {
+        /// Its order n per electrical revolution.
+        order: u32 = 1..=Harmonic::MAX_ORDER,
+        /// default: 0.
+        d: f64 = FluxHarmonicParameter::D,
+        /// default: 0.
+        q: f64 = FluxHarmonicParameter::Q,
+        /// default: 0.
+        phase: f64 = FluxHarmonicParameter::PHASE,
+    }
+}
+
+table! {
+    /// Loss in the iron: it brakes the rotor, and grows with the square of the flux linkage of magnets and currents.
+    pub(crate) struct IronLoss requires ["speed"] {
+        speed: f64 = IronLossParameter::SPEED,
+        /// default: 0.
+        hysteresis: f64 = IronLossParameter::HYSTERESIS,
+        /// default: 0.
+        eddy: f64 = IronLossParameter::EDDY,
+    }
+}
+
+table! {
+    /// Temperature of the motor: it changes resistance and flux linkage, of which the drive is told nothing.
+    pub(crate) struct Temperature {
+        /// default: 20 °C.
+        reference: f64 = TemperatureParameter::REFERENCE,
+        /// default: `ambient` of `[motor.thermal]`, without it `reference`.
+        winding: f64 = TemperatureParameter::WINDING,
+        /// default: `ambient` of `[motor.thermal]`, without it `reference`.
+        housing: f64 = TemperatureParameter::HOUSING,
+        /// default: 0.00393 1/K, that of copper at 20 °C.
+        resistance_coefficient: f64 = TemperatureParameter::RESISTANCE_COEFFICIENT,
+        /// default: 0.
+        flux_coefficient: f64 = TemperatureParameter::FLUX_COEFFICIENT,
+    }
+}
+
+table! {
+    /// Winding and housing as two bodies: copper loss heats the winding, iron loss the housing.
+    pub(crate) struct Thermal requires ["ambient", "to_housing", "to_ambient", "winding_capacity", "housing_capacity"] {
+        ambient: f64 = TemperatureParameter::AMBIENT,
+        to_housing: f64 = TemperatureParameter::TO_HOUSING,
+        to_ambient: f64 = TemperatureParameter::TO_AMBIENT,
+        winding_capacity: f64 = TemperatureParameter::WINDING_CAPACITY,
+        housing_capacity: f64 = TemperatureParameter::HOUSING_CAPACITY,
+    }
+}

@@ -1,0 +1,53 @@
+//! Effects of a real motor: each ready scenario keeps its limits as it is, and misses them without its effect and with twice of it.
+use crate::{code, said, servobench};
+
+/// Scenario, and the keys that switch its effect off and that double it.
+const SCENARIOS: [(&str, &[&str], &[&str]); 6] = [
+    (
+        "cogging",
+        &["motor.cogging[0].amplitude=0 mNm", "motor.cogging[1].amplitude=0 mNm"],
+        &["motor.cogging[0].amplitude=50 mNm", "motor.cogging[1].amplitude=10 mNm"],
+    ),
+    (
+        "flux-harmonics",
+        &["motor.flux_harmonic[0].d=0", "motor.flux_harmonic[0].q=0", "motor.flux_harmonic[1].q=0"],
+        &["motor.flux_harmonic[0].d=0.02", "motor.flux_harmonic[0].q=-0.04", "motor.flux_harmonic[1].q=0.008"],
+    ),
+    (
+        "iron-loss",
+        &["motor.iron_loss.hysteresis=0 W", "motor.iron_loss.eddy=0 W"],
+        &["motor.iron_loss.hysteresis=12 W", "motor.iron_loss.eddy=20 W"],
+    ),
+    ("unequal-phases", &["motor.phase_resistance=[1, 1, 1]"], &["motor.phase_resistance=[1, 1, 1.2]"]),
+    (
+        "hot-motor",
+        &["motor.temperature.winding=20 degC", "motor.temperature.housing=20 degC"],
+        &["motor.temperature.winding=220 degC", "motor.temperature.housing=140 degC"],
+    ),
+    (
+        "warming-up",
+        &["motor.temperature.resistance_coefficient=0 1/K"],
+        &["motor.temperature.resistance_coefficient=0.00786 1/K"],
+    ),
+];
+
+fn run(scenario: &str, overrides: &[&str]) -> (i32, String) {
+    let work = tempfile::tempdir().unwrap();
+    let file = format!("scenarios/hardware/{scenario}.toml");
+    let mut arguments = vec!["run", &file, "--engine", "exact", "--out", work.path().to_str().unwrap()];
+    arguments.extend(overrides.iter().flat_map(|one| ["--set", one]));
+    let output = servobench(&arguments);
+    (code(&output), said(&output))
+}
+
+#[test]
+fn each_scenario_passes_as_it_is_and_fails_without_its_effect_and_with_twice_of_it() {
+    for (scenario, off, doubled) in SCENARIOS {
+        let (code, said) = run(scenario, &[]);
+        assert_eq!(code, 0, "{scenario}:\n{said}");
+        for (overrides, how) in [(off, "without"), (doubled, "with twice")] {
+            let (code, said) = run(scenario, overrides);
+            assert_eq!(code, 4, "{scenario} {how} its effect:\n{said}");
+        }
+    }
+}
