@@ -11,6 +11,7 @@ mod fmu_trust;
 #[cfg(target_os = "linux")]
 mod foreign_text;
 mod getting_started;
+mod hardware_firmware;
 mod hardware_motor;
 #[cfg(unix)]
 mod hostile;

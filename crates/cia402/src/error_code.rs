@@ -51,6 +51,7 @@ pub enum Source {
 
 /// Bits of the error register (CiA 301, 1001h). The first one is set with every error.
 const GENERIC: u8 = 1 << 0;
+const CURRENT: u8 = 1 << 1;
 const VOLTAGE: u8 = 1 << 2;
 const COMMUNICATION: u8 = 1 << 4;
 const PROFILE: u8 = 1 << 5;
@@ -60,6 +61,8 @@ const fn drive(class: u8) -> Source {
 }
 
 error_codes! {
+    LoadLevel = 0x2350, drive(CURRENT), "load level fault (I²t, thermal state)",
+        "The I²t load of motor or drive was reached where its reaction is a fault";
     DcLinkUnderVoltage = 0x3220, drive(VOLTAGE), "DC link under-voltage",
         "The power was gone while the drive function was enabled";
     IncrementalSensor = 0x7305, drive(PROFILE), "incremental sensor 1 fault",
@@ -129,7 +132,8 @@ mod tests {
     /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 4 for communication, bit 5 for what the profile has.
     #[test]
     fn the_register_tells_the_class() {
-        for (code, register) in [(0, 0), (0x3220, 0x05), (0x7305, 0x21), (0x8611, 0x21), (0x8700, 0x31), (0x9000, 0x01)]
+        for (code, register) in
+            [(0, 0), (0x2350, 0x03), (0x3220, 0x05), (0x7305, 0x21), (0x8611, 0x21), (0x8700, 0x31), (0x9000, 0x01)]
         {
             assert_eq!(ErrorCode::register(code), register, "{code:04X}h");
         }

@@ -53,6 +53,12 @@ impl EffortLimits {
         Self { forward: self.forward.min(limit), backward: self.backward.min(limit) }
     }
 
+    /// These, and at most `others` in each direction.
+    #[must_use]
+    pub const fn within(self, others: Self) -> Self {
+        Self { forward: self.forward.min(others.forward), backward: self.backward.min(others.backward) }
+    }
+
     /// The same limits of an axis that counts the other way round.
     #[must_use]
     pub const fn turned(self) -> Self {

@@ -99,6 +99,8 @@ pub struct Measured {
     pub home: bool,
     /// Increments at which the last index pulse came, when one came since the last step.
     pub index: Option<i64>,
+    /// Whether an I²t load is reached that is a fault.
+    pub is_overloaded: bool,
 }
 
 /// What a step gives.

@@ -7,10 +7,11 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
 use crate::{Demand, EffortLimits};
-use crate::{current, delay, velocity};
+use crate::{current, delay, filter, overload, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
 
@@ -76,6 +77,8 @@ pub struct Held {
     pub effort: velocity::Output,
     /// q-axis current reference (A, peak).
     pub current_reference: f64,
+    /// References of both axes (A, peak), where the d axis has no constant one.
+    pub references: Dq,
     /// Output of the current loop.
     pub current: current::Output,
 }
@@ -87,7 +90,11 @@ pub struct State {
     /// Velocity offsets wait with the set-points that they belong to.
     offset_delay: delay::Values,
     velocity: velocity::State,
+    filters: filter::State,
     current: current::State,
+    operation: operating_point::State,
+    /// Thermal loads of the motor and of the drive.
+    loads: [overload::State; 2],
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
@@ -111,7 +118,10 @@ impl State {
             delay: delay::State::new(start),
             offset_delay: delay::Values::new(0.0),
             velocity: velocity::State::default(),
+            filters: filter::State::default(),
             current: current::State::default(),
+            operation: operating_point::State::default(),
+            loads: [overload::State::default(); 2],
             filtered_velocity: 0.0,
             last_position: None,
             closed: Closed::Position,
@@ -137,6 +147,21 @@ impl State {
             Feedback::Load(position) => reference.x - position,
             Feedback::Motor => motor_reference.position - p.transmission * sensors.motor_position,
         }
+    }
+
+    /// Thermal loads of the motor and of the drive: 1 is what the continuous current makes.
+    #[must_use]
+    pub fn loads(&self) -> [f64; 2] {
+        self.loads.map(|load| load.load)
+    }
+
+    /// Whether a thermal load is reached that is a fault.
+    #[must_use]
+    pub fn is_overloaded(&self, p: &Params) -> bool {
+        let loads = [&p.blocks.motor_load, &p.blocks.drive_load].into_iter().zip(&self.loads);
+        let is_fault =
+            |load: &Option<overload::Params>| load.is_some_and(|load| load.reaction == overload::Reaction::Fault);
+        loads.into_iter().any(|(load, state)| state.is_reached && is_fault(load))
     }
 
     /// What the loops said at their last turn.
@@ -223,6 +248,7 @@ impl State {
     fn close(&mut self, closed: Closed) {
         if closed == Closed::None && self.closed != Closed::None {
             (self.velocity, self.current) = (velocity::State::default(), current::State::default());
+            (self.filters, self.operation) = (filter::State::default(), operating_point::State::default());
             let Held { reference, motor_reference, .. } = self.held;
             self.held = Held { reference, motor_reference, ..Held::default() };
         }
@@ -252,7 +278,11 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
     };
     x.held.reference = reference;
     x.held.motor_reference = motor_reference;
-    x.held.velocity_reference = p.position_gain * error + p.feedforward.velocity * motor_reference.velocity;
+    let gain = match &p.blocks.schedule {
+        Some(schedule) => schedule.factors(x.filtered_velocity).0 * p.position_gain,
+        None => p.position_gain,
+    };
+    x.held.velocity_reference = gain * error + p.feedforward.velocity * motor_reference.velocity;
     x.held.feedforward = p.transmission * p.feedforward.effort(setpoint);
 }
 
@@ -271,25 +301,70 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         followed = fed_forward(since - age);
         x.held.velocity_reference = fed_forward(since);
     }
+    if p.blocks.max_speed.is_finite() {
+        let most = p.blocks.max_speed * p.transmission.abs();
+        followed = followed.clamp(-most, most);
+        x.held.velocity_reference = x.held.velocity_reference.clamp(-most, most);
+    }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
-    let input = velocity::Input {
-        reference: followed / p.transmission,
-        velocity: x.filtered_velocity,
-        feedforward: x.held.feedforward,
-        available: match &p.stage {
-            Stage::Current { params, .. } => params.max_effort(),
-            Stage::Direct { .. } => f64::INFINITY,
-        },
-        limits,
+    let cogging = p.blocks.cogging.as_ref();
+    let feedforward = cogging.map_or(x.held.feedforward, |cogging| {
+        x.held.feedforward + cogging.effort(sensors.motor_position, x.filtered_velocity)
+    });
+    let mut chosen = None;
+    let available = match &p.stage {
+        Stage::Current { params, .. } => {
+            let max_current = thermal_limit(p, x, params.max_current, h);
+            if params.operation.is_plain() && max_current >= params.max_current {
+                EffortLimits::both(params.max_effort())
+            } else {
+                let params = current::Params { max_current, ..*params };
+                operating_point::step(&params, &mut x.operation, x.held.current.computed, h);
+                let omega_e = params.motor.electrical_ratio * x.filtered_velocity;
+                let envelope = Envelope::new(&params, &x.operation, omega_e);
+                chosen = Some((params, envelope));
+                envelope.limits()
+            }
+        }
+        Stage::Direct { .. } => EffortLimits::NONE,
     };
+    let (reference, velocity) = (followed / p.transmission, x.filtered_velocity);
+    let input = velocity::Input { reference, velocity, feedforward, available, limits };
+    let mut filtered = |effort: f64| filter::step(&p.blocks.filters, &mut x.filters, effort);
     x.held.effort = match x.closed {
-        Closed::Position | Closed::Velocity => velocity::step(&p.velocity, &mut x.velocity, input, h),
-        Closed::Effort => velocity::limited(&p.velocity, input.available, limits, input.feedforward),
+        Closed::Position | Closed::Velocity => {
+            let scheduled = p
+                .blocks
+                .schedule
+                .as_ref()
+                .map(|schedule| velocity::Params { k_p: schedule.factors(velocity).1 * p.velocity.k_p, ..p.velocity });
+            let params = scheduled.as_ref().unwrap_or(&p.velocity);
+            velocity::step_shaped(params, &mut x.velocity, input, h, p.blocks.reference_weight, filtered)
+        }
+        Closed::Effort => velocity::limited(&p.velocity, available, limits, filtered(feedforward)),
         Closed::None => velocity::Output::default(),
     };
+    if let Some((params, envelope)) = chosen {
+        x.held.references = envelope.currents(&params, x.held.effort.effort);
+    }
+}
+
+/// Largest current (A, peak) that the thermal loads leave of `most`.
+#[inline(always)]
+fn thermal_limit(p: &Params, x: &mut State, most: f64, h: f64) -> f64 {
+    let Dq { d, q } = x.held.current.current;
+    let mut limit = most;
+    for (load, state) in [&p.blocks.motor_load, &p.blocks.drive_load].into_iter().zip(&mut x.loads) {
+        let Some(load) = load else { continue };
+        overload::step(load, state, d * d + q * q, h);
+        if state.is_reached && load.reaction == overload::Reaction::Derate {
+            limit = limit.min(load.continuous_current);
+        }
+    }
+    limit
 }
 
 #[inline(always)]
@@ -297,8 +372,13 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
     let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
     x.held.current_reference = wanted.clamp(-most, most);
+    let mut reference = Dq { d: p.d_reference, q: x.held.current_reference };
+    if !p.operation.is_plain() {
+        reference = x.held.references;
+        x.held.current_reference = reference.q;
+    }
     let input = current::Input {
-        reference: Dq { d: p.d_reference, q: x.held.current_reference },
+        reference,
         current: sensors.current,
         rotor: sensors
             .known_rotation
@@ -309,181 +389,4 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::params::tests::{emps, every, synchronous};
-    use crate::velocity::Cut;
-
-    const REST: Demand = Demand::position(Setpoint::at_rest(0.0));
-
-    fn at_rest(p: &Params) -> State {
-        State::new(p, Setpoint::default()).unwrap()
-    }
-
-    /// Oracle: the published control law, u = kv·(kp·e − v) in volts, held between its 1 kHz turns.
-    #[test]
-    fn a_p_p_cascade_is_the_published_control_law() {
-        let (p, mut x) = (emps(), at_rest(&emps()));
-        let at = |x: f64| Sensors { motor_position: x, motor_velocity: Some(0.02), ..Sensors::default() };
-        let setpoint = Setpoint { x: 8e-4, v: 0.1, ..Setpoint::default() };
-        let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
-        for k in 0..32 {
-            let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
-            let PowerCommand::Output(u) =
-                step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &at(position(k)))
-            else {
-                panic!("an ideal amplifier")
-            };
-            assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
-        }
-    }
-
-    #[test]
-    fn velocity_from_an_encoder_without_one_is_a_difference() {
-        let (p, mut x) = (emps(), at_rest(&emps()));
-        let mut last = 0.0;
-        for k in 0..=32 {
-            let position = 0.02 * f64::from(k) / 16_000.0;
-            let sensors = Sensors { motor_position: position, ..Sensors::default() };
-            if let PowerCommand::Output(u) = step(&p, &mut x, &REST, EffortLimits::NONE, &sensors) {
-                last = u;
-            }
-        }
-        assert!((last - 243.45 * (160.18 * -0.02 * 32.0 / 16_000.0 - 0.02)).abs() < 1e-9, "{last}");
-    }
-
-    #[test]
-    fn references_go_on_between_two_turns_of_the_position_loop() {
-        let (p, mut x) = (emps(), at_rest(&emps()));
-        for k in 0..40 {
-            let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
-            step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &Sensors::default());
-            assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
-        }
-    }
-
-    /// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity of
-    /// constant jerk is a parabola. It is as old as what is measured: half a period of the velocity loop of a difference, and
-    /// the time of the filter. Switched off it is the staircase of the position loop.
-    #[test]
-    fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop() {
-        let start = Setpoint { x: 0.0, v: 0.1, a: 3.0, j: -400.0, s: 0.0 };
-        let share = 0.75;
-        for (interpolate, motor_velocity, filter) in [
-            (true, None, 0.0),
-            (true, Some(0.0), 0.0),
-            (true, Some(0.0), 2e-4),
-            (true, None, 3e-4),
-            (false, None, 3e-4),
-        ] {
-            let feedforward = crate::feedforward::Params { velocity: share, interpolate, ..emps().feedforward };
-            let velocity_every = every(8_000);
-            let p = Params { position_gain: 0.0, velocity_every, velocity_filter_time: filter, feedforward, ..emps() };
-            let velocity = velocity::Params { max_effort: f64::INFINITY, ..p.velocity };
-            let p = Params { velocity, ..p };
-            let age =
-                if interpolate { filter + if motor_velocity.is_none() { 1.0 / 16_000.0 } else { 0.0 } } else { 0.0 };
-            let mut x = at_rest(&p);
-            for k in 0..64_u32 {
-                let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
-                step(
-                    &p,
-                    &mut x,
-                    &Demand::position(setpoint(k)),
-                    EffortLimits::NONE,
-                    &Sensors { motor_velocity, ..Sensors::default() },
-                );
-                let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
-                let at = |age: f64| share * start.after(f64::from(cycle) / 16_000.0 - age).v;
-                let held = x.held();
-                let followed = (held.effort.effort - held.feedforward) / p.velocity.k_p * p.transmission;
-                // The effort is some thousand times as large.
-                assert!((followed - at(age)).abs() < 1e-12, "{interpolate} tick {k}: {held:?}");
-                let expected = at(0.0);
-                assert!(
-                    (x.held().velocity_reference - expected).abs() < 1e-15,
-                    "{interpolate} tick {k}: {:?}",
-                    x.held()
-                );
-            }
-        }
-    }
-
-    /// Oracle: by hand. On the motor the loop sees r·(motor position) against the motor's reference, on the load the
-    /// load's own position against the load's.
-    #[test]
-    fn the_encoder_that_closes_the_loop_is_the_one_that_is_compared() {
-        let p = Params { transmission: 0.5, ..emps() };
-        let setpoint = Setpoint::at_rest(3e-3);
-        for (feedback, error) in [(Feedback::Motor, 3e-3 - 0.5 * 2e-3), (Feedback::Load(2.5e-3), 3e-3 - 2.5e-3)] {
-            let mut x = at_rest(&p);
-            step(
-                &p,
-                &mut x,
-                &Demand::position(setpoint),
-                EffortLimits::NONE,
-                &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() },
-            );
-            assert!((x.held().velocity_reference - 160.18 * error).abs() < 1e-15, "{feedback:?}: {:?}", x.held());
-        }
-    }
-
-    /// Oracle: by hand: 9 A, and 1.5·p·ψ·9 A of the motor as the firmware knows it.
-    #[test]
-    fn a_demand_beyond_the_current_limit_is_cut_and_said() {
-        let p = synchronous();
-        let held_at = |velocity: f64| {
-            let mut x = at_rest(&p);
-            let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
-            step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
-            *x.held()
-        };
-        for sign in [1.0, -1.0] {
-            let held = held_at(-100.0 * sign);
-            assert!((held.current_reference - 9.0 * sign).abs() < 1e-14, "{held:?}");
-            assert!(held.current_reference.abs() <= 9.0, "not by one rounding more");
-            assert!((held.effort.effort - sign * 1.5 * 3.0 * 0.545 * 9.0).abs() < 1e-14, "{held:?}");
-            assert_eq!(held.effort.cut, Some(Cut::Available));
-        }
-        assert_eq!(held_at(-1.0).effort, velocity::Output { effort: 3.0, cut: None });
-    }
-
-    /// Oracle: by hand. Without a position loop the velocity demand goes to the velocity loop as it is; an effort goes past
-    /// both, within the limit; without power nothing goes out. The reference is where the axis is.
-    #[test]
-    fn a_demand_closes_the_loops_that_it_names() {
-        let p = Params { transmission: 0.5, ..emps() };
-        let sensors = Sensors { motor_position: 2e-3, motor_velocity: Some(0.02), ..Sensors::default() };
-        let answer = |demand: Demand| {
-            let mut x = at_rest(&p);
-            let command = step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
-            assert!((x.references(&p).0.x - 1e-3).abs() < 1e-18, "{demand:?}: {:?}", x.held);
-            (command, x.held.velocity_reference, x.held.effort)
-        };
-        let velocity = Demand::Velocity { setpoint: Setpoint { v: 0.03, ..Setpoint::default() }, effort_offset: 7.0 };
-        let (_, reference, effort) = answer(velocity);
-        assert!((reference - 0.03).abs() < 1e-18);
-        assert!((effort.effort - (35.1507 * 243.45 * (0.03 / 0.5 - 0.02) + 7.0)).abs() < 1e-10, "{effort:?}");
-        assert_eq!(answer(Demand::Effort(-12.0)).2, velocity::Output { effort: -12.0, cut: None });
-        assert_eq!(answer(Demand::Effort(1e3)).2, velocity::Output { effort: 351.507, cut: Some(Cut::Effort) });
-        assert_eq!(answer(Demand::Off).0, PowerCommand::Off);
-    }
-
-    /// Oracle: a drive that was never off. What the loops had gathered before is gone, and so is the old reference.
-    #[test]
-    fn a_drive_that_was_off_begins_anew() {
-        let p = synchronous();
-        let demand = Demand::position(Setpoint::at_rest(1e-3));
-        let sensors = |position| Sensors { motor_position: position, motor_velocity: Some(0.0), ..Sensors::default() };
-        let (mut x, mut fresh) = (at_rest(&p), at_rest(&p));
-        for (demand, position) in [(&demand, 0.0), (&Demand::Off, 9e-4)] {
-            for _ in 0..40 {
-                step(&p, &mut x, demand, EffortLimits::NONE, &sensors(position));
-            }
-        }
-        assert_eq!((x.velocity, x.held.effort), (velocity::State::default(), velocity::Output::default()));
-        step(&p, &mut x, &demand, EffortLimits::NONE, &sensors(9e-4));
-        step(&p, &mut fresh, &demand, EffortLimits::NONE, &sensors(9e-4));
-        assert_eq!(x.held.effort, fresh.held.effort);
-    }
-}
+mod tests;

@@ -4,17 +4,23 @@
 //! run on the drive.
 #![cfg_attr(not(test), no_std)]
 
+mod blocks;
+pub mod cogging;
 pub mod current;
 pub mod delay;
 mod demand;
 pub mod device;
 mod estimate;
 pub mod feedforward;
+pub mod filter;
 mod firmware;
 pub mod modes;
+pub mod overload;
 mod params;
+pub mod schedule;
 pub mod velocity;
 
+pub use blocks::{Blocks, Parameter as BlockParameter};
 pub use demand::{Demand, EffortLimits, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Feedback, Held, Sensors, State, step};

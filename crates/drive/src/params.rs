@@ -1,5 +1,5 @@
 //! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
-use crate::{current, delay, feedforward, velocity};
+use crate::{Blocks, current, delay, feedforward, velocity};
 use servobench_base::{Divider, Rate};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{FREQUENCY, POSITION_GAIN, RATIO, SOURCE_GAIN, TIME};
@@ -59,6 +59,8 @@ pub struct Params {
     pub velocity_filter_time: f64,
     /// Feedforward.
     pub feedforward: feedforward::Params,
+    /// Blocks that answer real hardware.
+    pub blocks: Blocks,
     /// How long the reference waits for the feedforward effort.
     pub reference_delay: delay::Params,
     /// Current loop or direct output.
@@ -78,6 +80,7 @@ impl Params {
         }?;
         self.velocity.check()?;
         self.feedforward.check()?;
+        self.blocks.check()?;
         self.check_rates()
     }
 
@@ -141,16 +144,18 @@ impl Params {
     /// How long an effort reference takes to act, which is how long the reference should wait (s): half the position
     /// period that the reference is held for, and the lag of what follows (see [`current`]: 1/α for a ramp, from sample
     /// to sample, so only what the position period exceeds the current period by is held). The velocity loop holds
-    /// nothing longer, since its period is not above that of the position loop.
+    /// nothing longer, since its period is not above that of the position loop. Filters add what they delay a ramp by.
     #[must_use]
     pub fn effort_path_delay(&self) -> f64 {
         let position = self.period(self.position_every);
-        match &self.stage {
+        let path = match &self.stage {
             Stage::Direct { .. } => position / 2.0,
             Stage::Current { params, every } => {
                 (position - self.period(*every)) / 2.0 + params.motor.inductance.q / params.gains.k_p.q
             }
-        }
+        };
+        let filters = &self.blocks.filters;
+        if filters.sections().is_empty() { path } else { (path + filters.delay()).max(0.0) }
     }
 }
 
@@ -184,6 +189,7 @@ pub(crate) mod tests {
                 coulomb: 0.0,
                 bias: 0.0,
             },
+            blocks: Blocks::default(),
             reference_delay: delay::Params::default(),
             stage: Stage::Direct { gain: 35.1507 },
         }
@@ -194,7 +200,10 @@ pub(crate) mod tests {
         let inductance = Dq { d: 36e-3, q: 51e-3 };
         let motor = MotorEstimate { electrical_ratio: 3.0, resistance: 3.6, inductance, flux_linkage: 0.545 };
         let gains = Gains::from_bandwidth(&motor, 6_000.0);
-        let params = current::Params { motor, gains, d_reference: 0.0, max_current: 9.0, max_voltage: 300.0 };
+        let operation = current::operating_point::Params::default();
+        let (d_reference, max_current, max_voltage) = (0.0, 9.0, 300.0);
+        let params =
+            current::Params { motor, gains, d_reference, max_current, max_voltage, operation, dead_time: None };
         Params {
             position_every: every(4_000),
             velocity: velocity::Params { k_p: 3.0, integral_time: Some(0.01), max_effort: f64::INFINITY },

@@ -1,10 +1,12 @@
 //! Velocity control: P or PI with back-calculation anti-windup, effort (torque or force) out.
 //!
 //! ```text
-//! e = ω_ref − ω      v = τ_ff + k_p·e + τ_i      τ = sat(v, ±min(τ_max, τ_avail)), and within the limits of the mode
+//! e = ω_ref − ω      v = F(τ_ff + k_p·(b·ω_ref − ω) + τ_i)
+//! τ = sat(v, ±min(τ_max, τ_avail)), and within the limits of the mode
 //! dτ_i/dt = k_p/T_i·e + (τ − v)/T_i              (forward Euler, step h)
 //! ```
-//! τ_avail is what the loop below can give; knowing it here, and the limits of both directions that come from the bus, keeps the
+//! F are the filters of the torque path ([`crate::filter`]), without them 1. The weight b of the reference is 1 in a PI, 0 in an
+//! IP controller, which follows a step without the zero of the PI. τ_avail is what the loop below can give; knowing it here, and the limits of both directions that come from the bus, keeps the
 //! integrator from winding up against them.
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
@@ -53,8 +55,8 @@ pub struct Input {
     pub velocity: f64,
     /// Effort fed forward (N·m or N).
     pub feedforward: f64,
-    /// Largest effort that the loop below can give (N·m or N); may be infinite.
-    pub available: f64,
+    /// Largest efforts that the loop below can give.
+    pub available: EffortLimits,
     /// What is asked for at most in either direction.
     pub limits: EffortLimits,
 }
@@ -92,8 +94,22 @@ impl Params {
 /// Returns the effort reference for tick k, then advances `x` by `h` (s) to tick k+1.
 #[inline(always)]
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
+    step_shaped(p, x, u, h, 1.0, |effort| effort)
+}
+
+/// Like [`step`], with the share `weight` of the reference in the proportional part, and `filter` between the controller and the
+/// limits: what they cut of its output goes back into the integrator.
+#[inline(always)]
+pub fn step_shaped(
+    p: &Params,
+    x: &mut State,
+    u: Input,
+    h: f64,
+    weight: f64,
+    filter: impl FnOnce(f64) -> f64,
+) -> Output {
     let e = u.reference - u.velocity;
-    let v = u.feedforward + p.k_p * e + x.integral;
+    let v = filter(u.feedforward + p.k_p * (weight * u.reference - u.velocity) + x.integral);
     let output = limited(p, u.available, u.limits, v);
     if let Some(integral_time) = p.integral_time {
         x.integral += h / integral_time * (p.k_p * e + (output.effort - v));
@@ -104,11 +120,12 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
 /// `effort` within the limits.
 #[inline(always)]
 #[must_use]
-pub fn limited(p: &Params, available: f64, limits: EffortLimits, effort: f64) -> Output {
+pub fn limited(p: &Params, available: EffortLimits, limits: EffortLimits, effort: f64) -> Output {
     let own = limits.at_most(p.max_effort);
-    let EffortLimits { forward, backward } = own.at_most(available);
+    let EffortLimits { forward, backward } = own.within(available);
     let given = effort.clamp(-backward, forward);
-    let limit = if effort > 0.0 { own.forward } else { own.backward };
+    let (limit, available) =
+        if effort > 0.0 { (own.forward, available.forward) } else { (own.backward, available.backward) };
     let cut = if limit <= available { Cut::Effort } else { Cut::Available };
     #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the very same bits")]
     Output { effort: given, cut: if given == effort { None } else { Some(cut) } }
@@ -121,8 +138,13 @@ mod tests {
 
     const J: f64 = 2e-3;
     const OMEGA_N: f64 = 50.0;
-    const FREE: Input =
-        Input { reference: 0.0, velocity: 0.0, feedforward: 0.0, available: f64::INFINITY, limits: EffortLimits::NONE };
+    const FREE: Input = Input {
+        reference: 0.0,
+        velocity: 0.0,
+        feedforward: 0.0,
+        available: EffortLimits::NONE,
+        limits: EffortLimits::NONE,
+    };
 
     /// Speed after 40 ms of a 1 rad/s step with both poles at −ω_n: k_p = 2·J·ω_n, T_i = 2/ω_n. The plant
     /// `J·dω/dt = τ` is exact under a zero-order hold.
@@ -161,7 +183,7 @@ mod tests {
             let p = Params { k_p: 0.2, integral_time: Some(0.04), max_effort: 2.4 };
             let mut x = State { integral };
             let limits = EffortLimits { forward, backward };
-            let output = step(&p, &mut x, Input { reference: e, feedforward, available, limits, ..FREE }, 1e-3);
+            let output = step(&p, &mut x, Input { reference: e, feedforward, available: EffortLimits::both(available), limits, ..FREE }, 1e-3);
             let asked = feedforward + 0.2 * e + integral;
             let own = if asked > 0.0 { forward.min(2.4) } else { backward.min(2.4) };
             prop_assert!(output.effort.abs() <= available.min(own));
@@ -184,10 +206,30 @@ mod tests {
         ] {
             let mut x = State::default();
             for _ in 0..10_000 {
+                let available = EffortLimits::both(available);
                 step(&p, &mut x, Input { reference: 40.0, feedforward: 0.5, available, limits, ..FREE }, 1e-3);
             }
             // v is of 120: rounded to 1.4e-14 at each of the 40 steps that the integrator remembers.
             assert!((x.integral - (limit - 0.5)).abs() < 1e-12, "{available}: {x:?}");
+        }
+    }
+
+    /// Oracle: with both poles at −ω_n and without the PI's zero (b = 0) a step of the reference gives 1 − (1 + ω_n·t)·exp(−ω_n·t),
+    /// which does not overshoot; b between adds its share of ω_n·t·exp(−ω_n·t)·2.
+    #[test]
+    fn the_weight_of_the_reference_moves_the_zero() {
+        let h = 1e-6;
+        let p = Params { k_p: 2.0 * J * OMEGA_N, integral_time: Some(2.0 / OMEGA_N), max_effort: 1e3 };
+        for weight in [0.0, 0.37, 1.0] {
+            let (mut x, mut omega) = (State::default(), 0.0);
+            for _ in 0..27_000 {
+                let u = Input { reference: 1.0, velocity: omega, ..FREE };
+                omega += h / J * step_shaped(&p, &mut x, u, h, weight, |effort| effort).effort;
+            }
+            let a = OMEGA_N * 27e-3;
+            let exact = 1.0 - (1.0 + a) * (-a).exp() + 2.0 * weight * a * (-a).exp();
+            // Of first order: the step is 5e-5 of the time constant.
+            assert!((omega - exact).abs() < 1e-4, "{weight}: {omega} {exact}");
         }
     }
 

@@ -6,6 +6,8 @@
 mod axis;
 mod bus;
 mod drive;
+mod drive_blocks;
+mod drive_filters;
 mod fmu;
 mod motor;
 mod motor_effects;
@@ -17,6 +19,8 @@ mod setpoint;
 pub(crate) use axis::{Axis, Body, FrictionKeys, Mjcf};
 pub(crate) use bus::{Bus, BusFault, DriveInterpolation, FaultName};
 pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, VelocityKind};
+pub(crate) use drive_blocks::{CoggingHarmonic, DeadTimeCompensation, GainSchedule, I2t, ThermalLoad};
+pub(crate) use drive_filters::{FilterKind, TorqueFilter};
 pub(crate) use fmu::{Coupling, Fmu};
 pub(crate) use motor::{Encoder, Motor, MotorKind};
 pub(crate) use motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};

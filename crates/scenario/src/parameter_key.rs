@@ -2,14 +2,14 @@
 use crate::schema::json_schema;
 use serde_json::Value;
 use servobench_config::Parameter;
-use servobench_drive::{self as drive, current, delay, feedforward, velocity};
+use servobench_drive::{self as drive, cogging, current, delay, feedforward, filter, velocity};
 use servobench_plant::SwitchPoint;
 use std::collections::VecDeque;
 use std::sync::LazyLock;
 
 /// Parameters of the firmware whose key says them in another way – a bandwidth, a rate, a share –, and the table where several keys
 /// decide on one.
-const SAID_OTHERWISE: [(&Parameter, &str); 10] = [
+const SAID_OTHERWISE: [(&Parameter, &str); 18] = [
     (drive::Parameter::TRANSMISSION, "axis"),
     (drive::Parameter::POSITION_GAIN, "drive.position.gain"),
     (drive::Parameter::POSITION_RATE, "drive.position.rate"),
@@ -20,6 +20,14 @@ const SAID_OTHERWISE: [(&Parameter, &str); 10] = [
     (feedforward::Parameter::VELOCITY, "drive.feedforward.velocity"),
     (feedforward::Parameter::MOTOR_INERTIA, "drive.estimate.motor_inertia"),
     (delay::Parameter::DELAY, "drive.feedforward.delay"),
+    (cogging::Parameter::AMPLITUDE, "drive.cogging"),
+    (cogging::Parameter::PHASE, "drive.cogging"),
+    (filter::Parameter::FREQUENCY, "drive.filter"),
+    (filter::Parameter::DAMPING, "drive.filter"),
+    (filter::Parameter::ZERO_FREQUENCY, "drive.filter"),
+    (filter::Parameter::ZERO_DAMPING, "drive.filter"),
+    (filter::Parameter::POLE_FREQUENCY, "drive.filter"),
+    (filter::Parameter::POLE_DAMPING, "drive.filter"),
 ];
 
 /// The keys of the file that hold a parameter as its owner declares it: the names of the parameters and the keys, those nearest to
@@ -74,6 +82,13 @@ mod tests {
             current::Parameter::ALL,
             feedforward::Parameter::ALL,
             delay::Parameter::ALL,
+            filter::Parameter::ALL,
+            cogging::Parameter::ALL,
+            current::operating_point::Parameter::ALL,
+            current::dead_time::Parameter::ALL,
+            drive::BlockParameter::ALL,
+            drive::overload::Parameter::ALL,
+            drive::schedule::Parameter::ALL,
         ];
         all.into_iter().flatten().copied()
     }

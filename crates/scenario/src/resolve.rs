@@ -3,6 +3,7 @@
 mod axis;
 mod bandwidth;
 mod block;
+mod blocks;
 mod bus;
 mod bus_fault;
 mod cams;
@@ -29,6 +30,7 @@ mod program;
 mod requirements;
 mod rockwell;
 mod time;
+mod torque_filter;
 mod torque_limit;
 mod whole;
 

@@ -132,6 +132,51 @@ winding = "80 degC"
 model = "servo-16khz"
 "#;
 
+/// A synchronous motor under all blocks of the firmware.
+const FIRMWARE: &str = r#"
+[run]
+base_rate = "16 kHz"
+duration = "1 s"
+[axis]
+motion = "rotary"
+[motor]
+kind = "pmsm"
+pole_pairs = 3
+resistance = "3.6 Ohm"
+inductance = "36 mH"
+flux_linkage = "0.5 V s"
+inertia = "0.005 kg m2"
+max_current = "9 Apk"
+[drive]
+dc_link = "540 V"
+gain_schedule = { from = "1 rad/s", to = "2 rad/s" }
+i2t.motor = { continuous_current = "5 Apk", time_constant = "3 s" }
+i2t.drive = { continuous_current = "5 Apk", peak_time = "3 s" }
+[drive.current]
+rate = "16 kHz"
+bandwidth = "600 Hz"
+dead_time_compensation = { dead_time = "2 us", frequency = "8 kHz" }
+[drive.velocity]
+rate = "8 kHz"
+bandwidth = "20 Hz"
+[drive.position]
+rate = "4 kHz"
+bandwidth = "5 Hz"
+[[drive.filter]]
+kind = "low-pass"
+frequency = "700 Hz"
+[[drive.filter]]
+kind = "low-pass"
+order = 2
+frequency = "700 Hz"
+[[drive.filter]]
+kind = "notch"
+frequency = "300 Hz"
+[[drive.cogging]]
+order = 12
+amplitude = "0.02 Nm"
+"#;
+
 /// Of a table of points, what only moves use: no block chooses velocities by these rules.
 const OF_MOVES: [&str; 2] = ["call[].table.passes", "call[].table.velocities"];
 
@@ -216,6 +261,7 @@ fn a_key_that_is_written_with_its_default_changes_nothing() {
         screw,
         OF_FMU.to_owned(),
         OF_A_MOTOR.to_owned(),
+        FIRMWARE.to_owned(),
     ]);
     let more: Vec<_> = more.map(|text| (text, repository())).collect();
     for (text, folder) in &more {

@@ -215,6 +215,7 @@ impl ClosedLoop {
                     effort: state.held().effort.effort,
                     effort_is_cut: state.held().effort.cut.is_some(),
                     following_error: state.following_error(params, &sensors),
+                    is_overloaded: state.is_overloaded(params),
                     switches,
                 };
                 let t = self.base_rate.time(Tick(k));

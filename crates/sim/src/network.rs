@@ -159,6 +159,8 @@ pub(crate) struct Measurement {
     pub(crate) effort_is_cut: bool,
     /// Reference less position, as the position loop saw them (axis coordinate).
     pub(crate) following_error: f64,
+    /// Whether an I²t load is reached that is a fault.
+    pub(crate) is_overloaded: bool,
     /// The switches.
     pub(crate) switches: SwitchReading,
 }
@@ -200,6 +202,7 @@ impl Network {
             positive_limit: measurement.switches.positive,
             home: measurement.switches.home,
             index: self.index.take(),
+            is_overloaded: measurement.is_overloaded,
         };
         let inputs = device::Inputs { frame: frame.as_ref(), measured, fault: None, main_voltage: true };
         let device::Outputs { demand, effort_limits, .. } = device::step(params, state, &inputs);

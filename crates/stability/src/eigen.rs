@@ -18,14 +18,13 @@
 //! Source: Golub & Van Loan, *Matrix Computations*, 4th ed., §7.2.2; Higham, *Accuracy and Stability*, 2nd ed., §3.
 use crate::error::StabilityError;
 use crate::period::{ComplexVector, Period};
-use crate::state::STATES;
 use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
 use nalgebra::{Complex, DMatrix};
 
 /// Iterations that the QR algorithm is granted, in all.
 const ITERATIONS: usize = 3_000;
-/// Bound of the relative error of what a tick does to a vector: 4·n·u.
-const ROUNDING: f64 = 4.0 * STATES as f64 * f64::EPSILON / 2.0;
+/// Bound of the relative error of what a tick does to a vector, by the number of states: 4·u.
+const ROUNDING: f64 = 4.0 * f64::EPSILON / 2.0;
 
 /// A loop of the structure, with its eigenvalues.
 pub(crate) struct Block {
@@ -68,8 +67,9 @@ impl Block {
 
     /// Refines `value`, one of the eigenvalues.
     pub(crate) fn refine(&self, period: &Period, value: Complex<f64>) -> Eigenvalue {
-        let right = self.extended(&vector(&self.balanced, value), |scale| scale);
-        let left = self.extended(&vector(&self.balanced.transpose(), value), |scale| 1.0 / scale);
+        let size = period.monodromy.nrows();
+        let right = self.extended(size, &vector(&self.balanced, value), |scale| scale);
+        let left = self.extended(size, &vector(&self.balanced.transpose(), value), |scale| 1.0 / scale);
         let (states, rows) = (period.forward(right), period.backward(left));
         let (before, after) = (&states[0], &states[states.len() - 1]);
         let left = &rows[rows.len() - 1];
@@ -80,10 +80,11 @@ impl Block {
         let value = if value.im == 0.0 { Complex::new(refined.re, 0.0) } else { refined };
 
         let mut moved = 0.0;
+        let rounding = ROUNDING * size as f64;
         for ((matrix, state), row) in period.matrices().zip(&states).zip(&rows[1..]) {
             for (column, state) in matrix.column_iter().zip(state.iter()) {
                 let through: f64 = column.iter().zip(row.iter()).map(|(entry, row)| entry.abs() * row.norm()).sum();
-                moved += ROUNDING * through * state.norm();
+                moved += rounding * through * state.norm();
             }
         }
         for &i in &self.states {
@@ -92,9 +93,9 @@ impl Block {
         Eigenvalue { value, bound: moved / scale.norm(), states }
     }
 
-    /// A vector of the balanced block as one of all states; the others are 0.
-    fn extended(&self, vector: &ComplexVector, scaled: impl Fn(f64) -> f64) -> ComplexVector {
-        let mut all = ComplexVector::zeros(STATES);
+    /// A vector of the balanced block as one of all `size` states; the others are 0.
+    fn extended(&self, size: usize, vector: &ComplexVector, scaled: impl Fn(f64) -> f64) -> ComplexVector {
+        let mut all = ComplexVector::zeros(size);
         for ((&state, entry), scale) in self.states.iter().zip(vector.iter()).zip(&self.scales) {
             all[state] = entry * scaled(*scale);
         }

@@ -3,7 +3,7 @@
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
 //! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
 use crate::error::StabilityError;
-use crate::state::{STATES, State};
+use crate::state::State;
 use crate::structure::Pattern;
 use crate::tick::{Due, Tick};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -32,8 +32,8 @@ pub(crate) struct Period {
 struct Product(DMatrix<f64>, Pattern);
 
 impl Product {
-    fn identity() -> Self {
-        Self(DMatrix::identity(STATES, STATES), Pattern::identity())
+    fn identity(size: usize) -> Self {
+        Self(DMatrix::identity(size, size), Pattern::identity())
     }
 
     fn after(&self, first: &Self) -> Self {
@@ -41,7 +41,7 @@ impl Product {
     }
 
     fn power(&self, mut exponent: u32) -> Self {
-        let (mut power, mut square) = (Self::identity(), self.clone());
+        let (mut power, mut square) = (Self::identity(self.0.nrows()), self.clone());
         while exponent > 0 {
             if exponent & 1 == 1 {
                 power = square.after(&power);
@@ -90,7 +90,10 @@ impl Period {
         }
         let product = |due: Due| {
             let kind = kinds.iter().find(|(kind, _)| *kind == due);
-            kind.map_or_else(Product::identity, |(_, matrix)| Product(matrix.clone(), Pattern::of(matrix)))
+            kind.map_or_else(
+                || Product::identity(tick.states()),
+                |(_, matrix)| Product(matrix.clone(), Pattern::of(matrix)),
+            )
         };
         // Each loop's period is a whole number of the periods of the loop below it.
         let idle = product(idle).power(current - 1);
@@ -142,12 +145,13 @@ impl Period {
 
 /// The matrix of a tick at the end of which the loops `due` turn.
 fn matrix(tick: &Tick, due: Due) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(STATES, STATES);
-    for column in 0..STATES {
+    let size = tick.states();
+    let mut matrix = DMatrix::zeros(size, size);
+    for column in 0..size {
         let mut x = State::unit(column);
         tick.plant(&mut x);
         tick.control(&mut x, due);
-        matrix.column_mut(column).copy_from_slice(&x.to_array());
+        matrix.column_mut(column).copy_from_slice(&x.to_array()[..size]);
     }
     matrix
 }

@@ -12,7 +12,7 @@
 use crate::eigen::Eigenvalue;
 use crate::model::Loop;
 use crate::period::{ComplexVector, Period};
-use crate::state::{CURRENT, STATES};
+use crate::state::{CURRENT, MOST_STATES};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -72,8 +72,8 @@ fn turn_per_tick(model: &Loop, eigenvalue: &Eigenvalue) -> f64 {
 }
 
 /// Inertia of each velocity, or 1 for each current where no body moves.
-fn weights(model: &Loop, states: &[ComplexVector]) -> [f64; STATES] {
-    let mut weights = [0.0; STATES];
+fn weights(model: &Loop, states: &[ComplexVector]) -> [f64; MOST_STATES] {
+    let mut weights = [0.0; MOST_STATES];
     let bodies = model.mechanics.bodies();
     for (i, body) in bodies.iter().enumerate() {
         weights[bodies.len() - 1 + i] = body.inertia / (body.transmission * body.transmission);

@@ -1,11 +1,14 @@
 //! What a base tick of the linear loop leaves to the next one: deviations from the operating point.
 use servobench_base::Dq;
+use servobench_drive::filter;
 use servobench_plant::Chain;
 
 /// States of the mechanics: stretches and velocities of the longest chain.
 pub(crate) const MECHANICS: usize = 2 * Chain::MAX_BODIES - 1;
-/// Number of states.
+/// Number of states of a loop without filters.
 pub(crate) const STATES: usize = MECHANICS + 17;
+/// Number of states with as many filters as there can be; those of the filters come last, two of each.
+pub(crate) const MOST_STATES: usize = STATES + 2 * filter::MOST;
 /// First current of the motor.
 pub(crate) const CURRENT: usize = MECHANICS + 2;
 /// First state of the controllers; all behind it are.
@@ -43,13 +46,17 @@ pub(crate) struct State {
     pub(crate) applied: Dq,
     /// What the motor has travelled since (motor coordinate).
     pub(crate) applied_travel: f64,
+    /// Filters behind the velocity loop (motor coordinate).
+    pub(crate) filters: filter::State,
 }
 
 impl State {
     /// The states in order.
-    pub(crate) fn to_array(self) -> [f64; STATES] {
-        let mut array = [0.0; STATES];
+    pub(crate) fn to_array(self) -> [f64; MOST_STATES] {
+        let mut array = [0.0; MOST_STATES];
         let (mechanics, others) = array.split_at_mut(MECHANICS);
+        let (others, filters) = others.split_at_mut(STATES - MECHANICS);
+        filters.copy_from_slice(self.filters.memory.as_flattened());
         mechanics.copy_from_slice(&self.mechanics);
         others.copy_from_slice(&[
             self.position,
@@ -92,6 +99,7 @@ impl State {
             pending_travel: other(13),
             applied: Dq { d: other(14), q: other(15) },
             applied_travel: other(16),
+            filters: filter::State { memory: std::array::from_fn(|i| [other(17 + 2 * i), other(18 + 2 * i)]) },
         }
     }
 }
@@ -102,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_unit_state_is_one_in_its_own_entry_alone() {
-        for index in 0..STATES {
+        for index in 0..MOST_STATES {
             let array = State::unit(index).to_array();
             assert!(
                 array.iter().enumerate().all(|(i, entry)| entry.to_bits() == f64::from(u8::from(i == index)).to_bits())

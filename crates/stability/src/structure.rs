@@ -6,12 +6,12 @@
 //! holds, bodies and springs that the drive does not act on; their poles are on the circle or inside, by physics. Neither is one
 //! of controllers' states alone: an integrator without input, a filter.
 //! Source: Tarjan, *SIAM J. Comput.* 1(2), 1972 (components); Murota, *Matrices and Matroids for Systems Analysis*, §2.
-use crate::state::{CONTROLLER, STATES};
+use crate::state::{CONTROLLER, MOST_STATES};
 use nalgebra::DMatrix;
 
 /// What acts on what: bit j of row i says whether state j acts on state i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Pattern([u32; STATES]);
+pub(crate) struct Pattern([u32; MOST_STATES]);
 
 impl Pattern {
     /// Every state acts on itself alone.
@@ -21,33 +21,35 @@ impl Pattern {
 
     /// Of a matrix: where it is not exactly zero.
     pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
-        Self(std::array::from_fn(|i| (0..STATES).filter(|&j| matrix[(i, j)] != 0.0).fold(0, |row, j| row | 1 << j)))
+        let size = matrix.nrows();
+        let row = |i: usize| (0..size).filter(|&j| matrix[(i, j)] != 0.0).fold(0, |row, j| row | 1 << j);
+        Self(std::array::from_fn(|i| if i < size { row(i) } else { 0 }))
     }
 
     /// What acts on what when `first` comes before this one.
     pub(crate) fn after(&self, first: &Self) -> Self {
-        let through = |row: u32| (0..STATES).filter(|&j| row & 1 << j != 0).fold(0, |sum, j| sum | first.0[j]);
+        let through = |row: u32| (0..MOST_STATES).filter(|&j| row & 1 << j != 0).fold(0, |sum, j| sum | first.0[j]);
         Self(self.0.map(through))
     }
 
     /// The strongly connected components that hold states of a controller and of what it controls.
     pub(crate) fn loops(&self) -> Vec<Vec<usize>> {
         let mut reached = self.0;
-        for via in 0..STATES {
-            for i in 0..STATES {
+        for via in 0..MOST_STATES {
+            for i in 0..MOST_STATES {
                 if reached[i] & 1 << via != 0 {
                     reached[i] |= reached[via];
                 }
             }
         }
         let acts = |j: usize, i: usize| reached[i] & 1 << j != 0;
-        let mut is_seen = [false; STATES];
+        let mut is_seen = [false; MOST_STATES];
         let mut loops = Vec::new();
-        for i in 0..STATES {
+        for i in 0..MOST_STATES {
             if is_seen[i] || !acts(i, i) {
                 continue;
             }
-            let component: Vec<usize> = (i..STATES).filter(|&j| acts(i, j) && acts(j, i)).collect();
+            let component: Vec<usize> = (i..MOST_STATES).filter(|&j| acts(i, j) && acts(j, i)).collect();
             for &j in &component {
                 is_seen[j] = true;
             }
@@ -64,7 +66,7 @@ mod tests {
     use super::*;
 
     fn pattern(edges: &[(usize, usize)]) -> Pattern {
-        let mut matrix = DMatrix::zeros(STATES, STATES);
+        let mut matrix = DMatrix::zeros(MOST_STATES, MOST_STATES);
         for &(from, to) in edges {
             matrix[(to, from)] = 1e-300;
         }

@@ -5,10 +5,10 @@
 //! operating point at standstill: no set-point, no limit, no rounding of encoders. A loop that is opened puts out nothing.
 use crate::electrical::Electrical;
 use crate::model::{Loop, PositionFeedback, Source, VelocitySignal};
-use crate::state::{MECHANICS, State};
+use crate::state::{MECHANICS, STATES, State};
 use nalgebra::DMatrix;
 use servobench_base::Dq;
-use servobench_drive::Stage;
+use servobench_drive::{Stage, filter};
 use servobench_plant::transition;
 
 /// Which loops have their turn at a tick.
@@ -87,6 +87,11 @@ impl<'a> Tick<'a> {
         self.model
     }
 
+    /// Number of states: two more for each filter.
+    pub(crate) fn states(&self) -> usize {
+        STATES + 2 * self.model.drive.blocks.filters.sections().len()
+    }
+
     /// Base tick (s).
     pub(crate) const fn h(&self) -> f64 {
         self.h
@@ -152,10 +157,11 @@ impl<'a> Tick<'a> {
         };
         x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
         let gain = if self.closed.velocity { self.factors.velocity * p.velocity.k_p } else { 0.0 };
-        let proportional = gain * (x.velocity_reference / p.transmission - x.filtered_velocity);
-        x.effort = proportional + x.velocity_integral;
+        let reference = x.velocity_reference / p.transmission;
+        let proportional = gain * (p.blocks.reference_weight * reference - x.filtered_velocity);
+        x.effort = filter::step(&p.blocks.filters, &mut x.filters, proportional + x.velocity_integral);
         if let Some(integral_time) = p.velocity.integral_time {
-            x.velocity_integral += h / integral_time * proportional;
+            x.velocity_integral += h / integral_time * (gain * (reference - x.filtered_velocity));
         }
     }
 

@@ -6,6 +6,8 @@ use servobench_cia402::ErrorCode;
 pub enum Fault {
     /// The power was gone while the drive function was enabled.
     MainsMissing,
+    /// The I²t load of motor or drive was reached.
+    Overload,
     /// A velocity or an effort that is no number was measured.
     Encoder,
     /// More cycles without a frame than the drive bridges.
@@ -18,13 +20,15 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault that the drive finds itself.
-    pub const OWN: [Self; 4] = [Self::MainsMissing, Self::Encoder, Self::FramesMissing, Self::FollowingError];
+    pub const OWN: [Self; 5] =
+        [Self::MainsMissing, Self::Overload, Self::Encoder, Self::FramesMissing, Self::FollowingError];
 
     /// Value of 603Fh.
     #[must_use]
     pub const fn code(self) -> u16 {
         let code = match self {
             Self::MainsMissing => ErrorCode::DcLinkUnderVoltage,
+            Self::Overload => ErrorCode::LoadLevel,
             Self::Encoder => ErrorCode::IncrementalSensor,
             Self::FramesMissing => ErrorCode::SyncController,
             Self::FollowingError => ErrorCode::FollowingError,

@@ -26,6 +26,8 @@ impl State {
             Some(Fault::MainsMissing)
         } else if !u.measured.is_valid() {
             Some(Fault::Encoder)
+        } else if is_enabled && u.measured.is_overloaded {
+            Some(Fault::Overload)
         } else if lacks_frames {
             Some(Fault::FramesMissing)
         } else {

@@ -21,6 +21,7 @@ fn every_fault_has_its_code_and_its_reaction() {
     for (fault, code) in [
         (Fault::External(0x9000), 0x9000),
         (Fault::MainsMissing, 0x3220),
+        (Fault::Overload, 0x2350),
         (Fault::Encoder, 0x7305),
         (Fault::FollowingError, 0x8611),
         (Fault::FramesMissing, 0x8700),
@@ -30,6 +31,7 @@ fn every_fault_has_its_code_and_its_reaction() {
         match fault {
             Fault::External(code) => axis.fault = Some(code),
             Fault::MainsMissing => axis.main_voltage = false,
+            Fault::Overload => axis.measured.is_overloaded = true,
             Fault::Encoder => axis.measured.effort = f64::NAN,
             Fault::FollowingError => axis.measured.following_error = -1.1e-3,
             Fault::FramesMissing => with_frames = false,
@@ -62,7 +64,7 @@ fn every_fault_has_its_code_and_its_reaction() {
         let stays = matches!(fault, Fault::External(_) | Fault::Encoder);
         assert_eq!(axis.state.power() == PowerState::Fault, stays, "{fault:?}");
         (axis.fault, axis.main_voltage, axis.measured.effort) = (None, true, 0.0);
-        axis.measured.following_error = 0.0;
+        (axis.measured.following_error, axis.measured.is_overloaded) = (0.0, false);
         axis.command(Command::DisableVoltage);
         axis.cycle();
         axis.command(Command::FaultReset);

@@ -30,6 +30,7 @@ fn loops() -> drive::Params {
             coulomb: 0.0,
             bias: 0.0,
         },
+        blocks: drive::Blocks::default(),
         reference_delay: delay::Params::default(),
         stage: Stage::Direct { gain: 1.0 },
     }

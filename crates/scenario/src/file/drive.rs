@@ -1,6 +1,7 @@
 //! `[drive]`: the firmware.
 use crate::field::{Either, EitherMeasure};
-use crate::list::{Automatic, Share};
+use crate::file::{CoggingHarmonic, DeadTimeCompensation, GainSchedule, I2t, TorqueFilter};
+use crate::list::{Automatic, Many, Share};
 use crate::object_table::ObjectTable;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -10,7 +11,8 @@ use servobench_config::quantities::{
     BANDWIDTH, FORCE, INERTIAL, LEAD, POSITION_GAIN, RATIO, TIME, TORQUE, VISCOUS, VOLT_GAIN,
 };
 use servobench_config::{choices, not_negative, positive};
-use servobench_drive::{self as drive, EffortFeedforward, current, feedforward, velocity};
+use servobench_drive::current::operating_point::{self, Strategy};
+use servobench_drive::{self as drive, BlockParameter, EffortFeedforward, current, feedforward, velocity};
 use servobench_plant::EncoderParameter;
 
 choices! {
@@ -57,6 +59,14 @@ table! {
         velocity: Velocity = (),
         /// Position loop.
         position: Position = (),
+        /// Filters in the torque path, one after the other; `[[drive.filter]]` for each.
+        filter: Many<TorqueFilter> = (),
+        /// Harmonics of cogging that the drive takes off, by the measured position; `[[drive.cogging]]` for each, eight at most.
+        cogging: Many<CoggingHarmonic> = (),
+        /// Gains over speed; default: none.
+        gain_schedule: GainSchedule = (),
+        /// I²t of motor and drive; default: none.
+        i2t: I2t = (),
         /// Feedforward; default: none.
         feedforward: Feedforward = (),
         /// What the firmware believes of the axis; default: the truth.
@@ -87,6 +97,16 @@ table! {
         /// default: 0. The torque or force per q-axis current is then that of 1.5·p·(ψ + (L_d − L_q)·i_d) of the
         /// estimated motor, and `max_current` bounds the vector of both.
         d_reference: f64 = current::Parameter::D_REFERENCE,
+        /// Which d-axis current an effort is given with; default: "d-reference".
+        strategy: Strategy = OneOf,
+        /// Whether the d-axis current weakens the field where the voltage ends, by the estimated motor and DC link; default: false.
+        field_weakening: bool = (),
+        /// default: 0.95.
+        field_weakening_share: f64 = operating_point::Parameter::SHARE,
+        /// default: none.
+        field_weakening_feedback: f64 = operating_point::Parameter::FEEDBACK,
+        /// Compensation of the inverter's dead time; default: none.
+        dead_time_compensation: DeadTimeCompensation = (),
     }
 }
 
@@ -106,6 +126,10 @@ table! {
         integral_time: f64 = velocity::Parameter::INTEGRAL_TIME,
         /// default: none.
         filter_time: f64 = drive::Parameter::VELOCITY_FILTER_TIME,
+        /// default: none.
+        max_speed: f64 = BlockParameter::MAX_SPEED,
+        /// default: 1.
+        reference_weight: f64 = BlockParameter::REFERENCE_WEIGHT,
     }
 }
 

@@ -9,6 +9,7 @@ use crate::resolve::{Alternative, need, one_of, task_rate};
 use crate::source::Span;
 use servobench_base::{Dq, Rate};
 use servobench_drive::current::Tuning;
+use servobench_drive::current::operating_point::{self, Strategy, Weakening};
 
 /// What the file says of the loop.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +20,8 @@ pub(super) struct CurrentLoop {
     pub(super) integral_times: Option<Dq>,
     /// Reference of the d axis (A, peak).
     pub(super) d_reference: f64,
+    /// How the currents of an effort are chosen.
+    pub(super) operation: operating_point::Params,
 }
 
 /// `None` where there is no current loop and none is needed.
@@ -52,7 +55,29 @@ pub(super) fn resolve(
         None
     };
     let d_reference = d_reference(&given.d_reference, known, report)?;
-    Ok(Some(CurrentLoop { rate: rate.ok_or(Reported)?, tuning: tuning?, integral_times, d_reference }))
+    let operation = operation(given, report)?;
+    Ok(Some(CurrentLoop { rate: rate.ok_or(Reported)?, tuning: tuning?, integral_times, d_reference, operation }))
+}
+
+/// Maximum torque per ampere and field weakening.
+fn operation(given: &file::Current, report: &mut Report) -> Result<operating_point::Params, Reported> {
+    let strategy = given.strategy.optional()?.copied().unwrap_or_default();
+    if let (Strategy::Mtpa, Some(span)) = (strategy, given.d_reference.span()) {
+        report.error(span, "with `strategy = \"mtpa\"` there is no `d_reference`", "leave one of them out");
+        return Err(Reported);
+    }
+    let is_weakened = given.field_weakening.optional()?.copied().unwrap_or(false);
+    let (share, feedback) = (&given.field_weakening_share, &given.field_weakening_feedback);
+    for (key, span) in [("field_weakening_share", share.span()), ("field_weakening_feedback", feedback.span())] {
+        if let (false, Some(span)) = (is_weakened, span) {
+            report.warning(span, format!("`{key}` is not used"), "write `field_weakening = true`");
+        }
+    }
+    let weakening = Weakening {
+        share: share.optional()?.copied().unwrap_or(0.95),
+        feedback: feedback.optional()?.copied().unwrap_or(0.0),
+    };
+    Ok(operating_point::Params { strategy, weakening: is_weakened.then_some(weakening) })
 }
 
 /// It must leave the q axis some current, and the motor some torque.

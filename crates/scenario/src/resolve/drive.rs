@@ -7,11 +7,12 @@ use crate::list::{Automatic, Share};
 use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::{Motor, resolution};
-use crate::resolve::{current, loops, need};
+use crate::resolve::{blocks, current, loops, need};
 use crate::scenario::{Actuator, Axis, Drive, Feedback};
 use servobench_base::{ParamError, Rate};
+use servobench_drive::current::operating_point::Strategy;
 use servobench_drive::current::{Gains, q_current, voltage_limit};
-use servobench_drive::{EffortFeedforward, Estimate, Params, Stage, delay, feedforward};
+use servobench_drive::{Blocks, EffortFeedforward, Estimate, Params, Stage, delay, feedforward};
 use servobench_plant::pmsm;
 
 /// The parts that are known by now.
@@ -46,7 +47,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         _ => 1.0,
     };
     let d_reference = described.map_or(0.0, |described| described.d_reference);
-    let max_effort = max_effort(given, known.motor, &Source { gain, d_reference }, report);
+    let strategy = described.map_or(Strategy::default(), |described| described.operation.strategy);
+    let max_effort = max_effort(given, known.motor, &Source { gain, d_reference, strategy }, report);
     let belief_of = belief.as_ref();
     let knowledge =
         loops::Knowledge { base_rate: known.base_rate, motor: known.motor, belief: belief_of, max_effort, gain };
@@ -64,15 +66,22 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         _ if !enabled => return Some(Actuator::Off),
         Motor::Pmsm { motor, max_current, .. } => {
             let (described, dc_link, base_rate) = (described?, dc_link?, known.base_rate?);
-            let params = current_params(&described, estimates, (motor, *max_current, dc_link));
+            let mut params = current_params(&described, estimates, (motor, *max_current, dc_link));
+            let believed_dc_link = estimate::or_true(estimates, |given| &given.dc_link, dc_link);
+            params.dead_time = blocks::dead_time(given.current.given()?, believed_dc_link).ok()?;
             (Stage::Current { params, every: base_rate.divider(described.rate).ok()? }, Some(described.tuning))
         }
         Motor::IdealSource { .. } => (Stage::Direct { gain }, None),
     };
+    let base_rate = known.base_rate?;
+    let lag = velocity_rate.map_or(0.0, |rate| lag(rate, base_rate, &stage));
+    let known_here = blocks::Known { motor: known.motor, rate: velocity_rate, lag, has_bus: file.bus.span().is_some() };
+    let blocks = blocks::resolve(given, &known_here, report);
     let parts = Parts {
-        base_rate: known.base_rate?,
+        base_rate,
         velocity: velocity?,
         position: position?,
+        blocks: blocks.ok()?,
         feedforward: feedforward?,
         stage,
         is_sent: is_sent(file),
@@ -91,6 +100,18 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         }),
         Motor::IdealSource { source, encoder } => {
             Some(Actuator::IdealSource { source: *source, encoder: *encoder, drive })
+        }
+    }
+}
+
+/// How long an effort of a velocity loop of the rate `velocity` takes to act (s): half of what it is held for beyond a period of
+/// the current loop, and the lag of that.
+fn lag(velocity: Rate, base_rate: Rate, stage: &Stage) -> f64 {
+    match stage {
+        Stage::Direct { .. } => velocity.period() / 2.0,
+        Stage::Current { params, every } => {
+            let period = f64::from(every.ticks()) * base_rate.period();
+            (velocity.period() - period) / 2.0 + params.motor.inductance.q / params.gains.k_p.q
         }
     }
 }
@@ -115,6 +136,8 @@ fn current_params(
         d_reference: described.d_reference,
         max_current,
         max_voltage: voltage_limit(believed_dc_link),
+        operation: described.operation,
+        dead_time: None,
     }
 }
 
@@ -123,6 +146,7 @@ struct Parts {
     base_rate: Rate,
     velocity: loops::VelocityLoop,
     position: loops::PositionLoop,
+    blocks: Blocks,
     feedforward: Feedforward,
     stage: Stage,
     /// Whether the master sends an effort.
@@ -131,7 +155,7 @@ struct Parts {
 
 /// The firmware of these parts, which believes the axis to be `estimate`.
 fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut Report) -> Option<Params> {
-    let Parts { base_rate, velocity, position, feedforward, stage, is_sent } = parts;
+    let Parts { base_rate, velocity, position, blocks, feedforward, stage, is_sent } = parts;
     let compensated = |value: f64| if feedforward.friction { value } else { 0.0 };
     let mut params = Params {
         base_rate,
@@ -148,6 +172,7 @@ fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut R
             coulomb: compensated(estimate.coulomb),
             bias: compensated(estimate.bias),
         },
+        blocks,
         reference_delay: delay::Params::default(),
         stage,
     };
@@ -184,16 +209,24 @@ fn dc_link(drive: &file::Drive, motor: Option<&Motor>, is_used: bool, report: &m
     drive.dc_link.given().copied()
 }
 
-/// What the drive does with the motor: effort per output of an ideal source as it believes, and d-axis current (A).
+/// What the drive does with the motor: effort per output of an ideal source as it believes, d-axis current (A), and how it chooses
+/// that.
 struct Source {
     gain: f64,
     d_reference: f64,
+    strategy: Strategy,
 }
 
-/// Largest effort the motor can give (motor coordinate) at the d-axis current `i_d` (A).
-fn strength(motor: &Motor, i_d: f64) -> f64 {
+/// Largest effort that the motor can give under such a drive (motor coordinate).
+fn strength(motor: &Motor, used: &Source) -> f64 {
     match motor {
-        Motor::Pmsm { motor, max_current, .. } => motor.effort_constant(i_d) * q_current(*max_current, i_d),
+        Motor::Pmsm { motor, max_current, .. } => {
+            let i_d = match used.strategy {
+                Strategy::DReference => used.d_reference,
+                Strategy::Mtpa => estimate::of_motor(None, motor).mtpa_at_current(*max_current),
+            };
+            motor.effort_constant(i_d) * q_current(*max_current, i_d)
+        }
         Motor::IdealSource { source, .. } => source.gain * source.limit,
         Motor::Prescribed => f64::INFINITY,
     }
@@ -216,7 +249,7 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report:
         Motor::IdealSource { source, .. } => used.gain * source.limit,
         Motor::Pmsm { .. } | Motor::Prescribed => f64::INFINITY,
     };
-    let strength = strength(motor, used.d_reference);
+    let strength = strength(motor, used);
     match slot {
         Slot::Absent => Some(available),
         Slot::Wrong(_) => None,

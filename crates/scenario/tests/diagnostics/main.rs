@@ -1,6 +1,7 @@
 //! What is said of each kind of mistake, and where.
 mod bus;
 mod calls;
+mod firmware;
 mod fmus;
 mod names;
 mod quantities;

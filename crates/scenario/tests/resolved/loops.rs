@@ -147,3 +147,43 @@ fn limits_of_the_motor_and_its_encoder() {
     assert!(same(encoder.increment.unwrap(), 1e-7));
     assert!(same(dc_link, 560.0));
 }
+
+/// Oracle: by hand, from the file to the firmware.
+#[test]
+fn blocks_of_the_firmware_are_those_of_the_file() {
+    use servobench_drive::current::operating_point::{Strategy, Weakening};
+    use servobench_drive::{Blocks, filter, overload, schedule};
+    assert_eq!(params(&scenario(SCREW)).blocks, Blocks::default(), "none of them unless it is asked for");
+    assert!(motor(&scenario(SCREW)).2.operation.is_plain() && motor(&scenario(SCREW)).2.dead_time.is_none());
+    let given = "[drive.velocity]\nmax_speed = \"3000 rpm\"\nreference_weight = 0.7\n\
+        [[drive.filter]]\nkind = \"low-pass\"\nfrequency = \"700 Hz\"\n\
+        [[drive.filter]]\nkind = \"bi-quad\"\nzero_frequency = \"400 Hz\"\npole_frequency = \"500 Hz\"\nzero_damping = 0.1\n\
+        [[drive.cogging]]\norder = 12\namplitude = \"0.02 Nm\"\nphase = \"30 deg\"\n\
+        [drive.gain_schedule]\nfrom = \"1 rad/s\"\nto = \"2 rad/s\"\nvelocity = 0.5\n\
+        [drive.current]\nstrategy = \"mtpa\"\nfield_weakening = true\n\
+        dead_time_compensation = { dead_time = \"2 us\", frequency = \"8 kHz\" }\n\
+        [drive.i2t]\nmotor = { continuous_current = \"5 Apk\", time_constant = \"3 s\" }\n\
+        drive = { continuous_current = \"5 Arms\", peak_time = \"2 s\" }\n";
+    let scenario = scenario(&format!("{SCREW}\n{given}"));
+    let (params, (_, dc_link, current)) = (params(&scenario), motor(&scenario));
+    let Blocks { filters, cogging, motor_load, drive_load, schedule, max_speed, reference_weight } = &params.blocks;
+    let (zero_frequency, zero_damping, pole_frequency, pole_damping) = (400.0, 0.1, 500.0, 0.7);
+    let exact = [
+        filter::Filter::LowPass { frequency: 700.0 },
+        filter::Filter::BiQuad { zero_frequency, zero_damping, pole_frequency, pole_damping },
+    ];
+    assert_eq!(*filters, filter::Params::new(&exact, params.velocity_rate()).unwrap());
+    assert!(same(*max_speed, 3000.0 * TAU / 60.0) && same(*reference_weight, 0.7));
+    assert_eq!(*schedule, Some(schedule::Params { from: 1.0, to: 2.0, position: 1.0, velocity: 0.5 }));
+    let cogging = cogging.unwrap();
+    assert!(same(cogging.effort(0.3, 0.0), -0.02 * (12.0_f64 * 0.3 + TAU / 12.0).sin()));
+    let lag = (params.period(params.velocity_every) - 1.0 / 16e3) / 2.0;
+    assert!(same(cogging.lead(), lag + current.motor.inductance.q / current.gains.k_p.q), "{}", cogging.lead());
+    let derate = overload::Reaction::Derate;
+    let load = overload::Params { continuous_current: 5.0, time_constant: 3.0, reaction: derate };
+    assert_eq!(*motor_load, Some(load));
+    assert!(same(drive_load.unwrap().time(13.3 * 2_f64.sqrt()), 2.0));
+    assert_eq!(current.operation.strategy, Strategy::Mtpa);
+    assert_eq!(current.operation.weakening, Some(Weakening { share: 0.95, feedback: 0.0 }));
+    assert!(same(current.dead_time.unwrap().loss(), 2e-6 * 8e3 * dc_link));
+}

@@ -2,6 +2,7 @@
 use crate::files::scenario;
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::current::{Gains, Tuning};
+use servobench_drive::filter::{self, Filter};
 use servobench_drive::{Stage, delay};
 use servobench_plant::{Body, Chain, Encoder, Friction, Link};
 use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
@@ -130,7 +131,34 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
         drive.position_feedback = Feedback::Load(Encoder::default());
     }
     drive.estimate.transmission = transmission * off;
+    blocks(random, &mut drive.params);
     scenario
+}
+
+/// Filters in the torque path and a weight on the reference, of some loops.
+fn blocks(random: &mut Random, params: &mut servobench_drive::Params) {
+    let rate = params.velocity_rate();
+    if random.unit() < 0.5 {
+        let mut filter = || {
+            let frequency = random.logarithmic(0.02, 0.45) * f64::from(rate.hertz());
+            let (zero_damping, pole_damping) = (random.logarithmic(0.01, 0.5), random.logarithmic(0.2, 1.3));
+            match random.one_of(&[0, 1, 2, 3]) {
+                0 => Filter::LowPass { frequency },
+                1 => Filter::SecondOrder { frequency, damping: pole_damping },
+                2 => Filter::Notch { frequency, zero_damping, pole_damping },
+                _ => {
+                    let pole_frequency = (frequency * random.logarithmic(0.7, 1.4)).min(0.45 * f64::from(rate.hertz()));
+                    Filter::BiQuad { zero_frequency: frequency, zero_damping, pole_frequency, pole_damping }
+                }
+            }
+        };
+        let filters: Vec<_> = (0..3).map(|_| filter()).collect();
+        let count = random.one_of(&[1, 1, 2, 3]);
+        params.blocks.filters = filter::Params::new(&filters[..count], rate).unwrap();
+    }
+    if params.velocity.integral_time.is_some() && random.unit() < 0.3 {
+        params.blocks.reference_weight = random.unit();
+    }
 }
 
 /// One to four bodies in a row.

@@ -39,6 +39,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
                 coulomb: 0.0,
                 bias: 0.0,
             },
+            blocks: drive::Blocks::default(),
             reference_delay: drive::delay::Params::default(),
             stage: drive::Stage::Direct { gain: 1.0 },
         },
@@ -84,7 +85,9 @@ pub(crate) fn servo(tuning: Tuning, mechanics: Chain) -> Loop {
     };
     let gains = current::Gains::from_bandwidth(&motor, TAU * tuning.current);
     let (max_current, max_voltage) = (f64::INFINITY, f64::INFINITY);
-    let params = current::Params { motor, gains, d_reference: 0.0, max_current, max_voltage };
+    let operation = current::operating_point::Params::default();
+    let params =
+        current::Params { motor, gains, d_reference: 0.0, max_current, max_voltage, operation, dead_time: None };
     let rest = ideal(16_000, 2, tuning.velocity, mechanics);
     Loop {
         drive: drive::Params {

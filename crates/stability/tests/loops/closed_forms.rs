@@ -1,7 +1,7 @@
 //! Loops whose poles are known in closed form.
 use crate::axes::{MOTOR, TAU, Tuning, body, chain, ideal, report, servo};
 use servobench_drive::current;
-use servobench_drive::{self as drive, velocity};
+use servobench_drive::{self as drive, filter, velocity};
 use servobench_stability::{GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
 
 /// Boundaries are bisected to 1e-6 of the gain.
@@ -83,6 +83,24 @@ fn a_filter_moves_the_boundary() {
     let model = Loop { drive: drive::Params { velocity_filter_time: filter, ..rest.drive }, ..rest };
     let boundary = above(&model, LoopName::Velocity);
     assert!((boundary * h / mass / ((4.0 - 2.0 * f) / f) - 1.0).abs() < BISECTED, "{boundary}");
+}
+
+/// Oracle: a velocity loop on a mass, a = K·h/m, behind a low-pass of second order, b_0·(z + 1)²/(z² + a_1·z + a_2) with
+/// t = tan(πfh): (z − 1)(z² + a_1·z + a_2) + a·b_0·(z + 1)², by Jury stable for a < 4·(1 − a_2)/(3 − a_1 − a_2) = 4ζt/(1 + 2ζt).
+#[test]
+fn a_filter_of_the_torque_moves_the_boundary() {
+    let (mass, h) = (4.1, 2.0 / 20e3);
+    for (frequency, damping) in [(713.0, 0.61), (97.3, 0.23), (2311.0, 1.4)] {
+        let t = (std::f64::consts::PI * frequency * h).tan();
+        let exact = 4.0 * damping * t / (1.0 + 2.0 * damping * t);
+        let rest = ideal(20_000, 2, 0.6 * exact * mass / h, chain(vec![body(mass, 0.0)], &[]));
+        let filter = filter::Filter::SecondOrder { frequency, damping };
+        let filters = filter::Params::new(&[filter], rest.drive.velocity_rate()).unwrap();
+        let blocks = drive::Blocks { filters, ..drive::Blocks::default() };
+        let model = Loop { drive: drive::Params { blocks, ..rest.drive }, ..rest };
+        let boundary = above(&model, LoopName::Velocity) * h / mass;
+        assert!((boundary / exact - 1.0).abs() < BISECTED, "{frequency} Hz: {boundary} {exact}");
+    }
 }
 
 /// Oracle: a PI loop on a mass, a = K·h/m, the integrator by forward Euler: (z − 1)² + a·(z − 1) + a·h/T: −1 is reached at

@@ -1,7 +1,7 @@
 //! What the set-point asks of motor and inverter, and what there is.
 //!
 //! ```text
-//! i_q = τ/(1.5·p·(ψ + (L_d − L_q)·i_d))        i_d = `drive.current.d_reference`
+//! i_q = τ/(1.5·p·(ψ + (L_d − L_q)·i_d))        i_d = `drive.current.d_reference`, or as the drive's strategy has it
 //! u_d = R·i_d − ω_e·L_q·i_q                    u_q = R·i_q + ω_e·(L_d·i_d + ψ)
 //! |u| ≤ U_dc/√3                                at constant current: L·di/dt is left out
 //! ```
@@ -10,6 +10,8 @@
 use super::resistance::Resistance;
 use super::{Doubt, Units};
 use servobench_drive::Params;
+use servobench_drive::current::operating_point::{Envelope, State, Strategy};
+use servobench_drive::current::{self, MotorEstimate};
 use servobench_metrics::Quantity;
 use servobench_plant::{Chain, inverter, pmsm};
 use servobench_scenario::{Actuator, Scenario, Step};
@@ -94,7 +96,7 @@ impl Demand {
         let is_planned = scenario.plc.is_none();
         let resistance = resistance(scenario, chain).filter(|_| is_planned);
         let motor = match &scenario.actuator {
-            Actuator::Pmsm { motor, drive, .. } => Some((motor, d_current(&drive.params))),
+            Actuator::Pmsm { motor, drive, .. } => Some((motor, &drive.params)),
             _ => None,
         };
         let (mut effort, mut voltage, mut speed, mut squares) = (Largest::default(), Largest::default(), 0.0_f64, 0.0);
@@ -116,8 +118,8 @@ impl Demand {
                 effort.note(torque.abs(), t);
                 squares += torque * torque;
             }
-            if let Some((motor, i_d)) = motor {
-                voltage.note(voltage_for(motor, i_d, torque.unwrap_or(0.0), motor_speed), t);
+            if let Some((motor, drive)) = motor {
+                voltage.note(voltage_for(motor, drive, torque.unwrap_or(0.0), motor_speed), t);
             }
             samples += 1.0;
             tick += stride;
@@ -211,18 +213,33 @@ fn current_rate(drive: &Params) -> f64 {
 fn available(actuator: &Actuator) -> f64 {
     let motor = match actuator {
         Actuator::Prescribed | Actuator::Off => f64::INFINITY,
-        Actuator::Pmsm { motor, drive, .. } => drive
-            .params
-            .current_loop()
-            .map_or(f64::INFINITY, |(current, _)| motor.effort_constant(current.d_reference) * current.max_q_current()),
+        Actuator::Pmsm { motor, drive, .. } => {
+            drive.params.current_loop().map_or(f64::INFINITY, |(current, _)| match current.operation.strategy {
+                Strategy::DReference => motor.effort_constant(current.d_reference) * current.max_q_current(),
+                Strategy::Mtpa => with_the_motor(motor, current).max_effort(),
+            })
+        }
         Actuator::IdealSource { source, .. } => source.gain * source.limit,
     };
     motor.min(actuator.max_effort())
 }
 
-/// |u| for `torque` at `speed`, both in the motor's coordinate, beside the d-axis current `i_d` (A).
-fn voltage_for(motor: &pmsm::Params, i_d: f64, torque: f64, speed: f64) -> f64 {
-    let (omega_e, i_q) = (motor.electrical_ratio * speed, torque / motor.effort_constant(i_d));
+/// The current loop of a drive that knows the motor.
+const fn with_the_motor(motor: &pmsm::Params, current: &current::Params) -> current::Params {
+    let pmsm::Params { electrical_ratio, resistance, inductance, flux_linkage } = *motor;
+    current::Params { motor: MotorEstimate { electrical_ratio, resistance, inductance, flux_linkage }, ..*current }
+}
+
+/// |u| for `torque` at `speed`, both in the motor's coordinate, with the currents that `drive` chooses. What is beyond its envelope
+/// is asked for all the same.
+fn voltage_for(motor: &pmsm::Params, drive: &Params, torque: f64, speed: f64) -> f64 {
+    let omega_e = motor.electrical_ratio * speed;
+    let mut i_d = d_current(drive);
+    if let Some((current, _)) = drive.current_loop().filter(|(current, _)| !current.operation.is_plain()) {
+        let current = with_the_motor(motor, current);
+        i_d = Envelope::new(&current, &State::default(), omega_e).currents(&current, torque).d;
+    }
+    let i_q = torque / motor.effort_constant(i_d);
     let u_d = motor.resistance * i_d - omega_e * motor.inductance.q * i_q;
     let u_q = motor.resistance * i_q + omega_e * (motor.inductance.d * i_d + motor.flux_linkage);
     u_d.hypot(u_q)

@@ -1,0 +1,266 @@
+//! Tests of the firmware.
+use super::*;
+use crate::params::tests::{emps, every, synchronous};
+use crate::velocity::Cut;
+
+const REST: Demand = Demand::position(Setpoint::at_rest(0.0));
+
+fn at_rest(p: &Params) -> State {
+    State::new(p, Setpoint::default()).unwrap()
+}
+
+/// Oracle: the published control law, u = kv·(kp·e − v) in volts, held between its 1 kHz turns.
+#[test]
+fn a_p_p_cascade_is_the_published_control_law() {
+    let (p, mut x) = (emps(), at_rest(&emps()));
+    let at = |x: f64| Sensors { motor_position: x, motor_velocity: Some(0.02), ..Sensors::default() };
+    let setpoint = Setpoint { x: 8e-4, v: 0.1, ..Setpoint::default() };
+    let law = |x: f64| 243.45 * (160.18 * (8e-4 - x) - 0.02);
+    for k in 0..32 {
+        let position = |k: i32| 5e-4 + 1e-6 * f64::from(k);
+        let PowerCommand::Output(u) =
+            step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &at(position(k)))
+        else {
+            panic!("an ideal amplifier")
+        };
+        assert!((u - law(position(k / 16 * 16))).abs() < 1e-11, "tick {k}: {u}");
+    }
+}
+
+#[test]
+fn velocity_from_an_encoder_without_one_is_a_difference() {
+    let (p, mut x) = (emps(), at_rest(&emps()));
+    let mut last = 0.0;
+    for k in 0..=32 {
+        let position = 0.02 * f64::from(k) / 16_000.0;
+        let sensors = Sensors { motor_position: position, ..Sensors::default() };
+        if let PowerCommand::Output(u) = step(&p, &mut x, &REST, EffortLimits::NONE, &sensors) {
+            last = u;
+        }
+    }
+    assert!((last - 243.45 * (160.18 * -0.02 * 32.0 / 16_000.0 - 0.02)).abs() < 1e-9, "{last}");
+}
+
+#[test]
+fn references_go_on_between_two_turns_of_the_position_loop() {
+    let (p, mut x) = (emps(), at_rest(&emps()));
+    for k in 0..40 {
+        let setpoint = Setpoint { x: 0.1 * f64::from(k) / 16_000.0, v: 0.1, ..Setpoint::default() };
+        step(&p, &mut x, &Demand::position(setpoint), EffortLimits::NONE, &Sensors::default());
+        assert!((x.references(&p).0.x - setpoint.x).abs() < 1e-18, "tick {k}");
+    }
+}
+
+/// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity of
+/// constant jerk is a parabola. It is as old as what is measured: half a period of the velocity loop of a difference, and
+/// the time of the filter. Switched off it is the staircase of the position loop.
+#[test]
+fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop() {
+    let start = Setpoint { x: 0.0, v: 0.1, a: 3.0, j: -400.0, s: 0.0 };
+    let share = 0.75;
+    for (interpolate, motor_velocity, filter) in
+        [(true, None, 0.0), (true, Some(0.0), 0.0), (true, Some(0.0), 2e-4), (true, None, 3e-4), (false, None, 3e-4)]
+    {
+        let feedforward = crate::feedforward::Params { velocity: share, interpolate, ..emps().feedforward };
+        let velocity_every = every(8_000);
+        let p = Params { position_gain: 0.0, velocity_every, velocity_filter_time: filter, feedforward, ..emps() };
+        let velocity = velocity::Params { max_effort: f64::INFINITY, ..p.velocity };
+        let p = Params { velocity, ..p };
+        let age = if interpolate { filter + if motor_velocity.is_none() { 1.0 / 16_000.0 } else { 0.0 } } else { 0.0 };
+        let mut x = at_rest(&p);
+        for k in 0..64_u32 {
+            let setpoint = |k: u32| start.after(f64::from(k) / 16_000.0);
+            step(
+                &p,
+                &mut x,
+                &Demand::position(setpoint(k)),
+                EffortLimits::NONE,
+                &Sensors { motor_velocity, ..Sensors::default() },
+            );
+            let cycle = if interpolate { k / 2 * 2 } else { k / 16 * 16 };
+            let at = |age: f64| share * start.after(f64::from(cycle) / 16_000.0 - age).v;
+            let held = x.held();
+            let followed = (held.effort.effort - held.feedforward) / p.velocity.k_p * p.transmission;
+            // The effort is some thousand times as large.
+            assert!((followed - at(age)).abs() < 1e-12, "{interpolate} tick {k}: {held:?}");
+            let expected = at(0.0);
+            assert!((x.held().velocity_reference - expected).abs() < 1e-15, "{interpolate} tick {k}: {:?}", x.held());
+        }
+    }
+}
+
+/// Oracle: by hand. On the motor the loop sees r·(motor position) against the motor's reference, on the load the
+/// load's own position against the load's.
+#[test]
+fn the_encoder_that_closes_the_loop_is_the_one_that_is_compared() {
+    let p = Params { transmission: 0.5, ..emps() };
+    let setpoint = Setpoint::at_rest(3e-3);
+    for (feedback, error) in [(Feedback::Motor, 3e-3 - 0.5 * 2e-3), (Feedback::Load(2.5e-3), 3e-3 - 2.5e-3)] {
+        let mut x = at_rest(&p);
+        step(
+            &p,
+            &mut x,
+            &Demand::position(setpoint),
+            EffortLimits::NONE,
+            &Sensors { motor_position: 2e-3, feedback, ..Sensors::default() },
+        );
+        assert!((x.held().velocity_reference - 160.18 * error).abs() < 1e-15, "{feedback:?}: {:?}", x.held());
+    }
+}
+
+/// Oracle: by hand: 9 A, and 1.5·p·ψ·9 A of the motor as the firmware knows it.
+#[test]
+fn a_demand_beyond_the_current_limit_is_cut_and_said() {
+    let p = synchronous();
+    let held_at = |velocity: f64| {
+        let mut x = at_rest(&p);
+        let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
+        step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
+        *x.held()
+    };
+    for sign in [1.0, -1.0] {
+        let held = held_at(-100.0 * sign);
+        assert!((held.current_reference - 9.0 * sign).abs() < 1e-14, "{held:?}");
+        assert!(held.current_reference.abs() <= 9.0, "not by one rounding more");
+        assert!((held.effort.effort - sign * 1.5 * 3.0 * 0.545 * 9.0).abs() < 1e-14, "{held:?}");
+        assert_eq!(held.effort.cut, Some(Cut::Available));
+    }
+    assert_eq!(held_at(-1.0).effort, velocity::Output { effort: 3.0, cut: None });
+}
+
+/// Oracle: by hand. Without a position loop the velocity demand goes to the velocity loop as it is; an effort goes past
+/// both, within the limit; without power nothing goes out. The reference is where the axis is.
+#[test]
+fn a_demand_closes_the_loops_that_it_names() {
+    let p = Params { transmission: 0.5, ..emps() };
+    let sensors = Sensors { motor_position: 2e-3, motor_velocity: Some(0.02), ..Sensors::default() };
+    let answer = |demand: Demand| {
+        let mut x = at_rest(&p);
+        let command = step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
+        assert!((x.references(&p).0.x - 1e-3).abs() < 1e-18, "{demand:?}: {:?}", x.held);
+        (command, x.held.velocity_reference, x.held.effort)
+    };
+    let velocity = Demand::Velocity { setpoint: Setpoint { v: 0.03, ..Setpoint::default() }, effort_offset: 7.0 };
+    let (_, reference, effort) = answer(velocity);
+    assert!((reference - 0.03).abs() < 1e-18);
+    assert!((effort.effort - (35.1507 * 243.45 * (0.03 / 0.5 - 0.02) + 7.0)).abs() < 1e-10, "{effort:?}");
+    assert_eq!(answer(Demand::Effort(-12.0)).2, velocity::Output { effort: -12.0, cut: None });
+    assert_eq!(answer(Demand::Effort(1e3)).2, velocity::Output { effort: 351.507, cut: Some(Cut::Effort) });
+    assert_eq!(answer(Demand::Off).0, PowerCommand::Off);
+}
+
+/// Oracle: a drive that was never off. What the loops had gathered before is gone, and so is the old reference.
+#[test]
+fn a_drive_that_was_off_begins_anew() {
+    let p = synchronous();
+    let demand = Demand::position(Setpoint::at_rest(1e-3));
+    let sensors = |position| Sensors { motor_position: position, motor_velocity: Some(0.0), ..Sensors::default() };
+    let (mut x, mut fresh) = (at_rest(&p), at_rest(&p));
+    for (demand, position) in [(&demand, 0.0), (&Demand::Off, 9e-4)] {
+        for _ in 0..40 {
+            step(&p, &mut x, demand, EffortLimits::NONE, &sensors(position));
+        }
+    }
+    assert_eq!((x.velocity, x.held.effort), (velocity::State::default(), velocity::Output::default()));
+    step(&p, &mut x, &demand, EffortLimits::NONE, &sensors(9e-4));
+    step(&p, &mut fresh, &demand, EffortLimits::NONE, &sensors(9e-4));
+    assert_eq!(x.held.effort, fresh.held.effort);
+}
+
+/// Oracle: by hand: 4.1 N·m of feedforward through a notch, as the filter alone gives it, then the limit; and in a mode without
+/// velocity loop the same.
+#[test]
+fn an_effort_goes_through_the_filters_before_its_limit() {
+    let rate = servobench_base::Rate::new(1_000).unwrap();
+    let notch = filter::Filter::Notch { frequency: 43.0, zero_damping: 0.02, pole_damping: 0.9 };
+    let filters = filter::Params::new(&[notch], rate).unwrap();
+    let p = Params { blocks: crate::Blocks { filters, ..crate::Blocks::default() }, ..emps() };
+    let (mut x, mut alone) = (at_rest(&p), filter::State::default());
+    for k in 0..200_u32 {
+        let effort = 400.0 * (0.27 * f64::from(k)).sin();
+        for _ in 0..16 {
+            step(&p, &mut x, &Demand::Effort(effort), EffortLimits::NONE, &Sensors::default());
+        }
+        let exact = filter::step(&filters, &mut alone, effort).clamp(-351.507, 351.507);
+        assert!((x.held.effort.effort - exact).abs() < 1e-12, "{k}: {} {exact}", x.held.effort.effort);
+    }
+}
+
+/// Oracle: by hand. Above ω_2 both gains are their factors, and the velocity reference ends at the largest speed.
+#[test]
+fn gains_and_speed_limit_are_those_of_the_speed() {
+    let schedule = Some(crate::schedule::Params { from: 0.01, to: 0.05, position: 0.3, velocity: 0.6 });
+    let blocks = crate::Blocks { schedule, max_speed: 0.031, ..crate::Blocks::default() };
+    let p = Params { blocks, transmission: 0.5, ..emps() };
+    for (velocity, factors) in [(0.005, (1.0, 1.0)), (0.02, (0.825, 0.9)), (-0.2, (0.3, 0.6))] {
+        let mut x = at_rest(&p);
+        let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
+        // The first cycle brings the velocity, which the position loop knows at the second.
+        for _ in 0..17 {
+            let demand = Demand::position(Setpoint::at_rest(2e-5));
+            step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
+        }
+        let reference = factors.0 * 160.18 * 2e-5;
+        let effort = factors.1 * 35.1507 * 243.45 * (reference / 0.5 - velocity);
+        assert!((x.held.velocity_reference - reference).abs() < 1e-15, "{velocity}: {:?}", x.held);
+        assert!((x.held.effort.effort - effort.clamp(-351.507, 351.507)).abs() < 1e-9, "{velocity}: {:?}", x.held);
+    }
+    let mut x = at_rest(&p);
+    step(&p, &mut x, &Demand::position(Setpoint::at_rest(-1.0)), EffortLimits::NONE, &Sensors::default());
+    assert!((x.held.velocity_reference + 0.5 * 0.031).abs() < 1e-15, "{:?}", x.held);
+}
+
+/// Oracle: the closed form of I²t with 8.1 A out of a limit of 9 A; then the continuous current of the drive's model.
+#[test]
+fn a_thermal_load_ends_the_peak_current() {
+    use crate::overload::{Params as Load, Reaction};
+    let load = Load { continuous_current: 5.3, time_constant: 0.21, reaction: Reaction::Derate };
+    for (reaction, currents) in [(Reaction::Derate, [9.0, 5.3]), (Reaction::Fault, [9.0, 9.0])] {
+        let blocks = crate::Blocks { motor_load: Some(Load { reaction, ..load }), ..crate::Blocks::default() };
+        let p = Params { blocks, ..synchronous() };
+        let mut x = at_rest(&p);
+        let measured = servobench_base::AlphaBeta { alpha: 0.0, beta: 8.1 };
+        let sensors = Sensors { motor_velocity: Some(-100.0), current: measured, ..Sensors::default() };
+        let time = load.time(8.1);
+        let mut reached = None;
+        for k in 0..16_000_u32 {
+            step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
+            let is_over = x.loads()[0] >= 1.0;
+            let current = currents[usize::from(is_over)];
+            assert!((x.held.current_reference - current).abs() < 1e-12, "{k}: {:?}", x.held);
+            assert_eq!(x.is_overloaded(&p), is_over && reaction == Reaction::Fault);
+            if is_over && reached.is_none() {
+                reached = Some(f64::from(k) / 16e3);
+            }
+        }
+        // Within a cycle of the velocity loop, which takes the current that the current loop measured before.
+        assert!((reached.unwrap() - time).abs() < 2.0 / 8e3, "{reached:?} {time}");
+    }
+}
+
+/// Oracle: the drive's own envelope. Where the speed leaves less than the current limit does, the velocity loop knows it: its
+/// integrator rests at what is left.
+#[test]
+fn the_velocity_loop_knows_what_the_speed_leaves() {
+    use crate::current::operating_point::{Params as Operation, Strategy, Weakening};
+    let Stage::Current { params, every } = synchronous().stage else { panic!() };
+    let weakening = Some(Weakening { share: 0.95, feedback: 0.0 });
+    let params = current::Params { operation: Operation { strategy: Strategy::Mtpa, weakening }, ..params };
+    let p = Params { stage: Stage::Current { params, every }, ..synchronous() };
+    for velocity in [300.0, -300.0] {
+        let mut x = at_rest(&p);
+        let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
+        let demand =
+            Demand::Velocity { setpoint: Setpoint { v: 2.0 * velocity, ..Setpoint::default() }, effort_offset: 0.0 };
+        for _ in 0..16_000 {
+            step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
+        }
+        let envelope = Envelope::new(&params, &operating_point::State::default(), 3.0 * velocity);
+        let EffortLimits { forward, backward } = envelope.limits();
+        let left = if velocity > 0.0 { forward } else { -backward };
+        assert!(left.abs() < 0.8 * p.max_effort(), "{left}");
+        assert_eq!(x.held.effort, velocity::Output { effort: left, cut: Some(Cut::Available) });
+        assert!((x.velocity.integral - left).abs() < 1e-9, "{:?}", x.velocity);
+        assert_eq!(x.held.references, envelope.currents(&params, left));
+    }
+}

@@ -1,0 +1,55 @@
+//! Blocks of the firmware that answer real hardware.
+use crate::{AXIS, mistakes, warnings};
+
+fn with(lines: &str) -> Vec<String> {
+    mistakes(&format!("{AXIS}\n{lines}\n"))
+}
+
+/// The only mistake says all of these.
+fn says(found: &[String], parts: &[&str]) {
+    assert!(found.len() == 1 && parts.iter().all(|part| found[0].contains(part)), "{found:?}");
+}
+
+#[test]
+fn a_filter_has_the_keys_of_its_kind() {
+    let filter = |keys: &str| with(&format!("[[drive.filter]]\n{keys}"));
+    assert_eq!(filter("kind = \"notch\"\nfrequency = \"400 Hz\"\nzero_damping = 0.1\npole_damping = 0.5"), [""; 0]);
+    assert_eq!(filter("kind = \"low-pass\"\nfrequency = \"400 Hz\"\norder = 2\ndamping = 0.6"), [""; 0]);
+    says(&filter("kind = \"low-pass\"\nfrequency = \"400 Hz\"\npole_damping = 0.6"), &["is not for a low-pass"]);
+    says(&filter("kind = \"low-pass\"\nfrequency = \"400 Hz\"\ndamping = 0.6"), &["first order", "order = 2"]);
+    says(&filter("kind = \"notch\""), &["missing `frequency` in `drive.filter`"]);
+    says(&filter("kind = \"bi-quad\"\nzero_frequency = \"400 Hz\""), &["missing `pole_frequency`"]);
+    says(&filter("kind = \"notch\"\nfrequency = \"4 kHz\""), &["below half the rate of the velocity loop, 4000 Hz"]);
+    let five = "[[drive.filter]]\nkind = \"notch\"\nfrequency = \"400 Hz\"\n".repeat(5);
+    says(&with(&five), &["more than 4 filters"]);
+}
+
+#[test]
+fn what_chooses_the_current_is_one_thing() {
+    let current =
+        |keys: &str| mistakes(&AXIS.replace("bandwidth = \"1 kHz\"", &format!("bandwidth = \"1 kHz\"\n{keys}")));
+    assert_eq!(current("strategy = \"mtpa\"\nfield_weakening = true\nfield_weakening_feedback = \"10 Hz\""), [""; 0]);
+    says(&current("strategy = \"mtpa\"\nd_reference = \"-1 Apk\""), &["there is no `d_reference`"]);
+    let unused = AXIS.replace("bandwidth = \"1 kHz\"", "bandwidth = \"1 kHz\"\nfield_weakening_share = 0.9");
+    says(&warnings(&unused), &["`field_weakening_share` is not used"]);
+    says(&current("dead_time_compensation = { dead_time = \"2 us\" }"), &["missing `frequency`"]);
+}
+
+#[test]
+fn a_thermal_load_has_one_time() {
+    let motor = |keys: &str| with(&format!("[drive.i2t]\nmotor = {{ {keys} }}"));
+    assert_eq!(motor("continuous_current = \"5 Arms\", peak_time = \"2 s\""), [""; 0]);
+    says(&motor("continuous_current = \"5 Arms\""), &["missing `time_constant`", "peak_time"]);
+    says(&motor("continuous_current = \"14 Arms\", peak_time = \"2 s\""), &["is not above the continuous current"]);
+    let fault = "continuous_current = \"5 Arms\", time_constant = \"2 s\", reaction = \"fault\"";
+    says(&motor(fault), &["without a `[bus]`"]);
+}
+
+#[test]
+fn a_schedule_goes_up_and_a_p_loop_follows_its_reference() {
+    says(&with("[drive.gain_schedule]\nfrom = \"100 rpm\"\nto = \"90 rpm\""), &["`to` must be above `from`"]);
+    let p = AXIS.replace("bandwidth = \"60 Hz\"", "bandwidth = \"60 Hz\"\nkind = \"p\"\nreference_weight = 0.5");
+    says(&mistakes(&p), &["a P loop has no `reference_weight`"]);
+    let nine = "[[drive.cogging]]\norder = 12\namplitude = \"0.02 Nm\"\n".repeat(9);
+    says(&with(&nine), &["more than 8 harmonics"]);
+}
