@@ -13,6 +13,7 @@ mod foreign_text;
 mod getting_started;
 mod hardware_firmware;
 mod hardware_motor;
+mod hardware_sensors;
 #[cfg(unix)]
 mod hostile;
 #[cfg(unix)]

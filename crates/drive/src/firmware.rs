@@ -30,6 +30,8 @@ pub enum Feedback {
 pub struct Sensors {
     /// Motor position (motor coordinate).
     pub motor_position: f64,
+    /// Where the rotor is taken to be for the commutation (motor coordinate), if not at the motor position.
+    pub rotor_position: Option<f64>,
     /// Motor velocity, where the encoder gives one; otherwise the firmware forms differences.
     pub motor_velocity: Option<f64>,
     /// What closes the position loop.
@@ -380,9 +382,10 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
     let input = current::Input {
         reference,
         current: sensors.current,
-        rotor: sensors
-            .known_rotation
-            .at(ElectricalAngle::from_mechanical(sensors.motor_position, p.motor.electrical_ratio)),
+        rotor: sensors.known_rotation.at(ElectricalAngle::from_mechanical(
+            sensors.rotor_position.unwrap_or(sensors.motor_position),
+            p.motor.electrical_ratio,
+        )),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
     x.held.current = current::step(p, &mut x.current, input, h);

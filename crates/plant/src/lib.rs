@@ -41,6 +41,9 @@ pub use mjcf_axis::MjcfAxis;
 pub use modes::Mode;
 pub use power_stage::PowerStage;
 pub use refusal::{Refusal, RefusedAt};
-pub use sensor::{Encoder, EncoderParameter, Reading};
+pub use sensor::{
+    Converter, CurrentSensor, CurrentSensorParameter, Encoder, EncoderErrors, EncoderParameter, EncoderState, Reading,
+    Signals, Track,
+};
 pub use source::{IdealSource, SourceOutput};
 pub use switches::{SwitchPoint, SwitchReading, Switches};

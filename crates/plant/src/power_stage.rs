@@ -4,8 +4,9 @@ mod synchronous;
 
 use crate::mechanics::BodyState;
 use crate::pmsm;
+use crate::sensor::{CurrentSensor, CurrentSensorState};
 use crate::source::IdealSource;
-use servobench_base::{AlphaBeta, Dq, KnownRotation, ParamError, PowerCommand};
+use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand};
 use synchronous::Synchronous;
 
 /// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
@@ -52,6 +53,17 @@ impl PowerStage {
         })
     }
 
+    /// The same with sensors that err, for a current loop that turns every `every` ticks of `h` (s).
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of the sensors that is out of its bound.
+    pub fn with_current_sensor(mut self, sensor: CurrentSensor, every: Divider, h: f64) -> Result<Self, ParamError> {
+        if let Stage::Synchronous(synchronous) = &mut self.0 {
+            synchronous.set_sensor(CurrentSensorState::new(sensor, every, h)?);
+        }
+        Ok(self)
+    }
+
     /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
     #[inline(always)]
     pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
@@ -72,7 +84,9 @@ impl PowerStage {
     #[inline]
     #[must_use]
     pub fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
-        self.measured_current(motor);
+        if let Stage::Synchronous(synchronous) = &mut self.0 {
+            synchronous.turn_to(motor);
+        }
         self.synchronous().map_or_else(AlphaBeta::default, |one| voltage.to_alpha_beta(one.rotor().rotation()))
     }
 

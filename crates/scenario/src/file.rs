@@ -14,6 +14,7 @@ mod motor_effects;
 mod plc;
 mod program;
 mod requirements;
+mod sensors;
 mod setpoint;
 
 pub(crate) use axis::{Axis, Body, FrictionKeys, Mjcf};
@@ -22,11 +23,12 @@ pub(crate) use drive::{Current, Drive, Estimate, FeedbackEncoder, Velocity, Velo
 pub(crate) use drive_blocks::{CoggingHarmonic, DeadTimeCompensation, GainSchedule, I2t, ThermalLoad};
 pub(crate) use drive_filters::{FilterKind, TorqueFilter};
 pub(crate) use fmu::{Coupling, Fmu};
-pub(crate) use motor::{Encoder, Motor, MotorKind};
+pub(crate) use motor::{Motor, MotorKind};
 pub(crate) use motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
 pub(crate) use plc::{Call, CamSwitch, Condition, Plc, TrackOptions, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use requirements::{Expect, RequirementTable};
+pub(crate) use sensors::{CurrentSensor, Encoder, EncoderKeys, LoadEncoder};
 pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 
 use crate::format::FORMAT;

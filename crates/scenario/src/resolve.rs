@@ -29,6 +29,7 @@ mod profile;
 mod program;
 mod requirements;
 mod rockwell;
+mod sensors;
 mod time;
 mod torque_filter;
 mod torque_limit;

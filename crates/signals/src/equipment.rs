@@ -18,6 +18,8 @@ pub struct Equipment {
     pub bus: bool,
     /// What the motor has beside its equations.
     pub effects: MotorEffects,
+    /// Which sensors err, so that what they say is not what is there.
+    pub erring: Erring,
     /// What the firmware commands; `None` without firmware.
     pub amplifier: Option<Amplifier>,
     /// What the motor has: by the firmware, or by an FMU in its place.
@@ -31,6 +33,17 @@ pub struct MotorEffects {
     pub iron_loss: bool,
     /// Whether winding and housing warm up.
     pub thermal_model: bool,
+}
+
+/// Which sensors err.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Erring {
+    /// The encoder on the motor.
+    pub motor_encoder: bool,
+    /// The encoder on the load that closes the position loop.
+    pub load_encoder: bool,
+    /// The current sensors, or the angle by which their currents are known.
+    pub current: bool,
 }
 
 /// What there is of a motor.
@@ -85,6 +98,12 @@ pub enum Presence {
     WithIronLoss,
     /// With a motor that warms up.
     WithThermalModel,
+    /// Where the encoder on the motor errs.
+    MotorEncoderErrs,
+    /// Where the encoder on the load errs.
+    LoadEncoderErrs,
+    /// Where the measured current errs.
+    CurrentErrs,
 }
 
 impl Presence {
@@ -105,6 +124,9 @@ impl Presence {
             Self::WithEndStops => equipment.end_stops,
             Self::WithIronLoss => equipment.effects.iron_loss,
             Self::WithThermalModel => equipment.effects.thermal_model,
+            Self::MotorEncoderErrs => equipment.erring.motor_encoder,
+            Self::LoadEncoderErrs => equipment.erring.load_encoder,
+            Self::CurrentErrs => equipment.erring.current,
         }
     }
 }
@@ -138,6 +160,8 @@ pub enum Writer {
     Motor,
     /// A disturbance.
     Disturbance,
+    /// The encoders.
+    Encoder,
 }
 
 /// How often the writers renew what they write.
@@ -176,6 +200,7 @@ impl Writer {
             Self::PowerStage => "power stage",
             Self::Motor => "motor",
             Self::Disturbance => "disturbance",
+            Self::Encoder => "encoder",
         }
     }
 
@@ -193,7 +218,8 @@ impl Writer {
             | Self::Measurement
             | Self::PowerStage
             | Self::Motor
-            | Self::Disturbance => rates.base,
+            | Self::Disturbance
+            | Self::Encoder => rates.base,
         }
     }
 }

@@ -56,6 +56,10 @@ pub struct Instant {
     pub load_disturbance: f64,
     /// Effort of the end stops on the load over the coming tick.
     pub end_stop: f64,
+    /// What the encoders of motor and load say.
+    pub measured_position: [f64; 2],
+    /// Currents of the motor as the current loop measured them at its last cycle.
+    pub measured_current: Dq,
     /// Which limits bind at this tick.
     pub binds: PerLimit<bool>,
     /// In which share of the ticks since the last row they did.

@@ -178,6 +178,14 @@ signals! {
         "external torque or force on the load; where there is one";
     EffortEndStop "effort.end_stop" LoadEffort Mechanics WithEndStops |now| now.end_stop;
         "torque or force of the end stops on the load; where it has some";
+    MeasuredMotorPosition "measured.motor.position" Axis(0) Encoder MotorEncoderErrs |now| now.measured_position[0];
+        "position of the motor as its encoder says, in the axis coordinate; where the encoder errs";
+    MeasuredLoadPosition "measured.load.position" Axis(0) Encoder LoadEncoderErrs |now| now.measured_position[1];
+        "position of the load as its encoder says; where the encoder errs";
+    MeasuredCurrentD "measured.current.d" Ampere CurrentLoop CurrentErrs |now| now.measured_current.d;
+        "d-axis current as the current loop measures it, amplitude; where sensors or commutation err";
+    MeasuredCurrentQ "measured.current.q" Ampere CurrentLoop CurrentErrs |now| now.measured_current.q;
+        "q-axis current as the current loop measures it, amplitude; where sensors or commutation err";
 }
 
 impl Signal {

@@ -5,7 +5,7 @@ mod objections;
 pub(crate) mod plant;
 
 use crate::axis::Axis;
-use crate::closed_loop::{ClosedLoop, Control, Shaft, Source, State};
+use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, FmuOpener, NoFmus};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length, check_ticks};
@@ -13,11 +13,14 @@ use crate::machine::Machine;
 use crate::network::Network;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint, Tick};
+use servobench_drive::unwrap::Unwrap;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
-use servobench_plant::{Chain, Encoder, Engine, SourceOutput};
+use servobench_plant::{Chain, Encoder, EncoderState, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
-use servobench_signals::{Amplifier, Equipment, Motor, MotorEffects, NotRecorded, Rates, Selection, Signal, Unit};
+use servobench_signals::{
+    Amplifier, Equipment, Erring, Motor, MotorEffects, NotRecorded, Rates, Selection, Signal, Unit,
+};
 use servobench_trace::{About, Event};
 
 /// How long a run goes on after its program, when the scenario does not say (s).
@@ -105,7 +108,7 @@ impl Bench {
             Actuator::Prescribed | Actuator::Off => None,
             _ if is_replaced => None,
             Actuator::Pmsm { encoder, drive, .. } | Actuator::IdealSource { encoder, drive, .. } => {
-                Some(Control::new(drive, *encoder)?)
+                Some(Control::new(drive, *encoder, base_rate.period())?)
             }
         };
 
@@ -177,16 +180,22 @@ impl Bench {
 
 impl Control {
     /// The drive at rest at zero, with the encoder `motor_encoder` on the motor.
-    fn new(drive: &scenario::Drive, motor_encoder: Encoder) -> Result<Self, BuildError> {
+    fn new(drive: &scenario::Drive, motor_encoder: Encoder, h: f64) -> Result<Self, BuildError> {
         let params = drive.params.clone();
         let state = servobench_drive::State::new(&params, Setpoint::default())?;
         let load_encoder = match drive.position_feedback {
             Feedback::Motor => None,
-            Feedback::Load(encoder) => Some(encoder),
+            Feedback::Load(encoder) => Some(EncoderInput::new(encoder, 1, h)?),
         };
-        motor_encoder.check()?;
-        load_encoder.map_or(Ok(()), |encoder| encoder.check())?;
-        Ok(Self { params, state, motor_encoder, load_encoder })
+        Ok(Self { params, state, motor_encoder: EncoderInput::new(motor_encoder, 0, h)?, load_encoder })
+    }
+}
+
+impl EncoderInput {
+    /// That of number `number` of the axis, in ticks of `h` (s).
+    fn new(encoder: Encoder, number: u32, h: f64) -> Result<Self, BuildError> {
+        let range = encoder.errors.and_then(|errors| errors.range);
+        Ok(Self { encoder: EncoderState::new(encoder, number, h)?, unwrap: range.map(Unwrap::new) })
     }
 }
 
@@ -257,6 +266,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         end_stops: scenario.axis.end_stops.is_some(),
         bus: scenario.bus.is_some(),
         effects,
+        erring: if is_replaced { Erring::default() } else { erring(&scenario.actuator) },
         amplifier: if is_replaced { None } else { amplifier },
         motor: match amplifier {
             _ if gives(LoopSignal::Effort) => Motor::Effort,
@@ -265,6 +275,17 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
             Some(Amplifier::Ideal { .. }) => Motor::Effort,
             None => Motor::Motion,
         },
+    }
+}
+
+/// Which sensors of the drive err.
+fn erring(actuator: &Actuator) -> Erring {
+    let Some(drive) = actuator.drive() else { return Erring::default() };
+    let motor = actuator.encoder().and_then(|encoder| encoder.errors);
+    Erring {
+        motor_encoder: motor.is_some(),
+        load_encoder: matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
+        current: matches!(actuator, Actuator::Pmsm { .. }) && (drive.current_sensor.is_some() || motor.is_some()),
     }
 }
 

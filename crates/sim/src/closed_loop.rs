@@ -6,10 +6,11 @@ use crate::network::{Measurement, Network, Request};
 use crate::program::Program;
 use crate::run::Reason;
 use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
+use servobench_drive::unwrap::Unwrap;
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
 use servobench_plant::{
-    Actuation, BodyState, Encoder, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches,
+    Actuation, BodyState, EncoderState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Reading, Switches,
 };
 use servobench_scenario::DisturbedBody;
 use servobench_signals::Instant;
@@ -72,9 +73,27 @@ pub(crate) enum Source {
 pub(crate) struct Control {
     pub(crate) params: drive::Params,
     pub(crate) state: drive::State,
-    pub(crate) motor_encoder: Encoder,
+    pub(crate) motor_encoder: EncoderInput,
     /// The encoder on the load, when it closes the position loop.
-    pub(crate) load_encoder: Option<Encoder>,
+    pub(crate) load_encoder: Option<EncoderInput>,
+}
+
+/// An encoder, and how the drive counts it on where it begins again.
+#[derive(Clone)]
+pub(crate) struct EncoderInput {
+    pub(crate) encoder: EncoderState,
+    pub(crate) unwrap: Option<Unwrap>,
+}
+
+impl EncoderInput {
+    #[inline(always)]
+    fn read(&mut self, body: BodyState) -> Reading {
+        let reading = self.encoder.read(body);
+        match &mut self.unwrap {
+            None => reading,
+            Some(unwrap) => Reading { position: unwrap.position(reading.position), ..reading },
+        }
+    }
 }
 
 /// Position and its derivatives.
@@ -176,13 +195,23 @@ impl ClosedLoop {
             now.motor_reference = now.setpoint.x;
             return PowerCommand::Output(0.0);
         };
-        let reading = control.motor_encoder.read(motor.position, motor.velocity);
+        let reading = control.motor_encoder.read(motor);
+        if control.motor_encoder.encoder.errs() {
+            now.measured_position[0] = direction * self.transmission * reading.position;
+        }
         let sensors = Sensors {
             motor_position: reading.position,
+            rotor_position: reading.to_rotor.map(|further| reading.position + further),
             motor_velocity: reading.velocity,
-            feedback: match control.load_encoder {
+            feedback: match &mut control.load_encoder {
                 None => Feedback::Motor,
-                Some(encoder) => Feedback::Load(encoder.read(load.position, load.velocity).position),
+                Some(input) => {
+                    let position = input.read(load).position;
+                    if input.encoder.errs() {
+                        now.measured_position[1] = direction * position;
+                    }
+                    Feedback::Load(position)
+                }
             },
             current: self.state.power.measured_current(motor),
             known_rotation: self.state.power.rotation(),
@@ -237,6 +266,7 @@ impl ClosedLoop {
         now.effort_reference = held.effort.effort;
         now.current_reference = held.current_reference;
         now.voltage_reference = held.current.computed;
+        now.measured_current = held.current.current;
         now.binds = PerLimit {
             voltage: held.current.saturated,
             current: held.effort.cut == Some(Cut::Available),

@@ -37,6 +37,8 @@ pub enum NotAnalysed {
     MastersPositionLoop,
     /// FMUs beside the axis act on it: what is analysed is the axis without them.
     Fmus,
+    /// Sensors are late, or the commutation is off: what is analysed is the loop with sensors that are not.
+    LateSensors,
     /// The poles could not be computed.
     Failed(stability::StabilityError),
 }
@@ -56,6 +58,9 @@ impl Display for NotAnalysed {
                 "the position loop of the master, closed over the bus (csv), is not analysed; the drive's loops are",
             ),
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
+            Self::LateSensors => f.write_str(
+                "delays of the sensors and an error of the commutation are not analysed; the loop without them is",
+            ),
             Self::Failed(error) => error.fmt(f),
         }
     }
@@ -115,14 +120,22 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     } else {
         scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal)).then_some(NotAnalysed::Fmus)
     };
+    let without = without.or_else(|| sensors_are_late(&scenario.actuator).then_some(NotAnalysed::LateSensors));
     Ok(Ok((model, without)))
 }
 
-const fn velocity_signal(encoder: Encoder) -> VelocitySignal {
-    match encoder.increment {
-        None => VelocitySignal::Encoder,
-        Some(_) => VelocitySignal::Differences,
-    }
+fn velocity_signal(encoder: Encoder) -> VelocitySignal {
+    if encoder.gives_velocity() { VelocitySignal::Encoder } else { VelocitySignal::Differences }
+}
+
+/// Whether what a sensor says is late, or commutation is off, which the linear loop does not know.
+fn sensors_are_late(actuator: &Actuator) -> bool {
+    let Some(drive) = actuator.drive() else { return false };
+    let late =
+        |encoder: Encoder| encoder.errors.is_some_and(|errors| errors.latency > 0.0 || errors.commutation != 0.0);
+    actuator.encoder().is_some_and(late)
+        || matches!(drive.position_feedback, Feedback::Load(encoder) if late(encoder))
+        || drive.current_sensor.is_some_and(|sensor| sensor.delay > 0 || sensor.shift > 0.0)
 }
 
 /// Whether what an FMU gives acts on the axis.

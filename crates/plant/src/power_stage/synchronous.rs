@@ -1,6 +1,7 @@
 //! An inverter and the synchronous motor on it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::mechanics::BodyState;
+use crate::sensor::CurrentSensorState;
 use crate::{inverter, pmsm};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError};
 use std::sync::Arc;
@@ -28,6 +29,8 @@ pub(super) struct Synchronous {
     power: Option<pmsm::Power>,
     /// What the motor does beside its equations.
     effects: Option<Box<pmsm::RealTicks>>,
+    /// The current sensors, where they err.
+    sensor: Option<Box<CurrentSensorState>>,
 }
 
 impl Synchronous {
@@ -47,6 +50,7 @@ impl Synchronous {
             voltage: Dq::default(),
             power: Some(pmsm::Power::default()),
             effects: None,
+            sensor: None,
         })
     }
 
@@ -64,12 +68,27 @@ impl Synchronous {
         Ok(Self { motor, effects: real, ..self })
     }
 
+    pub(super) fn set_sensor(&mut self, sensor: CurrentSensorState) {
+        self.sensor = Some(Box::new(sensor));
+    }
+
+    /// Brings the rotor to `motor`, and gives its electrical angle.
+    #[inline(always)]
+    pub(super) fn turn_to(&mut self, motor: BodyState) -> ElectricalAngle {
+        let angle = ElectricalAngle::from_mechanical(motor.position, self.motor.params().electrical_ratio);
+        self.rotor = KnownRotation::of(angle);
+        angle
+    }
+
     /// Brings the rotor to `motor`, and gives the stator current as the drive's sensors see it (A, peak).
     #[inline(always)]
     pub(super) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
-        let ratio = self.motor.params().electrical_ratio;
-        self.rotor = KnownRotation::of(ElectricalAngle::from_mechanical(motor.position, ratio));
-        self.state.current.to_alpha_beta(self.rotor.rotation())
+        let angle = self.turn_to(motor);
+        let rotor = self.rotor.rotation();
+        match &mut self.sensor {
+            None => self.state.current.to_alpha_beta(rotor),
+            Some(sensor) => sensor.read(self.state.current, angle, rotor),
+        }
     }
 
     /// Rotor when the current was measured last.

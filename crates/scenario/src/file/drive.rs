@@ -1,6 +1,6 @@
 //! `[drive]`: the firmware.
 use crate::field::{Either, EitherMeasure};
-use crate::file::{CoggingHarmonic, DeadTimeCompensation, GainSchedule, I2t, TorqueFilter};
+use crate::file::{CoggingHarmonic, CurrentSensor, DeadTimeCompensation, GainSchedule, I2t, LoadEncoder, TorqueFilter};
 use crate::list::{Automatic, Many, Share};
 use crate::object_table::ObjectTable;
 use crate::simple::OneOf;
@@ -13,7 +13,6 @@ use servobench_config::quantities::{
 use servobench_config::{choices, not_negative, positive};
 use servobench_drive::current::operating_point::{self, Strategy};
 use servobench_drive::{self as drive, BlockParameter, EffortFeedforward, current, feedforward, velocity};
-use servobench_plant::EncoderParameter;
 
 choices! {
     /// Which encoder closes the position loop.
@@ -107,6 +106,8 @@ table! {
         field_weakening_feedback: f64 = operating_point::Parameter::FEEDBACK,
         /// Compensation of the inverter's dead time; default: none.
         dead_time_compensation: DeadTimeCompensation = (),
+        /// Sensors of the current; default: without error.
+        sensor: CurrentSensor = (),
     }
 }
 
@@ -191,14 +192,5 @@ table! {
         inductance_d: f64 = current::Parameter::INDUCTANCE_D,
         inductance_q: f64 = current::Parameter::INDUCTANCE_Q,
         flux_linkage: f64 = current::Parameter::FLUX_LINKAGE,
-    }
-}
-
-table! {
-    /// Encoder on the load: give one of the two, or none for an ideal one.
-    pub(crate) struct LoadEncoder {
-        /// Increments per revolution, on a rotary axis.
-        counts_per_rev: u32 = 1..=u32::MAX,
-        step: f64 = EncoderParameter::STEP,
     }
 }

@@ -1,5 +1,6 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
+use crate::file::Encoder;
 use crate::file::motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
 use crate::list::Many;
 use crate::simple::OneOf;
@@ -10,7 +11,7 @@ use servobench_config::quantities::{
 };
 use servobench_config::{choices, positive};
 use servobench_drive::current;
-use servobench_plant::{EncoderParameter, pmsm};
+use servobench_plant::pmsm;
 
 choices! {
     /// What kind of motor it is.
@@ -76,15 +77,5 @@ table! {
         thermal: Thermal = (),
         /// Encoder on the motor; default: ideal.
         encoder: Encoder = (),
-    }
-}
-
-table! {
-    /// Position encoder: give one of the two.
-    pub(crate) struct Encoder {
-        /// Increments per revolution: 1048576 for 20 bits.
-        counts_per_rev: u32 = 1..=u32::MAX,
-        /// : an angle of a motor that turns, with a `lead` too, a length of a linear motor ("0.1 um").
-        step: f64 = EncoderParameter::STEP.of_motor("0.01 deg"),
     }
 }

@@ -5,11 +5,12 @@ use crate::field::{Reported, Slot};
 use crate::file;
 use crate::resolve::drive::Known;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Alternative, need, one_of, task_rate};
+use crate::resolve::{Alternative, need, one_of, sensors, task_rate};
 use crate::source::Span;
 use servobench_base::{Dq, Rate};
 use servobench_drive::current::Tuning;
 use servobench_drive::current::operating_point::{self, Strategy, Weakening};
+use servobench_plant::CurrentSensor;
 
 /// What the file says of the loop.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +23,8 @@ pub(super) struct CurrentLoop {
     pub(super) d_reference: f64,
     /// How the currents of an effort are chosen.
     pub(super) operation: operating_point::Params,
+    /// Errors of the sensors.
+    pub(super) sensor: Option<CurrentSensor>,
 }
 
 /// `None` where there is no current loop and none is needed.
@@ -56,7 +59,15 @@ pub(super) fn resolve(
     };
     let d_reference = d_reference(&given.d_reference, known, report)?;
     let operation = operation(given, report)?;
-    Ok(Some(CurrentLoop { rate: rate.ok_or(Reported)?, tuning: tuning?, integral_times, d_reference, operation }))
+    let sensor = sensors::current(&given.sensor, known.base_rate, report)?;
+    Ok(Some(CurrentLoop {
+        rate: rate.ok_or(Reported)?,
+        tuning: tuning?,
+        integral_times,
+        d_reference,
+        operation,
+        sensor,
+    }))
 }
 
 /// Maximum torque per ampere and field weakening.

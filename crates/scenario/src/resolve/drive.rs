@@ -6,8 +6,8 @@ use crate::file::{FeedbackEncoder, File};
 use crate::list::{Automatic, Share};
 use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
-use crate::resolve::motor::{Motor, resolution};
-use crate::resolve::{blocks, current, loops, need};
+use crate::resolve::motor::Motor;
+use crate::resolve::{blocks, current, loops, need, sensors};
 use crate::scenario::{Actuator, Axis, Drive, Feedback};
 use servobench_base::{ParamError, Rate};
 use servobench_drive::current::operating_point::Strategy;
@@ -46,6 +46,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         Some(Motor::IdealSource { source, .. }) => estimate::or_true(estimates, |given| &given.gain, source.gain),
         _ => 1.0,
     };
+    let current_sensor = described.and_then(|described| described.sensor);
     let d_reference = described.map_or(0.0, |described| described.d_reference);
     let strategy = described.map_or(Strategy::default(), |described| described.operation.strategy);
     let max_effort = max_effort(given, known.motor, &Source { gain, d_reference, strategy }, report);
@@ -88,7 +89,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     };
     let (position_feedback, estimate) = (position_feedback?, belief?.estimate);
     let params = params(given, parts, &estimate, report)?;
-    let drive = Drive { params, position_feedback, estimate, current_tuning };
+    let drive = Drive { params, position_feedback, estimate, current_tuning, current_sensor };
     match known.motor? {
         Motor::Prescribed => None,
         Motor::Pmsm { motor, effects, encoder, .. } => Some(Actuator::Pmsm {
@@ -274,7 +275,7 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report:
 
 fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedback> {
     let encoder = match drive.load_encoder.optional().ok()? {
-        Some(encoder) => Some(resolution(&encoder.step, &encoder.counts_per_rev, report.axis, report)?),
+        Some(encoder) => Some(sensors::encoder(encoder.keys(), report.axis, report).ok()?),
         None => None,
     };
     match (&drive.position_feedback, encoder) {

@@ -6,9 +6,9 @@ use servobench_plant::{Encoder, IdealSource, SourceOutput, pmsm};
 
 use crate::file;
 use crate::file::MotorKind;
-use crate::resolve::{Alternative, motor_effects, need, one_of, refuse};
+use crate::resolve::{Alternative, motor_effects, need, one_of, refuse, sensors};
 use crate::source::Span;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
@@ -60,6 +60,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
         }
         MotorKind::IdealSource => {
             refuse(electrical, "belongs to a synchronous motor, this is an ideal source", "", report);
+            sensors::refuse_commutation(&motor.encoder, report);
             Some(Motor::IdealSource { source: ideal_source(motor, report)?, encoder: encoder? })
         }
         MotorKind::Prescribed => {
@@ -86,7 +87,8 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
         flux_linkage: flux_linkage?,
     };
     let effects = Box::new(motor_effects::resolve(motor, &params, report).ok()?);
-    Some(Motor::Pmsm { motor: params, effects, encoder: encoder?, max_current: max_current? })
+    let encoder = sensors::with_commutation(encoder?, &motor.encoder, params.electrical_ratio).ok()?;
+    Some(Motor::Pmsm { motor: params, effects, encoder, max_current: max_current? })
 }
 
 /// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.
@@ -179,29 +181,5 @@ fn ideal_source(motor: &file::Motor, report: &mut Report) -> Option<IdealSource>
 
 fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {
     let Some(encoder) = slot.optional().ok()? else { return Some(Encoder::default()) };
-    resolution(&encoder.step, &encoder.counts_per_rev, report.motor, report)
-}
-
-/// One increment, however it is given.
-pub(super) fn resolution(
-    step: &Slot<f64>,
-    counts_per_rev: &Slot<u32>,
-    motion: Option<Coordinate>,
-    report: &mut Report,
-) -> Option<Encoder> {
-    let ways = [("step", step.span()), ("counts_per_rev", counts_per_rev.span())];
-    let increment = match one_of(&ways, report) {
-        Alternative::None => None,
-        Alternative::Contradiction => return None,
-        Alternative::Use(0) => Some(*step.given()?),
-        Alternative::Use(_) => {
-            let counts = counts_per_rev.at()?;
-            if motion == Some(Coordinate::Linear) {
-                report.error(counts.span, "what moves along a line has no `counts_per_rev`", "give one `step`");
-                return None;
-            }
-            Some(TAU / f64::from(counts.value))
-        }
-    };
-    Some(Encoder { increment })
+    sensors::encoder(encoder.keys(), report.motor, report).ok()
 }

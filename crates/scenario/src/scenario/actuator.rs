@@ -44,6 +44,15 @@ impl Actuator {
         }
     }
 
+    /// The encoder on the motor, where a drive reads one.
+    #[must_use]
+    pub const fn encoder(&self) -> Option<Encoder> {
+        match self {
+            Self::Prescribed | Self::Off => None,
+            Self::Pmsm { encoder, .. } | Self::IdealSource { encoder, .. } => Some(*encoder),
+        }
+    }
+
     /// Largest effort reference (N·m or N): the drive's effort limit, or what its current limit leaves of it.
     #[must_use]
     pub fn max_effort(&self) -> f64 {

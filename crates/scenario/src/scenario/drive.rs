@@ -1,6 +1,6 @@
 //! The drive: its firmware, and the encoders that it reads.
 use servobench_drive::{Estimate, Params, current};
-use servobench_plant::Encoder;
+use servobench_plant::{CurrentSensor, Encoder};
 
 /// A drive.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Drive {
     pub estimate: Estimate,
     /// What the gains of the current loop follow from; `None` without one.
     pub current_tuning: Option<current::Tuning>,
+    /// Errors of the current sensors; `None` for sensors without.
+    pub current_sensor: Option<CurrentSensor>,
 }
 
 /// Encoder that closes a loop.

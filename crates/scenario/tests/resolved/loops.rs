@@ -139,7 +139,7 @@ fn limits_of_the_motor_and_its_encoder() {
         "the current is the only limit unless another is given"
     );
     assert!(same(scenario.actuator.max_effort(), motor.effort_constant(0.0) * current.max_current));
-    let Actuator::Pmsm { encoder: Encoder { increment: Some(increment) }, .. } = scenario.actuator else {
+    let Actuator::Pmsm { encoder: Encoder { increment: Some(increment), .. }, .. } = scenario.actuator else {
         panic!("an encoder with increments")
     };
     assert!(same(increment, TAU / 1_048_576.0));

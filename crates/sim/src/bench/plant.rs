@@ -1,6 +1,7 @@
 //! The plant of a scenario: mechanics, power stage and sensors. Nothing here knows of the firmware.
 use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
+use servobench_drive::Stage;
 use servobench_plant::{
     self as plant, BodyState, Chain, EndStops, Engine, Mechanics, MechanicsSetup, ModelKind, PowerStage, Switches,
 };
@@ -91,8 +92,12 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
     Ok(match actuator {
         Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
         Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
-        Actuator::Pmsm { motor, effects, dc_link, .. } => {
-            PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?
+        Actuator::Pmsm { motor, effects, dc_link, drive, .. } => {
+            let stage = PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?;
+            match (drive.current_sensor, &drive.params.stage) {
+                (Some(sensor), Stage::Current { every, .. }) => stage.with_current_sensor(sensor, *every, h)?,
+                _ => stage,
+            }
         }
     })
 }

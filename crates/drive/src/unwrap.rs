@@ -1,0 +1,56 @@
+//! The position of an absolute encoder that begins again after so many turns, as the drive counts it on.
+//!
+//! A reading is taken to be the one of its images that is nearest to the reading before: right while the axis goes less than half
+//! the range in between. The first one is taken as it is, which is all that a drive knows when it is switched on.
+
+/// Where the drive is: all that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unwrap {
+    range: f64,
+    last: Option<f64>,
+    ranges: f64,
+}
+
+impl Unwrap {
+    /// For an encoder that begins again after `range`.
+    #[must_use]
+    pub const fn new(range: f64) -> Self {
+        Self { range, last: None, ranges: 0.0 }
+    }
+
+    /// The position behind the reading `wrapped`.
+    pub fn position(&mut self, wrapped: f64) -> f64 {
+        let step = wrapped - self.last.replace(wrapped).unwrap_or(wrapped);
+        if step > self.range / 2.0 {
+            self.ranges -= 1.0;
+        } else if step < -self.range / 2.0 {
+            self.ranges += 1.0;
+        }
+        wrapped + self.ranges * self.range
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_follows_over_the_ends_in_both_directions() {
+        let mut unwrap = Unwrap::new(4.0);
+        let mut position = 1.0_f64;
+        let mut first = None;
+        for k in 0..400 {
+            position += if k < 250 { 1.7 } else { -1.9 };
+            let found = unwrap.position(position.rem_euclid(4.0));
+            // It knows nothing of the range in which it began.
+            let offset = *first.get_or_insert(found - position);
+            assert!((found - position - offset).abs() < 1e-11, "{k}: {found} {position}");
+        }
+    }
+
+    #[test]
+    fn more_than_half_the_range_at_once_is_taken_the_short_way() {
+        let mut unwrap = Unwrap::new(4.0);
+        assert_eq!([0.5, 3.0].map(|read| unwrap.position(read).to_bits()), [0.5_f64, -1.0].map(f64::to_bits));
+    }
+}

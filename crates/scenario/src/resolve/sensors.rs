@@ -1,0 +1,190 @@
+//! `[motor.encoder]`, `[drive.load_encoder]`, `[drive.current.sensor]`: sensors and how they err.
+use crate::diagnostic::Report;
+use crate::field::{Reported, Slot};
+use crate::file;
+use crate::file::EncoderKeys;
+use crate::resolve::{Alternative, one_of, refuse};
+use servobench_base::{Coordinate, Rate};
+use servobench_plant::{Converter, CurrentSensor, Encoder, EncoderErrors, Signals};
+use std::f64::consts::TAU;
+
+/// A number that is 0 where it is not given.
+fn number(slot: &Slot<f64>) -> Result<f64, Reported> {
+    slot.optional().map(|value| value.copied().unwrap_or(0.0))
+}
+
+/// A count that is 0 where it is not given.
+fn whole(slot: &Slot<u32>) -> Result<u32, Reported> {
+    slot.optional().map(|value| value.copied().unwrap_or(0))
+}
+
+/// An encoder on a body of `motion`.
+pub(super) fn encoder(
+    keys: EncoderKeys<'_>,
+    motion: Option<Coordinate>,
+    report: &mut Report,
+) -> Result<Encoder, Reported> {
+    if motion == Some(Coordinate::Linear) {
+        let of_turning = [
+            ("counts_per_rev", keys.counts_per_rev.span()),
+            ("lines_per_rev", keys.lines_per_rev.span()),
+            ("turn_bits", keys.turn_bits.span()),
+            ("eccentricity", keys.eccentricity.span()),
+            ("disc_radius", keys.disc_radius.span()),
+            ("eccentricity_angle", keys.eccentricity_angle.span()),
+        ];
+        for (key, span) in of_turning {
+            if let Some(span) = span {
+                let help = match key {
+                    "counts_per_rev" => "give one `step`",
+                    "lines_per_rev" => "give one `signal_period`",
+                    _ => "",
+                };
+                report.error(span, format!("what moves along a line has no `{key}`"), help);
+                return Err(Reported);
+            }
+        }
+    }
+    let periods = [("signal_period", keys.signal_period.span()), ("lines_per_rev", keys.lines_per_rev.span())];
+    let period = match one_of(&periods, report) {
+        Alternative::None => None,
+        Alternative::Contradiction => return Err(Reported),
+        Alternative::Use(0) => keys.signal_period.optional()?.copied(),
+        Alternative::Use(_) => keys.lines_per_rev.optional()?.map(|lines| TAU / f64::from(*lines)),
+    };
+    let resolutions = [
+        ("step", keys.step.span()),
+        ("counts_per_rev", keys.counts_per_rev.span()),
+        ("interpolation", keys.interpolation.span()),
+    ];
+    let increment = match one_of(&resolutions, report) {
+        Alternative::None => None,
+        Alternative::Contradiction => return Err(Reported),
+        Alternative::Use(0) => keys.step.optional()?.copied(),
+        Alternative::Use(1) => keys.counts_per_rev.optional()?.map(|counts| TAU / f64::from(*counts)),
+        Alternative::Use(_) => {
+            let steps = keys.interpolation.optional()?;
+            steps.map(|steps| need_period(period, keys, report).map(|period| period / f64::from(*steps))).transpose()?
+        }
+    };
+    let errors = EncoderErrors {
+        signals: signals(keys, period, report)?,
+        eccentricity: eccentricity(keys, report)?,
+        eccentricity_angle: number(keys.eccentricity_angle)?,
+        zero: number(keys.zero_offset)?,
+        commutation: 0.0,
+        noise: number(keys.noise)?,
+        seed: whole(keys.seed)?,
+        latency: number(keys.latency)?,
+        range: keys.turn_bits.optional()?.map(|bits| TAU * (1_u64 << bits) as f64),
+    };
+    Ok(Encoder { increment, errors: if_any(errors) })
+}
+
+/// What errs at all.
+fn if_any(errors: EncoderErrors) -> Option<EncoderErrors> {
+    let none =
+        EncoderErrors { seed: errors.seed, eccentricity_angle: errors.eccentricity_angle, ..EncoderErrors::default() };
+    (errors != none).then_some(errors)
+}
+
+fn need_period(period: Option<f64>, keys: EncoderKeys<'_>, report: &mut Report) -> Result<f64, Reported> {
+    period.ok_or_else(|| {
+        report.error(
+            keys.span,
+            "the signals of this encoder have no period",
+            "give `signal_period` or `lines_per_rev`",
+        );
+        Reported
+    })
+}
+
+/// Errors of the signals; `None` where they have none.
+fn signals(keys: EncoderKeys<'_>, period: Option<f64>, report: &mut Report) -> Result<Option<Signals>, Reported> {
+    let lost_at = number(keys.lost_at)?;
+    let found = Signals {
+        amplitude_error: number(keys.amplitude_error)?,
+        offset: [number(keys.offset_cosine)?, number(keys.offset_sine)?],
+        phase_error: number(keys.phase_error)?,
+        lost: keys.lost_track.optional()?.map(|track| (*track, lost_at)),
+        ..Signals::ideal(1.0)
+    };
+    if found == Signals::ideal(1.0) {
+        return Ok(None);
+    }
+    Ok(Some(Signals { period: need_period(period, keys, report)?, ..found }))
+}
+
+/// Eccentricity over radius.
+fn eccentricity(keys: EncoderKeys<'_>, report: &mut Report) -> Result<f64, Reported> {
+    let eccentricity = number(keys.eccentricity)?;
+    if eccentricity == 0.0 {
+        return Ok(0.0);
+    }
+    let Some(radius) = keys.disc_radius.optional()? else {
+        report.error(keys.span, "an `eccentricity` needs the radius at which the disc is read", "give `disc_radius`");
+        return Err(Reported);
+    };
+    if eccentricity >= *radius {
+        let span = keys.eccentricity.span().unwrap_or(keys.span);
+        let message = format!("`eccentricity` of {eccentricity} m is not less than `disc_radius`, {radius} m");
+        report.error(span, message, "give less");
+        return Err(Reported);
+    }
+    Ok(eccentricity / radius)
+}
+
+/// The encoder of a synchronous motor of `electrical_ratio`, for whose commutation it is read, too.
+pub(super) fn with_commutation(
+    encoder: Encoder,
+    slot: &Slot<file::Encoder>,
+    electrical_ratio: f64,
+) -> Result<Encoder, Reported> {
+    let Some(given) = slot.optional()? else { return Ok(encoder) };
+    let commutation = number(&given.commutation_offset)? / electrical_ratio;
+    let errors = if_any(EncoderErrors { commutation, ..encoder.errors.unwrap_or_default() });
+    Ok(Encoder { errors, ..encoder })
+}
+
+/// An ideal source is not commutated.
+pub(super) fn refuse_commutation(slot: &Slot<file::Encoder>, report: &mut Report) {
+    if let Some(given) = slot.given() {
+        let why = "belongs to a synchronous motor, this is an ideal source";
+        refuse(&[("commutation_offset", given.commutation_offset.span())], why, "", report);
+    }
+}
+
+/// `None` where the sensors do not err.
+pub(super) fn current(
+    slot: &Slot<file::CurrentSensor>,
+    base_rate: Option<Rate>,
+    report: &mut Report,
+) -> Result<Option<CurrentSensor>, Reported> {
+    let Some(given) = slot.optional()? else { return Ok(None) };
+    let converter = match (given.bits.optional()?, given.range.optional()?) {
+        (None, None) => None,
+        (Some(bits), Some(range)) => Some(Converter { bits: *bits, range: *range }),
+        (bits, _) => {
+            let key = if bits.is_some() { "range" } else { "bits" };
+            report.missing_with_help("drive.current.sensor", key, given.span, "a converter has both");
+            return Err(Reported);
+        }
+    };
+    if let (Some(at), Some(base_rate)) = (given.shift.at(), base_rate)
+        && at.value >= base_rate.period()
+    {
+        let message = format!("`shift` of {:e} s is not less than a base tick, {:e} s", at.value, base_rate.period());
+        report.error(at.span, message, "for whole cycles of the current loop there is `delay`");
+        return Err(Reported);
+    }
+    let sensor = CurrentSensor {
+        offset: [number(&given.offset_a)?, number(&given.offset_b)?],
+        gain_error: [number(&given.gain_error_a)?, number(&given.gain_error_b)?],
+        noise: number(&given.noise)?,
+        seed: whole(&given.seed)?,
+        converter,
+        delay: whole(&given.delay)?,
+        shift: number(&given.shift)?,
+    };
+    Ok((sensor != CurrentSensor { seed: sensor.seed, ..CurrentSensor::default() }).then_some(sensor))
+}

@@ -1,0 +1,4 @@
+//! Sensors that err, in the closed loop.
+mod axis;
+mod current;
+mod encoder;
