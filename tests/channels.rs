@@ -7,20 +7,34 @@ use servobench_tests::{run, scenario_file};
 use std::collections::BTreeSet;
 
 /// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, an
-/// ideal source, a load that is pushed, one with end stops, a fieldbus; and something that pushes the motor.
-fn axes() -> [Scenario; 5] {
-    ["demo/snap.toml", "lambrechts-snap.toml", "feed-axis-load-step.toml", "end-stop.toml", "plc/bus-jitter.toml"].map(
-        |file| {
-            let mut scenario = scenario_file(file);
-            scenario.duration = Some(1e-3);
-            scenario.record.channels.clear();
-            if let Some(step) = scenario.disturbances.pop() {
-                let on = |on| Disturbance { on, start: 0.0, ..step.clone() };
-                scenario.disturbances = vec![on(DisturbedBody::Motor), on(DisturbedBody::Load)];
-            }
-            scenario
-        },
-    )
+/// ideal source, a load that is pushed, one with end stops, a fieldbus, motors and sensors that are not ideal; and something that pushes
+/// the motor.
+const AXES: [&str; 12] = [
+    "demo/snap.toml",
+    "lambrechts-snap.toml",
+    "feed-axis-load-step.toml",
+    "end-stop.toml",
+    "plc/bus-jitter.toml",
+    "hardware/iron-loss.toml",
+    "hardware/warming-up.toml",
+    "hardware/current-offset.toml",
+    "hardware/sincos-amplitude.toml",
+    "hardware/scale-offset.toml",
+    "hardware/dead-time.toml",
+    "hardware/brake-resistor.toml",
+];
+
+fn axes() -> [Scenario; AXES.len()] {
+    AXES.map(|file| {
+        let mut scenario = scenario_file(file);
+        scenario.duration = Some(1e-3);
+        scenario.record.channels.clear();
+        if let Some(step) = scenario.disturbances.pop() {
+            let on = |on| Disturbance { on, start: 0.0, ..step.clone() };
+            scenario.disturbances = vec![on(DisturbedBody::Motor), on(DisturbedBody::Load)];
+        }
+        scenario
+    })
 }
 
 /// The signals that are kept of a run of `scenario`, in their order.

@@ -12,6 +12,7 @@ mod fmu_trust;
 mod foreign_text;
 mod getting_started;
 mod hardware_firmware;
+mod hardware_inverter;
 mod hardware_motor;
 mod hardware_sensors;
 #[cfg(unix)]

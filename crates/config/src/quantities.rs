@@ -63,6 +63,9 @@ pub static RESISTANCE: Physical = physical("a resistance", "Ohm", &[(D::VOLT.tim
 /// Henries.
 pub static INDUCTANCE: Physical =
     physical("an inductance", "mH", &[(D::VOLT.times(SECOND, 1).times(D::AMPERE, -1), 1.0)]);
+/// Farads.
+pub static CAPACITANCE: Physical =
+    physical("a capacitance", "uF", &[(D::AMPERE.times(SECOND, 1).times(D::VOLT, -1), 1.0)]);
 /// Volt seconds.
 pub static FLUX_LINKAGE: Physical = physical(
     "a flux linkage",
@@ -165,7 +168,7 @@ pub static SOURCE_GAIN: Counterparts = Counterparts {
 };
 
 /// Everything that has a name here, to name what a user wrote.
-pub static NAMED: [&Physical; 40] = [
+pub static NAMED: [&Physical; 41] = [
     &POSITION.linear,
     &POSITION.rotary,
     &TIME,
@@ -190,6 +193,7 @@ pub static NAMED: [&Physical; 40] = [
     &CURRENT,
     &RESISTANCE,
     &INDUCTANCE,
+    &CAPACITANCE,
     &FLUX_LINKAGE,
     &TORQUE_CONSTANT,
     &FORCE_CONSTANT,

@@ -20,7 +20,7 @@ pub struct Question {
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
-pub const MEASURED_FROM: [Signal; 23] = [
+pub const MEASURED_FROM: [Signal; 26] = [
     Signal::SetpointPosition,
     Signal::SetpointAcceleration,
     Signal::MotorPosition,
@@ -44,6 +44,9 @@ pub const MEASURED_FROM: [Signal; 23] = [
     Signal::DisturbanceMotor,
     Signal::DisturbanceLoad,
     Signal::EffortEndStop,
+    Signal::PowerInverter,
+    Signal::VoltageDcLink,
+    Signal::PowerBrake,
 ];
 
 /// Metrics that need the dominant mode of a residual vibration, which takes longer than all others.

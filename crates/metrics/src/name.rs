@@ -99,6 +99,10 @@ names! {
     ShaftPowerPeak "shaft_power_peak" Run POWER "750 W" "largest power of the motor on its shaft, driving or braking",
     ElectricalEnergy "electrical_energy" Run ENERGY "120 J" "electrical energy that the motor takes, less what it gives back",
     CopperLoss "copper_loss" Run ENERGY "15 J" "energy lost in the winding",
+    InverterLoss "inverter_loss" Run ENERGY "5 J" "energy lost in the devices of the inverter",
+    DcLinkMin "dc_link_min" Run VOLTAGE "280 V" "lowest voltage of the DC link",
+    DcLinkMax "dc_link_max" Run VOLTAGE "400 V" "highest voltage of the DC link",
+    BrakeEnergy "brake_energy" Run ENERGY "20 J" "energy that the brake resistor takes",
 }
 
 /// What a metric is of, and with it what a run must have so that it can be measured.

@@ -18,8 +18,23 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
         let peak = channel(recording, power).and_then(|all| largest_magnitude(&all[rows.clone()], PART));
         set.note(name, "W", peak);
     }
-    for (name, power) in [(Name::ElectricalEnergy, Signal::PowerElectrical), (Name::CopperLoss, Signal::PowerCopper)] {
-        set.note(name, "J", energy(recording, power, rows));
+    for (name, power) in [
+        (Name::ElectricalEnergy, Signal::PowerElectrical),
+        (Name::CopperLoss, Signal::PowerCopper),
+        (Name::InverterLoss, Signal::PowerInverter),
+        (Name::BrakeEnergy, Signal::PowerBrake),
+    ] {
+        // What no other axis has is not missed.
+        if !matches!(power, Signal::PowerInverter | Signal::PowerBrake) || channel(recording, power).is_ok() {
+            set.note(name, "J", energy(recording, power, rows));
+        }
+    }
+    if let Ok(link) = channel(recording, Signal::VoltageDcLink) {
+        let link = &link[rows.clone()];
+        for (name, of) in [(Name::DcLinkMin, f64::min as fn(f64, f64) -> f64), (Name::DcLinkMax, f64::max)] {
+            let found = link.iter().copied().reduce(of);
+            set.note(name, "V", found.ok_or(Absence::NothingRecorded { part: PART }));
+        }
     }
 }
 
@@ -59,6 +74,34 @@ mod tests {
         }
         note(&mut set, &Checked::of(&recording), &(0..3_000));
         assert!((set.value(Name::ElectricalEnergy).unwrap() - 20.0).abs() < 1e-10);
+    }
+
+    /// Oracle: by hand. An axis without them has no such metrics, and misses none.
+    #[test]
+    fn inverter_and_link_are_measured_where_they_are_recorded() {
+        let recording = Build::new(1_000, 1_000)
+            .channel(Signal::PowerInverter, "W", |_| 4.0)
+            .channel(Signal::PowerBrake, "W", |t| if t < 0.25 - 1e-9 { 600.0 } else { 0.0 })
+            .channel(Signal::VoltageDcLink, "V", |t| 320.0 + 60.0 * (1.0 - 2.0 * t))
+            .finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &Checked::of(&recording), &(0..1_000));
+        for (name, value, unit) in [
+            (Name::InverterLoss, 4.0, "J"),
+            (Name::BrakeEnergy, 150.0, "J"),
+            (Name::DcLinkMin, 260.0 + 0.12, "V"),
+            (Name::DcLinkMax, 380.0, "V"),
+        ] {
+            let metric = set.get(name).unwrap();
+            // The sum of a thousand numbers.
+            assert!((metric.value - value).abs() < 1e-9 && metric.unit == unit, "{name}: {metric:?}");
+        }
+        let without = Build::new(1_000, 10).channel(Signal::PowerShaft, "W", |_| 1.0).finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &Checked::of(&without), &(0..10));
+        for name in [Name::InverterLoss, Name::BrakeEnergy, Name::DcLinkMin, Name::DcLinkMax] {
+            assert!(set.get(name).is_none() && set.absence(name).is_none(), "{name}");
+        }
     }
 
     #[test]

@@ -1,9 +1,24 @@
-//! Inverter, averaged over its carrier: gives the voltage it is asked for, up to what the DC link allows.
+//! Inverter. An ideal one, averaged over its carrier, gives the voltage it is asked for, up to what the DC link allows.
 //!
 //! ```text
 //! |u| ≤ U_dc/√3      (linear range of space-vector modulation)
 //! ```
 //! Source: Holmes & Lipo, *Pulse Width Modulation for Power Converters*, §6.3.
+//!
+//! What a real one does beside that has a file each; [`Params`] switches it on.
+mod averaged;
+mod legs;
+mod link;
+mod modulation;
+mod params;
+mod switching;
+
+pub(crate) use averaged::Averaged;
+pub(crate) use legs::{Legs, legs};
+pub use link::{Brake, LinkParameter, LinkParams, LinkPower, LinkState, Sag};
+pub use params::{MOST_DEAD, Modulation, Parameter, Params};
+pub(crate) use switching::{Bridge, Input as SwitchingInput, Switching};
+
 use servobench_base::AlphaBeta;
 
 /// Largest phase voltage amplitude at the DC-link voltage `u_dc` (V).

@@ -26,23 +26,27 @@ mod flux_harmonics;
 mod iron;
 mod maps;
 mod phases;
+mod segment;
 mod table;
 mod temperature;
 mod varying;
+mod winding;
 
 pub use cogging::{Cogging, CoggingParameter};
-pub use effects::{Effects, RealTicks, Travel};
+pub use effects::{Effects, RealMotor, Travel};
 pub use envelope::{Bounds, MostEffort};
 pub use flux_harmonics::{FluxHarmonic, FluxHarmonicParameter};
 pub use iron::{IronLoss, IronLossParameter};
 use maps::{Forms, Maps};
 pub use phases::PhaseParameter;
+pub(crate) use segment::Equations;
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
 use table::{Solution, Tables};
 pub use temperature::{COPPER, Temperature, TemperatureParameter, Temperatures, ThermalNetwork};
+pub(crate) use winding::{Span, Sums, Winding};
 
 servobench_config::parameters! {
     /// A parameter of a synchronous motor.

@@ -3,9 +3,9 @@
 mod synchronous;
 
 use crate::mechanics::BodyState;
-use crate::pmsm;
 use crate::sensor::{CurrentSensor, CurrentSensorState};
 use crate::source::IdealSource;
+use crate::{inverter, pmsm};
 use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand};
 use synchronous::Synchronous;
 
@@ -60,6 +60,22 @@ impl PowerStage {
     pub fn with_current_sensor(mut self, sensor: CurrentSensor, every: Divider, h: f64) -> Result<Self, ParamError> {
         if let Stage::Synchronous(synchronous) = &mut self.0 {
             synchronous.set_sensor(CurrentSensorState::new(sensor, every, h)?);
+        }
+        Ok(self)
+    }
+
+    /// With an inverter, and a link, that are like this, in ticks of `h` (s); without a motor there are none.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of them that is out of its bound.
+    pub fn with_inverter(
+        mut self,
+        inverter: &inverter::Params,
+        link: Option<&inverter::LinkParams>,
+        h: f64,
+    ) -> Result<Self, ParamError> {
+        if let Stage::Synchronous(synchronous) = &mut self.0 {
+            synchronous.put_on(inverter, link, h)?;
         }
         Ok(self)
     }
@@ -133,6 +149,20 @@ impl PowerStage {
     #[must_use]
     pub fn temperatures(&self) -> pmsm::Temperatures {
         self.synchronous().map_or_else(pmsm::Temperatures::default, Synchronous::temperatures)
+    }
+
+    /// Mean loss of the inverter over that tick (W); zero where nobody wants it, or where it has none.
+    #[inline(always)]
+    #[must_use]
+    pub fn inverter_loss(&self) -> f64 {
+        self.synchronous().map_or(0.0, Synchronous::inverter_loss)
+    }
+
+    /// Voltage of the DC link (V), and its mean powers over that tick (W); zero where there is none.
+    #[inline(always)]
+    #[must_use]
+    pub fn link(&self) -> (f64, inverter::LinkPower) {
+        self.synchronous().map_or_else(Default::default, Synchronous::link)
     }
 
     /// Leaves the powers of the motor out from now on.

@@ -9,6 +9,7 @@ mod drive;
 mod drive_blocks;
 mod drive_filters;
 mod fmu;
+mod inverter;
 mod motor;
 mod motor_effects;
 mod plc;

@@ -18,6 +18,7 @@ mod filter;
 mod fmu;
 mod friction;
 mod inputs;
+mod inverter;
 mod keys;
 mod loops;
 mod mode;

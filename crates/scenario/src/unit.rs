@@ -29,7 +29,7 @@ const VOLT_AMPLITUDE: D = D::VOLT.times(D::AMPLITUDE, 1);
 const AMPERE_AMPLITUDE: D = D::AMPERE.times(D::AMPLITUDE, 1);
 const OHM: Unit = si(D::VOLT.times(D::AMPERE, -1));
 
-const UNITS: [Row; 34] = [
+const UNITS: [Row; 35] = [
     ("m", si(D::METRE), true),
     ("g", scaled(D::KILOGRAM, 1.0, 1.0, -3), true),
     ("s", si(D::SECOND), true),
@@ -51,6 +51,7 @@ const UNITS: [Row; 34] = [
     ("Ohm", OHM, true),
     ("ohm", OHM, true),
     ("H", si(D::VOLT.times(D::SECOND, 1).times(D::AMPERE, -1)), true),
+    ("F", si(D::AMPERE.times(D::SECOND, 1).times(D::VOLT, -1)), true),
     ("Wb", si(D::VOLT.times(D::SECOND, 1)), true),
     ("Hz", si(D::HERTZ), true),
     ("rad", si(D::RADIAN), true),

@@ -14,6 +14,8 @@ pub struct Equipment {
     pub disturbed: [bool; 2],
     /// Whether the load meets stops at the ends of its travel.
     pub end_stops: bool,
+    /// Whether the inverter is not ideal, and whether the voltage of its DC link changes.
+    pub inverter: [bool; 2],
     /// Whether there is a fieldbus between the motion task and the drive.
     pub bus: bool,
     /// What the motor has beside its equations.
@@ -104,6 +106,10 @@ pub enum Presence {
     LoadEncoderErrs,
     /// Where the measured current errs.
     CurrentErrs,
+    /// With an inverter that is not ideal.
+    WithInverter,
+    /// With a DC link whose voltage changes.
+    WithLink,
 }
 
 impl Presence {
@@ -127,6 +133,8 @@ impl Presence {
             Self::MotorEncoderErrs => equipment.erring.motor_encoder,
             Self::LoadEncoderErrs => equipment.erring.load_encoder,
             Self::CurrentErrs => equipment.erring.current,
+            Self::WithInverter => equipment.inverter[0],
+            Self::WithLink => equipment.inverter[1],
         }
     }
 }

@@ -1,6 +1,7 @@
 //! All that is known at one tick.
 use servobench_base::{Dq, Setpoint};
 use servobench_plant::BodyState;
+use servobench_plant::inverter::LinkPower;
 use servobench_plant::pmsm::{Power, Temperatures};
 
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
@@ -46,6 +47,12 @@ pub struct Instant {
     pub power: Power,
     /// Temperatures of the motor; zero where nothing warms up.
     pub temperatures: Temperatures,
+    /// Mean loss of the inverter over the tick that ends here.
+    pub inverter_loss: f64,
+    /// Voltage of the DC link at this tick.
+    pub dc_link: f64,
+    /// Mean power from the mains into the link, and into its brake resistor, over the tick that ends here.
+    pub link_power: LinkPower,
     /// Mean power on the shaft over the tick that ends here.
     pub shaft_power: f64,
     /// Output of an ideal source.

@@ -186,6 +186,14 @@ signals! {
         "d-axis current as the current loop measures it, amplitude; where sensors or commutation err";
     MeasuredCurrentQ "measured.current.q" Ampere CurrentLoop CurrentErrs |now| now.measured_current.q;
         "q-axis current as the current loop measures it, amplitude; where sensors or commutation err";
+    PowerInverter "power.inverter" Watt PowerStage WithInverter |now| now.inverter_loss;
+        "loss of the inverter's devices, mean over the tick that ends; where it is not ideal";
+    VoltageDcLink "voltage.dc_link" Volt PowerStage WithLink |now| now.dc_link;
+        "voltage of the DC link; where it changes";
+    PowerMains "power.mains" Watt PowerStage WithLink |now| now.link_power.source;
+        "power from the mains into the DC link, mean over the tick that ends; where the link changes";
+    PowerBrake "power.brake" Watt PowerStage WithLink |now| now.link_power.brake;
+        "power into the brake resistor, mean over the tick that ends; where the link changes";
 }
 
 impl Signal {

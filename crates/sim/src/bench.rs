@@ -264,6 +264,10 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
             .map(|body| is_disturbed(scenario, body)),
         table,
         end_stops: scenario.axis.end_stops.is_some(),
+        inverter: match &scenario.actuator {
+            Actuator::Pmsm { inverter, link, .. } => [inverter.is_some(), link.is_some()],
+            _ => [false; 2],
+        },
         bus: scenario.bus.is_some(),
         effects,
         erring: if is_replaced { Erring::default() } else { erring(&scenario.actuator) },

@@ -169,6 +169,8 @@ impl ClosedLoop {
         let Shaft { effort, position: before } = self.state.shaft;
         now.power = self.state.power.power();
         now.temperatures = self.state.power.temperatures();
+        now.inverter_loss = self.state.power.inverter_loss();
+        (now.dc_link, now.link_power) = self.state.power.link();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 

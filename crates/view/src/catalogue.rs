@@ -121,6 +121,8 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&[Signal::LoadPosition.name()], "load", style::LOAD, WIDEST),
             curve(&[Signal::MotorPosition.name()], "motor", style::MOTOR, WIDE),
             curve(&[Signal::TablePosition.name()], "table", style::TABLE, THIN),
+            curve(&[Signal::MeasuredLoadPosition.name()], "load as measured", style::DISTURBANCE, SLIM),
+            curve(&[Signal::MeasuredMotorPosition.name()], "motor as measured", style::AUXILIARY, SLIM),
             curve(
                 &[Signal::ReferencePosition.name(), Signal::SetpointPosition.name()],
                 "reference",
@@ -311,8 +313,50 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&[Signal::PowerAirGap.name()], "air gap", style::TABLE, WIDEST),
             curve(&[Signal::PowerShaft.name()], "shaft", style::LOAD, THIN),
             curve(&[Signal::PowerCopper.name()], "copper", style::DISTURBANCE, MIDDLE),
+            curve(&[Signal::PowerIron.name()], "iron", style::IRON, THIN),
             curve(&[Signal::PowerStored.name()], "stored", style::AUXILIARY, THIN),
             curve(&[Signal::PowerResidual.name()], "residual", style::REFERENCE, MIDDLE),
+            curve(&[Signal::PowerInverter.name()], "inverter", style::MARK, THIN),
+        ],
+        ..PLAIN
+    },
+    Plot {
+        title: "DC link",
+        path: "dc_link",
+        page: Page::Electrical,
+        includes: &[],
+        curves: &[curve(&[Signal::VoltageDcLink.name()], "voltage", style::MOTOR, WIDE)],
+        ..PLAIN
+    },
+    Plot {
+        title: "Power of the DC link",
+        path: "dc_link_power",
+        page: Page::Electrical,
+        curves: &[
+            curve(&[Signal::PowerMains.name()], "from the mains", style::MOTOR, WIDE),
+            curve(&[Signal::PowerBrake.name()], "brake resistor", style::LOAD, THIN),
+        ],
+        ..PLAIN
+    },
+    Plot {
+        title: "Temperature",
+        path: "temperature",
+        page: Page::Electrical,
+        includes: &[],
+        curves: &[
+            curve(&[Signal::TemperatureWinding.name()], "winding", style::LOAD, WIDE),
+            curve(&[Signal::TemperatureHousing.name()], "housing", style::MOTOR, THIN),
+        ],
+        ..PLAIN
+    },
+    Plot {
+        title: "Current as it is measured",
+        path: "measured_current",
+        amplitude: true,
+        page: Page::Electrical,
+        curves: &[
+            curve(&[Signal::MeasuredCurrentQ.name()], "q", style::MOTOR, WIDE),
+            curve(&[Signal::MeasuredCurrentD.name()], "d", style::AUXILIARY, THIN),
         ],
         ..PLAIN
     },

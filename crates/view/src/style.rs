@@ -13,6 +13,8 @@ pub(crate) const TABLE: Rgb = [46, 184, 150];
 pub(crate) const LOAD: Rgb = [245, 140, 40];
 /// A second quantity beside the main one.
 pub(crate) const AUXILIARY: Rgb = [160, 110, 230];
+/// What the iron takes.
+pub(crate) const IRON: Rgb = [165, 110, 70];
 /// What pushes from outside.
 pub(crate) const DISTURBANCE: Rgb = [230, 90, 160];
 /// Nothing happens.

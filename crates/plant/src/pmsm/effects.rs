@@ -2,9 +2,7 @@
 use super::phases::{self, PhaseMatrix};
 use super::temperature::ThermalSteps;
 use super::varying::Varying;
-use super::{
-    Cogging, FluxHarmonic, Input, IronLoss, Output, Params, Power, State, Temperature, Temperatures, Ticks, iron,
-};
+use super::{Cogging, FluxHarmonic, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron};
 use servobench_base::ParamError;
 
 /// The effects of a motor. None is switched on by default.
@@ -65,7 +63,7 @@ pub struct Travel {
     pub speed: f64,
 }
 
-/// Ticks of a motor with effects, and their state.
+/// A motor with effects, and their state.
 ///
 /// ```text
 /// effort   = air-gap effort of the currents + cogging − drag of the iron
@@ -74,7 +72,7 @@ pub struct Travel {
 /// ```
 /// The energy of the magnets goes into `stored`, so that what goes in is what comes out, whatever is switched on.
 #[derive(Debug, Clone)]
-pub struct RealTicks {
+pub struct RealMotor {
     effects: Effects,
     /// The motor as its data sheet has it.
     params: Params,
@@ -92,8 +90,8 @@ struct Warming {
     now: Temperatures,
 }
 
-impl RealTicks {
-    /// Ticks of `h` (s) of the motor with the data `params` and with `effects`; `None` when there is nothing to do in a tick.
+impl RealMotor {
+    /// The motor with the data `params` and with `effects`, in ticks of `h` (s); `None` when there is nothing to do in a tick.
     #[must_use]
     pub fn new(params: &Params, effects: &Effects, h: f64) -> Option<Self> {
         if effects.are_none() {
@@ -119,32 +117,28 @@ impl RealTicks {
         self.warming.as_ref().map(|warming| warming.now)
     }
 
-    /// Advances the currents to tick k+1 and returns the mean effort over the tick with the powers. `ticks` are those of the motor at the
-    /// beginning.
-    #[cold]
-    pub fn step(&mut self, ticks: &Ticks, x: &mut State, u: &Input, travel: Travel) -> Output {
-        let before = *x;
-        let params = self.warming.as_ref().map_or(*ticks.params(), |warm| warm.model.motor(&self.params, warm.now));
-        let output = if self.effects.vary() {
-            let harmonics = &self.effects.flux_harmonics;
-            Varying { params: &params, harmonics, phases: &self.phases }.step(x, u, self.h)
-        } else {
-            let mut power = Power::default();
-            let torque = ticks.step_with_power(x, u, &mut power);
-            Output { torque, power }
-        };
-        self.on_the_rotor(&params, output, [before, *x], travel)
+    /// The motor as it is at this tick. `ticks` are those of the motor at the beginning.
+    #[must_use]
+    pub fn params(&self, ticks: &Ticks) -> Params {
+        self.warming.as_ref().map_or(*ticks.params(), |warm| warm.model.motor(&self.params, warm.now))
     }
 
-    /// What acts on the rotor over a tick in which the currents go from `x` to zero; the inductances give back `returned` (W).
-    #[cold]
-    pub fn step_to_no_current(&mut self, ticks: &Ticks, x: State, returned: f64, travel: Travel) -> Output {
-        let params = self.warming.as_ref().map_or(*ticks.params(), |warm| warm.model.motor(&self.params, warm.now));
-        let power = Power { electrical: returned, stored: returned, ..Power::default() };
-        self.on_the_rotor(&params, Output { torque: 0.0, power }, [x, State::default()], travel)
+    /// Whether the losses must be known, whoever else wants them.
+    #[must_use]
+    pub const fn needs_losses(&self) -> bool {
+        self.warming.is_some()
     }
 
-    fn on_the_rotor(&mut self, p: &Params, mut output: Output, x: [State; 2], travel: Travel) -> Output {
+    /// The winding of the motor that is `params` at this tick, behind `series` (Ω); `None` where its equations are those of the ideal one.
+    pub(crate) fn winding<'a>(&'a self, params: &'a Params, series: f64) -> Option<Varying<'a>> {
+        let (harmonics, phases) = (&*self.effects.flux_harmonics, &self.phases);
+        self.effects.vary().then_some(Varying { params, harmonics, phases, series })
+    }
+
+    /// What acts on the rotor over a tick with what the `winding` does in it, and the powers. The currents go from the first of `x` to the
+    /// second one.
+    pub(crate) fn on_the_rotor(&mut self, p: &Params, winding: Output, x: [State; 2], travel: Travel) -> Output {
+        let mut output = winding;
         let Travel { position, speed } = travel;
         let cogging: f64 = self.effects.cogging.iter().map(|one| one.mean_effort(position, speed * self.h)).sum();
         let flux = || iron::relative_flux(p, self.params.flux_linkage, x);

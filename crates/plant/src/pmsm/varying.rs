@@ -1,4 +1,4 @@
-//! A tick of a motor whose equations change with the angle of the rotor, by the Gauss method of two stages.
+//! A motor whose equations change with the angle of the rotor, by the Gauss method of two stages.
 //!
 //! ```text
 //! L·di/dt = u(t) − e(θ) − A(θ)·i           A = [ R_dd           R_dq − ω·L_q ]      θ = θ_k + ω·t
@@ -11,12 +11,13 @@
 //! in a tick its mean takes its place: second order, as for the motor without harmonics. Source: Hairer, Lubich and Wanner, *Geometric
 //! Numerical Integration*, 2nd ed., ch. II.1 and IV.2.
 //!
-//! A tick is divided so that a harmonic turns by at most half a radian and the current decays by at most a quarter in a part: what
+//! The time is divided so that a harmonic turns by at most half a radian and the current decays by at most a quarter in a part: what
 //! a part leaves out is below (1/2)⁵/4320 of a harmonic and (1/4)⁵/720 of a transient.
 use super::flux_harmonics::{Flux, FluxHarmonic};
 use super::phases::{Entries, PhaseMatrix};
-use super::{Input, Output, Params, Power, State};
-use servobench_base::{Dq, Rotation};
+use super::winding::{Span, Sums, Winding};
+use super::{Input, Output, Params, State};
+use servobench_base::{AlphaBeta, Dq, Rotation};
 
 /// Largest turn of a harmonic in a part of a tick (rad).
 const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
@@ -34,16 +35,20 @@ const WEIGHTS: [[f64; 2]; 2] = [[0.25, 0.25 - OFF_THE_MIDDLE], [0.25 + OFF_THE_M
 
 /// A motor whose equations change with the angle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Varying<'a> {
+pub(crate) struct Varying<'a> {
     /// With its resistance and flux linkage at this tick.
     pub(super) params: &'a Params,
     pub(super) harmonics: &'a [FluxHarmonic],
     pub(super) phases: &'a PhaseMatrix,
+    /// Resistance before each phase that is not the motor's own (Ω).
+    pub(super) series: f64,
 }
 
 /// The equations at a stage.
 struct Stage {
     u: Dq,
+    /// What devices have taken of it.
+    drop: Dq,
     flux: Flux,
     resistance: Entries,
     /// u − e.
@@ -52,40 +57,33 @@ struct Stage {
     slope: [[f64; 2]; 2],
 }
 
-/// Sums over parts of a tick.
-#[derive(Default)]
-struct Means {
-    torque: f64,
-    electrical: f64,
-    copper: f64,
-    stored: f64,
+impl Winding for Varying<'_> {
+    fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq {
+        let Span { rotor, omega, time, .. } = *over;
+        let parts = self.parts(omega * time, time);
+        let part = time / f64::from(parts);
+        (0..parts).fold(i, |i, k| self.part(i, over, rotor.ahead(omega * part * f64::from(k)), part, sums))
+    }
+
+    fn stored(&self, before: Dq, after: Dq) -> f64 {
+        let l = self.params.inductance;
+        0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
+    }
 }
 
 impl Varying<'_> {
-    /// Advances the currents by `h` (s) and returns mean torque and powers.
-    pub(super) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
-        let parts = self.parts(u.omega_e * h, h);
-        let share = 1.0 / f64::from(parts);
-        let mut means = Means::default();
-        for part in 0..parts {
-            let rotor = u.rotor.ahead(u.omega_e * h * share * f64::from(part));
-            self.part(&mut x.current, u, rotor, h * share, &mut means);
-        }
-        let torque = 1.5 * self.params.electrical_ratio * share * means.torque;
-        let power = Power {
-            electrical: 1.5 * share * means.electrical,
-            copper: 1.5 * share * means.copper,
-            iron: 0.0,
-            stored: 0.75 * means.stored / h,
-            air_gap: torque * u.omega_e / self.params.electrical_ratio,
-        };
-        Output { torque, power }
+    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
+    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
+        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
+        let (before, mut sums) = (x.current, Sums::default());
+        x.current = self.advance::<true>(before, &over, &mut sums);
+        sums.output(self.stored(before, x.current), self.params.electrical_ratio, u.omega_e, h)
     }
 
     fn parts(&self, turn: f64, h: f64) -> u32 {
         let Params { resistance, inductance, .. } = self.params;
         let order = self.harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
-        let decay = h * resistance * self.phases.largest() / inductance.d.min(inductance.q);
+        let decay = h * (resistance * self.phases.largest() + self.series) / inductance.d.min(inductance.q);
         let of_harmonics = f64::from(order) * turn.abs() / LARGEST_TURN_OF_A_HARMONIC;
         let parts = of_harmonics.max(decay.max(turn.abs()) / LARGEST_PART).clamp(1.0, MOST_PARTS);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 4096")]
@@ -93,25 +91,25 @@ impl Varying<'_> {
         whole.max(1)
     }
 
-    fn stage(&self, u: &Input, rotor: Rotation) -> Stage {
+    fn stage(&self, over: &Span, rotor: Rotation) -> Stage {
         let Params { resistance, inductance, flux_linkage, .. } = self.params;
-        let omega = u.omega_e;
+        let omega = over.omega;
         let flux = Flux::at(*flux_linkage, self.harmonics, rotor);
         let parts = self.phases.at(rotor);
         let resistance = Entries { dd: resistance * parts.dd, dq: resistance * parts.dq, qq: resistance * parts.qq };
-        let voltage = u.voltage.to_dq(rotor);
+        let voltage = over.voltage.to_dq(rotor);
         let driving =
             Dq { d: voltage.d - omega * (flux.slope_d - flux.q), q: voltage.q - omega * (flux.slope_q + flux.d) };
         let slope = [
-            [resistance.dd, resistance.dq - omega * inductance.q],
-            [resistance.dq + omega * inductance.d, resistance.qq],
+            [resistance.dd + self.series, resistance.dq - omega * inductance.q],
+            [resistance.dq + omega * inductance.d, resistance.qq + self.series],
         ];
-        Stage { u: voltage, flux, resistance, driving, slope }
+        Stage { u: voltage, drop: over.drop.to_dq(rotor), flux, resistance, driving, slope }
     }
 
-    fn part(&self, i: &mut Dq, u: &Input, rotor: Rotation, h: f64, means: &mut Means) {
+    fn part(&self, i: Dq, over: &Span, rotor: Rotation, h: f64, sums: &mut Sums) -> Dq {
         let l = self.params.inductance;
-        let stages = STAGES.map(|at| self.stage(u, rotor.ahead(u.omega_e * h * at)));
+        let stages = STAGES.map(|at| self.stage(over, rotor.ahead(over.omega * h * at)));
         // L·I_j + h·Σ a_jn·A_n·I_n = L·i + h·Σ a_jn·(u_n − e_n), unknowns (I_1d, I_1q, I_2d, I_2q).
         let mut system = [[0.0; 5]; 4];
         for (j, weights) in WEIGHTS.iter().enumerate() {
@@ -134,14 +132,14 @@ impl Varying<'_> {
             change.q += h / 2.0 * (stage.driving.q - qd * i.d - qq * i.q) / l.q;
             let Entries { dd, dq, qq } = stage.resistance;
             let flux = &stage.flux;
-            means.torque +=
-                0.5 * ((flux.d + flux.slope_q) * i.q + (flux.slope_d - flux.q) * i.d + (l.d - l.q) * i.d * i.q);
-            means.electrical += 0.5 * (stage.u.d * i.d + stage.u.q * i.q);
-            means.copper += 0.5 * (dd * i.d * i.d + 2.0 * dq * i.d * i.q + qq * i.q * i.q);
+            sums.torque +=
+                h / 2.0 * ((flux.d + flux.slope_q) * i.q + (flux.slope_d - flux.q) * i.d + (l.d - l.q) * i.d * i.q);
+            sums.copper += h / 2.0 * (dd * i.d * i.d + 2.0 * dq * i.d * i.q + qq * i.q * i.q);
+            sums.square += h / 2.0 * (i.d * i.d + i.q * i.q);
+            sums.work += h / 2.0 * (stage.u.d * i.d + stage.u.q * i.q);
+            sums.other += h / 2.0 * (stage.drop.d * i.d + stage.drop.q * i.q);
         }
-        let after = Dq { d: i.d + change.d, q: i.q + change.q };
-        means.stored += l.d * change.d * (i.d + after.d) + l.q * change.q * (i.q + after.q);
-        *i = after;
+        Dq { d: i.d + change.d, q: i.q + change.q }
     }
 }
 

@@ -1,8 +1,11 @@
 //! An inverter and the synchronous motor on it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod real;
+
 use crate::mechanics::BodyState;
 use crate::sensor::CurrentSensorState;
 use crate::{inverter, pmsm};
+use real::RealInverter;
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError};
 use std::sync::Arc;
 
@@ -28,7 +31,9 @@ pub(super) struct Synchronous {
     /// Mean powers of the motor over the tick, where they are wanted.
     power: Option<pmsm::Power>,
     /// What the motor does beside its equations.
-    effects: Option<Box<pmsm::RealTicks>>,
+    effects: Option<Box<pmsm::RealMotor>>,
+    /// What inverter and link do beside giving the voltage that they are asked for.
+    inverter: Option<Box<RealInverter>>,
     /// The current sensors, where they err.
     sensor: Option<Box<CurrentSensorState>>,
 }
@@ -50,6 +55,7 @@ impl Synchronous {
             voltage: Dq::default(),
             power: Some(pmsm::Power::default()),
             effects: None,
+            inverter: None,
             sensor: None,
         })
     }
@@ -61,11 +67,25 @@ impl Synchronous {
     pub(super) fn with_effects(self, effects: &pmsm::Effects, h: f64) -> Result<Self, ParamError> {
         effects.check()?;
         let params = *self.motor.params();
-        let real = pmsm::RealTicks::new(&params, effects, h).map(Box::new);
+        let real = pmsm::RealMotor::new(&params, effects, h).map(Box::new);
         let warm = effects.at_the_beginning(&params);
         warm.check()?;
         let motor = if warm == params { self.motor } else { Arc::new(pmsm::Ticks::new(warm, h)) };
         Ok(Self { motor, effects: real, ..self })
+    }
+
+    /// On an inverter and a link that are like this, in ticks of `h` (s), after the motor has its effects.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of them that is out of its bound.
+    pub(super) fn put_on(
+        &mut self,
+        inverter: &inverter::Params,
+        link: Option<&inverter::LinkParams>,
+        h: f64,
+    ) -> Result<(), ParamError> {
+        self.inverter = RealInverter::new(inverter, link, self.motor.params(), h)?.map(Box::new);
+        Ok(())
     }
 
     pub(super) fn set_sensor(&mut self, sensor: CurrentSensorState) {
@@ -132,9 +152,23 @@ impl Synchronous {
         self.effects.as_ref().and_then(|effects| effects.temperatures()).unwrap_or_default()
     }
 
-    /// Leaves the powers out from now on.
-    pub(super) const fn leave_power_out(&mut self) {
-        self.power = None;
+    /// Mean loss of the inverter over that tick (W); zero where nobody wants it.
+    #[inline(always)]
+    pub(super) fn inverter_loss(&self) -> f64 {
+        self.inverter.as_ref().map_or(0.0, |inverter| inverter.loss())
+    }
+
+    /// Voltage of the DC link (V), and its mean powers over that tick (W).
+    #[inline(always)]
+    pub(super) fn link(&self) -> (f64, inverter::LinkPower) {
+        (self.u_dc, self.inverter.as_ref().map_or_else(inverter::LinkPower::default, |inverter| inverter.link_power()))
+    }
+
+    /// Leaves the powers out from now on, unless a link has to supply them.
+    pub(super) fn leave_power_out(&mut self) {
+        if !self.inverter.as_ref().is_some_and(|inverter| inverter.has_link()) {
+            self.power = None;
+        }
     }
 
     /// Goes from tick k to k+1 (`h` s) with the voltage `wanted` of the inverter and returns the mean effort over it (N·m or N).
@@ -142,21 +176,18 @@ impl Synchronous {
     pub(super) fn advance(&mut self, wanted: AlphaBeta, motor: BodyState, h: f64) -> f64 {
         let mean_speed = self.mean_speed(motor);
         self.last_speed = motor.velocity;
+        if self.effects.is_some() || self.inverter.is_some() {
+            return self.advance_real(wanted, pmsm::Travel { position: motor.position, speed: mean_speed }, h);
+        }
         let given = inverter::output(wanted, self.u_dc);
         self.shortens = is_shorter(given, wanted);
         let ticks = &self.motor;
         let omega_e = ticks.params().electrical_ratio * mean_speed;
         let input = pmsm::Input { voltage: given, rotor: self.rotor.rotation(), omega_e };
         self.voltage = input.voltage_at_middle(h);
-        match (&mut self.effects, &mut self.power) {
-            (None, None) => ticks.step(&mut self.state, &input),
-            (None, Some(power)) => ticks.step_with_power(&mut self.state, &input, power),
-            (Some(effects), power) => {
-                let travel = pmsm::Travel { position: motor.position, speed: mean_speed };
-                let pmsm::Output { torque, power: found } = effects.step(ticks, &mut self.state, &input, travel);
-                *power = power.map(|_| found);
-                torque
-            }
+        match &mut self.power {
+            None => ticks.step(&mut self.state, &input),
+            Some(power) => ticks.step_with_power(&mut self.state, &input, power),
         }
     }
 
@@ -166,23 +197,22 @@ impl Synchronous {
         motor.velocity + (motor.velocity - self.last_speed) / 2.0
     }
 
-    /// The power goes off, for a tick of `h` (s); gives the mean effort of the motor over it. The current is gone within the tick, which takes a real inverter some milliseconds,
-    /// and its energy back in the DC link; no current flows back as long as the back-EMF is below the DC link.
+    /// The power goes off, for a tick of `h` (s); gives the mean effort of the motor over it. The current is gone within the tick, which
+    /// takes a real inverter some milliseconds, and its energy back in the DC link; no current flows back as long as the back-EMF is below
+    /// the DC link.
     #[inline(always)]
     pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) -> f64 {
         let returned = -self.motor.params().stored_energy(self.state.current) / h;
-        let travel = pmsm::Travel { position: motor.position, speed: self.mean_speed(motor) };
-        let pmsm::Output { torque, power } = match &mut self.effects {
-            None => pmsm::Output {
-                torque: 0.0,
-                power: pmsm::Power { electrical: returned, stored: returned, ..Default::default() },
-            },
-            Some(effects) => effects.step_to_no_current(&self.motor, self.state, returned, travel),
-        };
-        self.power = self.power.map(|_| power);
+        let power = pmsm::Power { electrical: returned, stored: returned, ..Default::default() };
+        let mut output = pmsm::Output { torque: 0.0, power };
+        if self.effects.is_some() || self.inverter.is_some() {
+            let travel = pmsm::Travel { position: motor.position, speed: self.mean_speed(motor) };
+            output = self.rest(output, travel, h);
+        }
+        self.power = self.power.map(|_| output.power);
         self.state = pmsm::State::default();
         (self.last_speed, self.shortens, self.voltage) = (motor.velocity, false, Dq::default());
-        torque
+        output.torque
     }
 }
 

@@ -1,4 +1,5 @@
 //! `[drive]`: the firmware.
+use super::inverter::{Inverter, Link};
 use crate::field::{Either, EitherMeasure};
 use crate::file::{CoggingHarmonic, CurrentSensor, DeadTimeCompensation, GainSchedule, I2t, LoadEncoder, TorqueFilter};
 use crate::list::{Automatic, Many, Share};
@@ -52,6 +53,10 @@ table! {
         max_force: f64 = positive(Plain(&FORCE), "300 N"),
         /// Encoder that closes the position loop; default: the motor's.
         position_feedback: FeedbackEncoder = OneOf,
+        /// Inverter of a synchronous motor; default: an ideal one.
+        inverter: Inverter = (),
+        /// DC link of that inverter; default: a constant voltage.
+        link: Link = (),
         /// Current loop of a synchronous motor.
         current: Current = (),
         /// Velocity loop.

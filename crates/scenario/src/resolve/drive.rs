@@ -7,7 +7,7 @@ use crate::list::{Automatic, Share};
 use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::Motor;
-use crate::resolve::{blocks, current, loops, need, sensors};
+use crate::resolve::{blocks, current, inverter, loops, need, sensors};
 use crate::scenario::{Actuator, Axis, Drive, Feedback};
 use servobench_base::{ParamError, Rate};
 use servobench_drive::current::operating_point::Strategy;
@@ -37,6 +37,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         estimate::check_motor(estimates, motor, report);
     }
     let current_loop = current::resolve(given, known, is_used, report);
+    let inverter = inverter::resolve(given, known, report);
+    let link = inverter::link(given, known, dc_link, report);
     let described = current_loop.as_ref().ok().copied().flatten();
     let belief = match (known.axis, file.axis.given()) {
         (Some(axis), Some(written)) => estimate::of_axis(estimates, written, axis, report),
@@ -97,6 +99,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
             effects: effects.clone(),
             encoder: *encoder,
             dc_link: dc_link?,
+            inverter: inverter.ok()?,
+            link: link.ok()?,
             drive,
         }),
         Motor::IdealSource { source, encoder } => {

@@ -1,7 +1,7 @@
 //! What moves the axis: the part of the plant that a drive commands, and the drive that goes with it.
 use super::drive::Drive;
 use servobench_drive::Stage;
-use servobench_plant::{Encoder, IdealSource, pmsm};
+use servobench_plant::{Encoder, IdealSource, inverter, pmsm};
 
 /// What moves the axis, and what commands that.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,7 +10,7 @@ pub enum Actuator {
     Prescribed,
     /// The power stage is off: no current, no force, and the axis is free.
     Off,
-    /// A permanent-magnet synchronous motor on an averaged inverter.
+    /// A permanent-magnet synchronous motor on an inverter.
     Pmsm {
         /// The motor.
         motor: pmsm::Params,
@@ -20,6 +20,10 @@ pub enum Actuator {
         encoder: Encoder,
         /// DC-link voltage of the inverter (V).
         dc_link: f64,
+        /// What the inverter does beside giving the voltage that it is asked for; `None`: nothing.
+        inverter: Option<inverter::Params>,
+        /// Its DC link; `None`: a constant voltage.
+        link: Option<inverter::LinkParams>,
         /// The drive.
         drive: Drive,
     },

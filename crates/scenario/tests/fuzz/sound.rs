@@ -19,9 +19,11 @@ pub(crate) fn check(scenario: &Scenario) {
     }
     match actuator {
         Actuator::Prescribed | Actuator::Off => {}
-        Actuator::Pmsm { motor, effects, encoder, dc_link, drive } => {
+        Actuator::Pmsm { motor, effects, encoder, dc_link, inverter, link, drive } => {
             assert_eq!((motor.check(), effects.check(), encoder.check()), (Ok(()), Ok(()), Ok(())));
             positive("dc_link", *dc_link);
+            assert_eq!(inverter.map_or(Ok(()), |inverter| inverter.check()), Ok(()));
+            assert_eq!(link.map_or(Ok(()), |link| link.check()), Ok(()));
             assert!(drive.params.current_loop().is_some() && drive.current_tuning.is_some());
             self::drive(drive, *base_rate);
         }

@@ -4,6 +4,7 @@ use crate::error::BuildError;
 use servobench_drive::Stage;
 use servobench_plant::{
     self as plant, BodyState, Chain, EndStops, Engine, Mechanics, MechanicsSetup, ModelKind, PowerStage, Switches,
+    inverter,
 };
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 
@@ -92,8 +93,11 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
     Ok(match actuator {
         Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
         Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
-        Actuator::Pmsm { motor, effects, dc_link, drive, .. } => {
-            let stage = PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?;
+        Actuator::Pmsm { motor, effects, dc_link, inverter, link, drive, .. } => {
+            let mut stage = PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?;
+            if inverter.is_some() || link.is_some() {
+                stage = stage.with_inverter(&inverter.unwrap_or(inverter::Params::IDEAL), link.as_ref(), h)?;
+            }
             match (drive.current_sensor, &drive.params.stage) {
                 (Some(sensor), Stage::Current { every, .. }) => stage.with_current_sensor(sensor, *every, h)?,
                 _ => stage,

@@ -1,6 +1,6 @@
 use super::*;
 use crate::mechanics::BodyState;
-use crate::pmsm::{Params, ThermalNetwork};
+use crate::pmsm::{Params, Power, ThermalNetwork};
 use crate::power_stage::PowerStage;
 use servobench_base::{AlphaBeta, Dq, PowerCommand};
 

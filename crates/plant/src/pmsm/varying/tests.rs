@@ -1,5 +1,6 @@
 use super::super::step_with_power;
 use super::*;
+use crate::pmsm::Power;
 use proptest::prelude::*;
 use servobench_base::{AlphaBeta, ElectricalAngle};
 
@@ -14,7 +15,7 @@ const HARMONICS: [FluxHarmonic; 2] = [
 const FACTORS: [f64; 3] = [1.05, 0.93, 1.21];
 
 fn varying<'a>(params: &'a Params, harmonics: &'a [FluxHarmonic], phases: &'a PhaseMatrix) -> Varying<'a> {
-    Varying { params, harmonics, phases }
+    Varying { params, harmonics, phases, series: 0.0 }
 }
 
 /// Current at the end, mean torque, copper loss and electrical power of a run at constant speed, from ticks of `end`/`n`.

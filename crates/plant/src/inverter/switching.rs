@@ -1,0 +1,385 @@
+//! An inverter that switches, and the winding on it: from edge to edge, each time as well as the winding can be solved. That of an ideal
+//! motor is solved to the rounding.
+//!
+//! ```text
+//! carrier    middle of vector 111 ─ leg x goes down at d_x·T/2 ─ T/2, middle of 000 ─ leg x goes up at T − d_x·T/2 ─ T
+//! edge       both devices off: the leg is at the rail of its current, up for i_x ≤ 0, down for i_x > 0; t_d later at its new one
+//! between    u = U_dc·(levels) − U_T·sgn(i_x) − r·i_x, the signs of when it begins      solved by the motor's winding
+//! ```
+//! Duties come from [`modulation`](super::modulation) at every middle of the carrier, so a drive may renew its voltage twice in a period.
+//! A tick begins in a middle, or in a middle every so many ticks: there the ripple of the current is zero, and what the drive samples is its
+//! mean. A pulse shorter than the dead time is lost, or becomes longer, as on the real bridge: an edge within the dead time of the one before
+//! takes its place.
+//!
+//! Left out: a current that comes to zero within a dead time blocks its diode in a real leg, and stays zero until the device turns on;
+//! here it goes on through zero for what is left of t_d, by at most t_d·U_dc/L. A threshold keeps its sign from edge to edge.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use super::legs::{Legs, legs, vector};
+use super::modulation::duties;
+use super::params::Params;
+use crate::pmsm::{self, Equations, Span, Sums, Winding};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
+
+/// How carrier and base tick go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Meshing {
+    /// So many periods in a tick.
+    Periods(u32),
+    /// So many ticks in a period, two at least.
+    Ticks(u32),
+}
+
+/// What does not change in a run.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Switching {
+    electrical_ratio: f64,
+    equations: Equations,
+    meshing: Meshing,
+    /// Half a period of the carrier (s).
+    half: f64,
+    /// Length of a tick (s).
+    h: f64,
+    dead_time: f64,
+    drop: f64,
+    resistance: f64,
+}
+
+/// Where the bridge is; all that a snapshot must hold beside the current.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Bridge {
+    /// Ticks since the period began.
+    tick: u32,
+    /// Whether each leg is at the upper rail.
+    up: [bool; 3],
+    /// What each leg was told last.
+    told: [bool; 3],
+    /// When it is told otherwise, and when its new device turns on: since the half period began (s); infinite: not in this half.
+    edge: Legs,
+    on: Legs,
+}
+
+/// What a tick gives beside the current.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Tick {
+    /// Mean torque (N·m).
+    pub(crate) torque: f64,
+    /// Mean powers of the motor (W).
+    pub(crate) power: pmsm::Power,
+    /// Mean loss of the devices (W).
+    pub(crate) loss: f64,
+    /// Mean voltage at the motor's terminals but for what a resistance of the devices takes (V).
+    pub(crate) voltage: AlphaBeta,
+    /// Whether the hexagon shortened what was asked for.
+    pub(crate) shortened: bool,
+}
+
+/// What acts from tick k to k+1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Input {
+    /// Voltage that is asked for (V).
+    pub(crate) wanted: AlphaBeta,
+    /// Voltage of the link (V).
+    pub(crate) u_dc: f64,
+    /// Rotor at tick k.
+    pub(crate) rotor: Rotation,
+    /// Mean electrical speed over the tick (rad/s).
+    pub(crate) omega_e: f64,
+}
+
+impl Default for Bridge {
+    /// In the middle of vector 111.
+    fn default() -> Self {
+        Self { tick: 0, up: [true; 3], told: [true; 3], edge: [f64::INFINITY; 3], on: [f64::INFINITY; 3] }
+    }
+}
+
+impl Meshing {
+    /// Of a carrier of `carrier` (Hz) with ticks of `h` (s), `None` where neither is a whole number of the other.
+    fn of(carrier: f64, h: f64) -> Option<Self> {
+        // As far apart as the rounding of a period may be.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to a million")]
+        let whole =
+            |ratio: f64| ((ratio - ratio.round()).abs() < 1e-9 * ratio && ratio < 1e6).then(|| ratio.round() as u32);
+        let ratio = carrier * h;
+        if ratio > 0.5 { whole(ratio).map(Self::Periods) } else { whole(1.0 / ratio).map(Self::Ticks) }
+    }
+}
+
+impl Switching {
+    /// Of `motor`, in ticks of `h` (s).
+    ///
+    /// # Errors
+    /// [`ParamError`] where carrier and ticks do not go together.
+    pub(crate) fn new(p: &Params, motor: &pmsm::Params, h: f64) -> Result<Self, ParamError> {
+        let Some(meshing) = Meshing::of(p.carrier, h) else {
+            let bound = "a whole number of times the base rate, or the base rate one of it";
+            return Err(ParamError { name: super::Parameter::CARRIER.name, value: p.carrier, bound });
+        };
+        let half = match meshing {
+            Meshing::Periods(periods) => 0.5 * h / f64::from(periods),
+            Meshing::Ticks(ticks) => 0.5 * h * f64::from(ticks),
+        };
+        Ok(Self {
+            electrical_ratio: motor.electrical_ratio,
+            equations: Equations::new(motor, p.on_resistance),
+            meshing,
+            half,
+            h,
+            dead_time: p.dead_time,
+            drop: p.device_drop,
+            resistance: p.on_resistance,
+        })
+    }
+
+    /// The winding of a motor without effects.
+    pub(crate) const fn equations(&self) -> &Equations {
+        &self.equations
+    }
+
+    /// Resistance of the devices before each phase (Ω).
+    pub(crate) const fn resistance(&self) -> f64 {
+        self.resistance
+    }
+
+    /// Goes from tick k to k+1 with this winding, in whose resistance that of the devices is; without `POWER` the powers and the loss are
+    /// left out.
+    pub(crate) fn step<const POWER: bool, W: Winding>(
+        &self,
+        winding: &W,
+        bridge: &mut Bridge,
+        current: &mut Dq,
+        u: &Input,
+    ) -> Tick {
+        wide_registers!(
+            self.solved::<POWER, W>(winding, bridge, current, u),
+            Self::in_wide_registers::<POWER, W>,
+            self,
+            winding,
+            bridge,
+            current,
+            u
+        )
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn in_wide_registers<const POWER: bool, W: Winding>(
+        &self,
+        winding: &W,
+        bridge: &mut Bridge,
+        current: &mut Dq,
+        u: &Input,
+    ) -> Tick {
+        self.solved::<POWER, W>(winding, bridge, current, u)
+    }
+
+    #[inline(always)]
+    fn solved<const POWER: bool, W: Winding>(
+        &self,
+        winding: &W,
+        bridge: &mut Bridge,
+        current: &mut Dq,
+        u: &Input,
+    ) -> Tick {
+        let before = *current;
+        let duties = duties(u.wanted, u.u_dc);
+        let mut way = Way::<POWER, W> {
+            on: self,
+            winding,
+            u,
+            duties: duties.of,
+            bridge,
+            i: before,
+            rotor: u.rotor,
+            sums: Sums::default(),
+            fluxes: [0.0; 2],
+        };
+        for k in 0..self.pieces(way.bridge.tick) {
+            way.go(self.piece(way.bridge.tick, k));
+        }
+        way.bridge.tick = self.next(way.bridge.tick);
+        let Way { i, sums, fluxes, .. } = way;
+        *current = i;
+        let stored = if POWER { winding.stored(before, i) } else { 0.0 };
+        self.output::<POWER>(stored, &sums, fluxes, u, duties.shortened)
+    }
+
+    #[inline(always)]
+    fn output<const POWER: bool>(
+        &self,
+        stored: f64,
+        sums: &Sums,
+        fluxes: [f64; 2],
+        u: &Input,
+        shortened: bool,
+    ) -> Tick {
+        let per = 1.0 / self.h;
+        let pmsm::Output { torque, power } = sums.output(stored, self.electrical_ratio, u.omega_e, self.h);
+        let voltage = AlphaBeta { alpha: fluxes[0] * per, beta: fluxes[1] * per };
+        if !POWER {
+            return Tick { torque, voltage, shortened, ..Tick::default() };
+        }
+        let ohmic = 1.5 * self.resistance * sums.square * per;
+        let power = pmsm::Power { electrical: power.electrical - ohmic, ..power };
+        Tick { torque, power, loss: ohmic + 1.5 * sums.other * per, voltage, shortened }
+    }
+
+    /// The same time without current or voltage: the carrier goes on.
+    pub(crate) fn rest(&self, bridge: &mut Bridge) {
+        *bridge = Bridge { tick: self.next(bridge.tick), ..Bridge::default() };
+    }
+
+    /// Of the tick in a period that follows the one `at`.
+    #[inline(always)]
+    const fn next(&self, at: u32) -> u32 {
+        match self.meshing {
+            Meshing::Periods(_) => 0,
+            Meshing::Ticks(ticks) => (at + 1) % ticks,
+        }
+    }
+
+    /// How many parts of half periods the tick `at` of a period has.
+    #[inline(always)]
+    const fn pieces(&self, at: u32) -> u32 {
+        match self.meshing {
+            Meshing::Periods(periods) => 2 * periods,
+            Meshing::Ticks(ticks) => 1 + (2 * at < ticks && 2 * at + 2 > ticks) as u32,
+        }
+    }
+
+    /// The `k`-th of them.
+    #[inline(always)]
+    fn piece(&self, at: u32, k: u32) -> Piece {
+        let (h, half) = (self.h, self.half);
+        let Meshing::Ticks(ticks) = self.meshing else {
+            return Piece { second: k % 2 == 1, begins: true, ends: true, from: 0.0, to: half };
+        };
+        let is_last = at + 1 == ticks;
+        let (from, to) = (h * f64::from(at), if is_last { 2.0 * half } else { h * f64::from(at + 1) });
+        if 2 * at < ticks && k == 0 {
+            let ends = 2 * at + 2 >= ticks;
+            return Piece { second: false, begins: at == 0, ends, from, to: if ends { half } else { to } };
+        }
+        let begins = 2 * at <= ticks;
+        Piece { second: true, begins, ends: is_last, from: if begins { 0.0 } else { from - half }, to: to - half }
+    }
+}
+
+/// A part of a half period: the first half, in which legs go down, or the second one; whether the half begins and ends with it; and from
+/// when to when in the half (s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    second: bool,
+    begins: bool,
+    ends: bool,
+    from: f64,
+    to: f64,
+}
+
+/// On the way through a tick.
+struct Way<'a, const POWER: bool, W> {
+    on: &'a Switching,
+    winding: &'a W,
+    u: &'a Input,
+    duties: Legs,
+    bridge: &'a mut Bridge,
+    i: Dq,
+    rotor: Rotation,
+    sums: Sums,
+    /// ∫ u dt in the stator frame (V·s).
+    fluxes: [f64; 2],
+}
+
+impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
+    #[inline(always)]
+    fn go(&mut self, piece: Piece) {
+        if piece.begins {
+            self.begin(piece.second);
+        }
+        self.until(piece.from, piece.to);
+        if piece.ends {
+            // What is to come is counted from the end of the half period on.
+            self.bridge.on = self.bridge.on.map(|on| on - self.on.half);
+        }
+    }
+
+    /// Takes the duties for a half period: the first, in which legs go down, or the second, in which they go up.
+    #[inline(always)]
+    fn begin(&mut self, second: bool) {
+        for x in 0..3 {
+            let d = self.duties[x];
+            let (first, share) = if second { (d >= 1.0, 1.0 - d) } else { (d > 0.0, d) };
+            let changes = d > 0.0 && d < 1.0;
+            if self.bridge.told[x] != first {
+                self.tell(x, first, 0.0);
+            }
+            self.bridge.edge[x] = if changes { share * self.on.half } else { f64::INFINITY };
+        }
+    }
+
+    /// From `from` to `to` of a half period (s).
+    #[inline(always)]
+    fn until(&mut self, from: f64, to: f64) {
+        let mut at = from;
+        loop {
+            let Bridge { edge, on, .. } = &*self.bridge;
+            let next = edge[0].min(edge[1]).min(edge[2]).min(on[0].min(on[1]).min(on[2]));
+            let end = next.min(to);
+            if end > at {
+                self.segment(end - at);
+                at = end;
+            }
+            if next > to {
+                return;
+            }
+            for x in 0..3 {
+                if self.bridge.on[x] <= at {
+                    self.bridge.up[x] = self.bridge.told[x];
+                    self.bridge.on[x] = f64::INFINITY;
+                }
+                if self.bridge.edge[x] <= at {
+                    self.bridge.edge[x] = f64::INFINITY;
+                    let told = !self.bridge.told[x];
+                    self.tell(x, told, at);
+                }
+            }
+        }
+    }
+
+    /// Leg `x` is told to go `up`, or down, at `at` (s).
+    #[inline(always)]
+    fn tell(&mut self, x: usize, up: bool, at: f64) {
+        self.bridge.told[x] = up;
+        if self.on.dead_time > 0.0 {
+            self.bridge.up[x] = self.currents()[x] <= 0.0;
+            self.bridge.on[x] = at + self.on.dead_time;
+        } else {
+            self.bridge.up[x] = up;
+        }
+    }
+
+    #[inline(always)]
+    fn currents(&self) -> Legs {
+        legs(self.i.to_alpha_beta(self.rotor))
+    }
+
+    /// What goes on for `time` (s) without an edge.
+    #[inline(always)]
+    fn segment(&mut self, time: f64) {
+        let u_dc = self.u.u_dc;
+        let mut voltage = vector(self.bridge.up.map(|up| if up { u_dc } else { 0.0 }));
+        let mut drop = AlphaBeta::default();
+        if self.on.drop > 0.0 {
+            drop = vector(self.currents().map(|i| if i == 0.0 { 0.0 } else { self.on.drop.copysign(i) }));
+            voltage = AlphaBeta { alpha: voltage.alpha - drop.alpha, beta: voltage.beta - drop.beta };
+        }
+        self.fluxes = [self.fluxes[0] + time * voltage.alpha, self.fluxes[1] + time * voltage.beta];
+        let omega = self.u.omega_e;
+        let over = Span { voltage, drop, rotor: self.rotor, omega, time };
+        self.i = self.winding.advance::<POWER>(self.i, &over, &mut self.sums);
+        self.rotor = self.rotor.ahead(omega * time);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,62 @@
+//! What the winding of a motor goes through between two changes of its voltage, whoever makes them: a whole tick, or from edge to edge of
+//! an inverter that switches.
+use super::{Output, Power};
+use servobench_base::{AlphaBeta, Dq, Rotation};
+
+/// Some time at constant speed on a voltage that stands in the stator frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Span {
+    /// At the terminals (V, peak, phase to neutral).
+    pub(crate) voltage: AlphaBeta,
+    /// What devices have taken of it before, for its work alone (V).
+    pub(crate) drop: AlphaBeta,
+    /// Rotor at the beginning.
+    pub(crate) rotor: Rotation,
+    /// Electrical speed (rad/s).
+    pub(crate) omega: f64,
+    /// Length (s).
+    pub(crate) time: f64,
+}
+
+/// Means over some time, times that time, in amplitudes of dq; they are added up. 3/2 of each is that of the three phases.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Sums {
+    /// Torque, per pole pair.
+    pub(crate) torque: f64,
+    /// Loss in the resistance of the motor.
+    pub(crate) copper: f64,
+    /// i_d² + i_q².
+    pub(crate) square: f64,
+    /// Work of the voltage.
+    pub(crate) work: f64,
+    /// Work of what the devices have taken.
+    pub(crate) other: f64,
+}
+
+impl Sums {
+    /// Mean torque and powers over a tick of `h` (s) at the electrical speed `omega_e` (rad/s), in which the field takes `stored` (J).
+    pub(crate) fn output(&self, stored: f64, electrical_ratio: f64, omega_e: f64, h: f64) -> Output {
+        let per = 1.0 / h;
+        let torque = 1.5 * electrical_ratio * self.torque * per;
+        let power = Power {
+            electrical: 1.5 * self.work * per,
+            copper: 1.5 * self.copper * per,
+            iron: 0.0,
+            stored: stored * per,
+            air_gap: torque * omega_e / electrical_ratio,
+        };
+        Output { torque, power }
+    }
+
+    pub(crate) const NAN: Self =
+        Self { torque: f64::NAN, copper: f64::NAN, square: f64::NAN, work: f64::NAN, other: f64::NAN };
+}
+
+/// A winding that can be followed through any time.
+pub(crate) trait Winding {
+    /// The current at the end of `over`, which begins with `i` (A, peak). What happens goes to `sums`; without `POWER` the torque alone.
+    fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq;
+
+    /// Energy that the field has more with the current `after` than with `before` (J).
+    fn stored(&self, before: Dq, after: Dq) -> f64;
+}

@@ -1,0 +1,55 @@
+//! `[drive.inverter]` and `[drive.link]`: the power stage as it is.
+use crate::simple::OneOf;
+use crate::table::table;
+use servobench_base::Rate;
+use servobench_plant::inverter::{LinkParameter, Modulation, Parameter};
+
+table! {
+    /// What the inverter does beside giving the voltage that it is asked for: docs/inverter.md. Each key is an effect of its own.
+    pub(crate) struct Inverter {
+        /// How it makes its voltage; default: "averaged".
+        modulation: Modulation = OneOf,
+        /// Frequency of the carrier, and of the switching; `dead_time` and "switching" need it. With "switching" it divides the base rate
+        /// or is a multiple of it.
+        carrier: Rate = "16 kHz",
+        /// default: none.
+        dead_time: f64 = Parameter::DEAD_TIME,
+        /// default: none.
+        device_drop: f64 = Parameter::DEVICE_DROP,
+        /// default: none.
+        on_resistance: f64 = Parameter::ON_RESISTANCE,
+    }
+}
+
+table! {
+    /// The DC link as it is: mains behind a resistance and diodes, a capacitor, a brake resistor: docs/inverter.md. `drive.dc_link` is its
+    /// voltage without load.
+    pub(crate) struct Link requires ["capacitance", "source_resistance"] {
+        capacitance: f64 = LinkParameter::CAPACITANCE,
+        source_resistance: f64 = LinkParameter::SOURCE_RESISTANCE,
+        /// default: none, the voltage behind the resistance is constant.
+        mains_frequency: f64 = LinkParameter::MAINS_FREQUENCY,
+        /// Time in which the mains have less voltage; default: none.
+        sag: Sag = (),
+        /// Resistor that takes what comes back; default: none.
+        brake: Brake = (),
+    }
+}
+
+table! {
+    /// Time in which the mains have less voltage.
+    pub(crate) struct Sag requires ["start", "duration", "depth"] {
+        start: f64 = LinkParameter::SAG_START,
+        duration: f64 = LinkParameter::SAG_DURATION,
+        depth: f64 = LinkParameter::SAG_DEPTH,
+    }
+}
+
+table! {
+    /// Resistor that takes what a braking motor gives back: on above one voltage of the link, off below another.
+    pub(crate) struct Brake requires ["resistance", "on", "off"] {
+        resistance: f64 = LinkParameter::BRAKE_RESISTANCE,
+        on: f64 = LinkParameter::BRAKE_ON,
+        off: f64 = LinkParameter::BRAKE_OFF,
+    }
+}
