@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Absence {
     /// The recording lacks a channel.
-    #[error("`{channel}` is not recorded{}", only_of_a_pmsm(*channel))]
+    #[error("`{channel}` is not recorded{}", only_where(*channel))]
     NoChannel {
         /// Missing channel.
         channel: Signal,
@@ -110,8 +110,8 @@ pub enum Absence {
     },
 }
 
-/// Why a signal of the motor's electrical side may be missing.
-fn only_of_a_pmsm(signal: Signal) -> &'static str {
+/// What an axis must have for a signal that not every one has.
+fn only_where(signal: Signal) -> &'static str {
     match (signal.presence(), signal) {
         (Presence::WithCurrentLoop, Signal::SaturationVoltage) => "; only a PMSM has a voltage",
         (Presence::WithCurrentLoop, _) => "; only a PMSM has a current",
@@ -120,6 +120,8 @@ fn only_of_a_pmsm(signal: Signal) -> &'static str {
             Unit::Watt => "; only a PMSM has electrical power",
             _ => "; only a PMSM has a voltage",
         },
+        (Presence::WithInverter, _) => "; only an inverter with `[drive.inverter]` has losses",
+        (Presence::WithLink, _) => "; only a DC link with `[drive.link]` changes",
         _ => "",
     }
 }

@@ -24,17 +24,14 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
         (Name::InverterLoss, Signal::PowerInverter),
         (Name::BrakeEnergy, Signal::PowerBrake),
     ] {
-        // What no other axis has is not missed.
-        if !matches!(power, Signal::PowerInverter | Signal::PowerBrake) || channel(recording, power).is_ok() {
-            set.note(name, "J", energy(recording, power, rows));
-        }
+        set.note(name, "J", energy(recording, power, rows));
     }
-    if let Ok(link) = channel(recording, Signal::VoltageDcLink) {
-        let link = &link[rows.clone()];
-        for (name, of) in [(Name::DcLinkMin, f64::min as fn(f64, f64) -> f64), (Name::DcLinkMax, f64::max)] {
-            let found = link.iter().copied().reduce(of);
-            set.note(name, "V", found.ok_or(Absence::NothingRecorded { part: PART }));
-        }
+    for (name, of) in [(Name::DcLinkMin, f64::min as fn(f64, f64) -> f64), (Name::DcLinkMax, f64::max)] {
+        let found = channel(recording, Signal::VoltageDcLink).and_then(|link| {
+            let voltages = link[rows.clone()].iter().copied();
+            voltages.reduce(of).ok_or(Absence::NothingRecorded { part: "of the DC link's voltage" })
+        });
+        set.note(name, "V", found);
     }
 }
 
@@ -76,7 +73,7 @@ mod tests {
         assert!((set.value(Name::ElectricalEnergy).unwrap() - 20.0).abs() < 1e-10);
     }
 
-    /// Oracle: by hand. An axis without them has no such metrics, and misses none.
+    /// Oracle: by hand. An axis without them is told why it has no such metrics.
     #[test]
     fn inverter_and_link_are_measured_where_they_are_recorded() {
         let recording = Build::new(1_000, 1_000)
@@ -99,8 +96,14 @@ mod tests {
         let without = Build::new(1_000, 10).channel(Signal::PowerShaft, "W", |_| 1.0).finish();
         let mut set = MetricSet::default();
         note(&mut set, &Checked::of(&without), &(0..10));
-        for name in [Name::InverterLoss, Name::BrakeEnergy, Name::DcLinkMin, Name::DcLinkMax] {
-            assert!(set.get(name).is_none() && set.absence(name).is_none(), "{name}");
+        for (name, key) in [
+            (Name::InverterLoss, "[drive.inverter]"),
+            (Name::BrakeEnergy, "[drive.link]"),
+            (Name::DcLinkMin, "[drive.link]"),
+            (Name::DcLinkMax, "[drive.link]"),
+        ] {
+            let why = set.absence(name).unwrap().to_string();
+            assert!(set.get(name).is_none() && why.contains(key), "{name}: {why}");
         }
     }
 
