@@ -120,8 +120,8 @@ fn only_where(signal: Signal) -> &'static str {
             Unit::Watt => "; only a PMSM has electrical power",
             _ => "; only a PMSM has a voltage",
         },
-        (Presence::WithInverter, _) => "; only an inverter with `[drive.inverter]` has losses",
-        (Presence::WithLink, _) => "; only a DC link with `[drive.link]` changes",
+        (Presence::WithInverter, _) => "; only an inverter that is not ideal has losses",
+        (Presence::WithLink, _) => "; only a link with a capacitor of its own changes",
         _ => "",
     }
 }

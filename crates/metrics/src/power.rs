@@ -97,10 +97,10 @@ mod tests {
         let mut set = MetricSet::default();
         note(&mut set, &Checked::of(&without), &(0..10));
         for (name, key) in [
-            (Name::InverterLoss, "[drive.inverter]"),
-            (Name::BrakeEnergy, "[drive.link]"),
-            (Name::DcLinkMin, "[drive.link]"),
-            (Name::DcLinkMax, "[drive.link]"),
+            (Name::InverterLoss, "not ideal"),
+            (Name::BrakeEnergy, "a capacitor"),
+            (Name::DcLinkMin, "a capacitor"),
+            (Name::DcLinkMax, "a capacitor"),
         ] {
             let why = set.absence(name).unwrap().to_string();
             assert!(set.get(name).is_none() && why.contains(key), "{name}: {why}");
