@@ -110,6 +110,14 @@ pub enum Absence {
     },
 }
 
+impl Absence {
+    /// Whether the axis just lacks what few axes have: nobody misses the metric who did not ask for it.
+    #[must_use]
+    pub fn is_of_rare_equipment(&self) -> bool {
+        matches!(self, Self::NoChannel { channel } if matches!(channel.presence(), Presence::WithInverter | Presence::WithLink))
+    }
+}
+
 /// What an axis must have for a signal that not every one has.
 fn only_where(signal: Signal) -> &'static str {
     match (signal.presence(), signal) {

@@ -191,7 +191,12 @@ impl RunResult {
             parameters: run.parameters.into_iter().collect(),
             overrides: run.overrides,
             metrics: of_set(&metrics.run),
-            absent: metrics.run.absences().map(|(name, why)| (name.to_string(), why.to_string())).collect(),
+            absent: metrics
+                .run
+                .absences()
+                .filter(|(_, why)| !why.is_of_rare_equipment())
+                .map(|(name, why)| (name.to_string(), why.to_string()))
+                .collect(),
             moves: metrics.moves.iter().map(MoveResult::from).collect(),
             events: events.to_vec(),
             log: log.to_vec(),

@@ -1,5 +1,5 @@
 //! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step, and of function blocks,
-//! bus and drive in front of it; and where the time of a whole run goes.
+//! bus and drive in front of it; what each effect of real hardware costs; and where the time of a whole run goes.
 use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
@@ -10,7 +10,7 @@ use crate::workspace::{Workspace, run as run_command};
 /// [`Failure`] of the build or of the run.
 pub(crate) fn run(workspace: &Workspace, json: bool) -> Result<(), Failure> {
     let mut bench = workspace.cargo(["bench", "--quiet", "--package", "servobench-tests"]);
-    bench.args(["--bench", "closed_loop", "--bench", "run"]);
+    bench.args(["--bench", "closed_loop", "--bench", "hardware", "--bench", "run"]);
     match wheel::MUJOCO.ensure(workspace) {
         Ok(_) => {
             bench.args(["--features", "mujoco"]);
