@@ -103,6 +103,70 @@ fn shaft_power_is_effort_times_travel() {
     }
 }
 
+/// The feed axis with everything that motor and inverter may have, on a link that its brake fills.
+fn everything_on() -> String {
+    let (axis, _) = include_str!("../../../scenarios/feed-axis-move.toml").split_once("[limits]").unwrap();
+    axis.to_owned()
+        + r#"
+[[motor.cogging]]
+per_rev = 36
+amplitude = "25 mNm"
+[[motor.flux_harmonic]]
+order = 6
+d = 0.01
+q = -0.02
+[motor.iron_loss]
+speed = "3000 rpm"
+hysteresis = "6 W"
+eddy = "10 W"
+[motor.thermal]
+ambient = "30 degC"
+to_housing = "0.6 K/W"
+to_ambient = "1.1 K/W"
+winding_capacity = "6 J/K"
+housing_capacity = "90 J/K"
+[drive.inverter]
+modulation = "switching"
+carrier = "16 kHz"
+dead_time = "2 us"
+device_drop = "1 V"
+on_resistance = "30 mOhm"
+[drive.link]
+capacitance = "470 uF"
+source_resistance = "0.5 Ohm"
+mains_frequency = "50 Hz"
+brake = { resistance = "47 Ohm", on = "325 V", off = "323 V" }
+"#
+}
+
+/// Oracle: the first law over a whole run, from the mains to the shaft, and at every tick.
+#[test]
+fn the_energy_of_a_run_closes_with_every_effect() {
+    let recording = run(&everything_on());
+    let names = ["mains", "brake", "inverter", "electrical", "copper", "iron", "stored", "air_gap", "shaft"];
+    let all = names.map(|name| channel(&recording, &format!("power.{name}")));
+    let h = 1.0 / 16e3;
+    let [mains, brake, inverter, _, copper, iron, stored, air_gap, shaft] =
+        all.map(|power| power.iter().sum::<f64>() * h);
+    let throughput = all[7].iter().map(|power| power.abs()).sum::<f64>() * h;
+    let link = channel(&recording, "voltage.dc_link");
+    // The first row has no tick behind it, and the voltage of the mains.
+    let field = 0.5 * 470e-6 * (link[link.len() - 1].powi(2) - link[0].powi(2));
+    for part in [mains, brake, inverter, copper, iron, shaft] {
+        assert!(part > 0.1, "everything happens: {mains} {brake} {inverter} {copper} {iron} {stored} {shaft} J");
+    }
+    let left = mains - brake - inverter - copper - iron - stored - air_gap - field;
+    println!("{left:e} J of {throughput} J left at the motor, {:e} J to the shaft", air_gap - shaft);
+    assert!(left.abs() < 1e-9 * throughput, "{left} J");
+    // What the coupling adds is of second order in the tick.
+    assert!((left + air_gap - shaft).abs() < 1e-6 * throughput, "{} J of {throughput} J", air_gap - shaft);
+    for k in 0..recording.len() {
+        let [electrical, copper, iron, stored, air_gap] = [3, 4, 5, 6, 7].map(|part| all[part][k]);
+        let largest = [copper, iron, stored, air_gap].iter().fold(electrical.abs(), |most, one| most.max(one.abs()));
+        assert!((electrical - copper - iron - stored - air_gap).abs() <= 1e-12 * largest, "row {k}");
+    }
+}
+
 /// Motor and mechanics meet at different speeds, the one extrapolated, the other what it becomes: while nothing saturates,
 /// half the tick makes a quarter of it.
 #[test]
