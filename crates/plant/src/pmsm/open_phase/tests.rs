@@ -16,7 +16,7 @@ fn harmonics() -> Vec<FluxHarmonic> {
 }
 
 fn real(phase_resistance: Option<[f64; 3]>, flux_harmonics: Vec<FluxHarmonic>) -> RealMotor {
-    let effects = Effects { phase_resistance, flux_harmonics, ..Effects::default() };
+    let effects = Effects { flux_harmonics, phase_resistance, ..Effects::default() };
     RealMotor::new(&MOTOR, &effects, H).unwrap()
 }
 
