@@ -10,8 +10,8 @@
 use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
-use crate::{Demand, EffortLimits};
-use crate::{current, delay, filter, overload, velocity};
+use crate::{Blocks, Demand, EffortLimits};
+use crate::{current, delay, filter, overload, supervision, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
 
@@ -38,6 +38,8 @@ pub struct Sensors {
     pub feedback: Feedback,
     /// Stator current (A, peak).
     pub current: AlphaBeta,
+    /// DC link (V).
+    pub dc_link: f64,
     /// A rotation that somebody has worked out: where it is that of the angle that the firmware reads, it is taken from here.
     pub known_rotation: KnownRotation,
 }
@@ -97,6 +99,7 @@ pub struct State {
     operation: operating_point::State,
     /// Thermal loads of the motor and of the drive.
     loads: [overload::State; 2],
+    supervision: supervision::State,
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
@@ -124,6 +127,7 @@ impl State {
             current: current::State::default(),
             operation: operating_point::State::default(),
             loads: [overload::State::default(); 2],
+            supervision: supervision::State::default(),
             filtered_velocity: 0.0,
             last_position: None,
             closed: Closed::Position,
@@ -166,6 +170,12 @@ impl State {
         loads.into_iter().any(|(load, state)| state.is_reached && is_fault(load))
     }
 
+    /// What the supervision of motor and power stage has found since the power is on.
+    #[must_use]
+    pub const fn finding(&self) -> Option<supervision::Finding> {
+        self.supervision.found
+    }
+
     /// What the loops said at their last turn.
     #[must_use]
     pub const fn held(&self) -> &Held {
@@ -205,7 +215,7 @@ pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, se
                 return PowerCommand::Off;
             }
             if is_due {
-                current_loop(params, x, sensors, p.period(*every));
+                current_loop(params, &p.blocks, x, sensors, p.period(*every));
             }
             PowerCommand::Voltage(x.held.current.voltage)
         }
@@ -312,6 +322,9 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
+    if let Some(supervision) = &p.blocks.supervision {
+        watch_motion(supervision, x, sensors, h);
+    }
     let cogging = p.blocks.cogging.as_ref();
     let feedforward = cogging.map_or(x.held.feedforward, |cogging| {
         x.held.feedforward + cogging.effort(sensors.motor_position, x.filtered_velocity)
@@ -323,7 +336,8 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
             if params.operation.is_plain() && max_current >= params.max_current {
                 EffortLimits::both(params.max_effort())
             } else {
-                let params = current::Params { max_current, ..*params };
+                let max_voltage = voltage_limit(params, &p.blocks, sensors);
+                let params = current::Params { max_current, max_voltage, ..*params };
                 operating_point::step(&params, &mut x.operation, x.held.current.computed, h);
                 let omega_e = params.motor.electrical_ratio * x.filtered_velocity;
                 let envelope = Envelope::new(&params, &x.operation, omega_e);
@@ -369,8 +383,36 @@ fn thermal_limit(p: &Params, x: &mut State, most: f64, h: f64) -> f64 {
     limit
 }
 
+/// Largest voltage amplitude (V): that of the estimated DC link, or of the measured one.
 #[inline(always)]
-fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
+fn voltage_limit(p: &current::Params, blocks: &Blocks, sensors: &Sensors) -> f64 {
+    if blocks.measures_dc_link { current::voltage_limit(sensors.dc_link) } else { p.max_voltage }
+}
+
+#[cold]
+fn watch_motion(p: &supervision::Params, x: &mut State, sensors: &Sensors, h: f64) {
+    if x.closed == Closed::None {
+        x.supervision = supervision::State::default();
+        return;
+    }
+    let is_cut = x.held.effort.cut.is_some();
+    let input = supervision::Motion { velocity: x.filtered_velocity, dc_link: sensors.dc_link, is_cut };
+    supervision::watch_motion(p, &mut x.supervision, &input, h);
+}
+
+#[cold]
+fn watch_currents(p: &supervision::Params, x: &mut State, input: &current::Input, h: f64) {
+    let currents = supervision::Currents {
+        velocity: x.filtered_velocity,
+        q: x.held.current.current.q,
+        reference: input.reference.to_alpha_beta(input.rotor),
+        measured: input.current,
+    };
+    supervision::watch_currents(p, &mut x.supervision, &currents, h);
+}
+
+#[inline(always)]
+fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
     let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
     x.held.current_reference = wanted.clamp(-most, most);
@@ -388,7 +430,15 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
         )),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
-    x.held.current = current::step(p, &mut x.current, input, h);
+    if blocks.measures_dc_link {
+        let max_voltage = voltage_limit(p, blocks, sensors);
+        x.held.current = current::step(&current::Params { max_voltage, ..*p }, &mut x.current, input, h);
+    } else {
+        x.held.current = current::step(p, &mut x.current, input, h);
+    }
+    if let Some(supervision) = &blocks.supervision {
+        watch_currents(supervision, x, &input, h);
+    }
 }
 
 #[cfg(test)]

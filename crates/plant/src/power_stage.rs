@@ -177,6 +177,13 @@ impl PowerStage {
         self.synchronous().map_or_else(Default::default, Synchronous::link)
     }
 
+    /// Whether the DC link of a motor is empty.
+    #[inline(always)]
+    #[must_use]
+    pub fn link_is_empty(&self) -> bool {
+        self.synchronous().is_some_and(|synchronous| synchronous.link().0 <= 0.0)
+    }
+
     /// Leaves the powers of the motor out from now on.
     #[inline]
     pub fn leave_power_out(&mut self) {
