@@ -69,10 +69,10 @@ fn the_supervision_leaves_other_scenarios_as_they_are() {
 
 /// Law 6: what nobody looks for is an event at least.
 #[test]
-fn an_empty_link_and_a_lost_track_are_events() {
+fn a_collapsed_link_and_a_lost_track_are_events() {
     let sag = ["drive.link.sag.duration='0.5 s'", "drive.link.sag.depth=1", "limits={}"];
     let (_, said, _) = run("scenarios/hardware/dc-link-sag.toml", &sag);
-    assert!(said.contains("the DC link is empty"), "{said}");
+    assert!(said.contains("the DC link has less than half"), "{said}");
     let lost = ["motor.encoder.lost_track='cosine'", "motor.encoder.lost_at='0.01 s'", "limits={}"];
     let (_, said, _) = run("scenarios/hardware/sincos-amplitude.toml", &lost);
     assert!(said.contains("the motor encoder has an error"), "{said}");

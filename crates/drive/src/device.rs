@@ -128,6 +128,7 @@ pub struct Outputs {
 
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {
     power: PowerMemory,
     /// The mode that the master asks for and the one that is active.

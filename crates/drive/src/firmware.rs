@@ -7,6 +7,8 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod watch;
+
 use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
@@ -170,12 +172,6 @@ impl State {
         loads.into_iter().any(|(load, state)| state.is_reached && is_fault(load))
     }
 
-    /// What the supervision of motor and power stage has found since the power is on.
-    #[must_use]
-    pub const fn finding(&self) -> Option<supervision::Finding> {
-        self.supervision.found
-    }
-
     /// What the loops said at their last turn.
     #[must_use]
     pub const fn held(&self) -> &Held {
@@ -323,7 +319,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
     if let Some(supervision) = &p.blocks.supervision {
-        watch_motion(supervision, x, sensors, h);
+        watch::motion(supervision, x, sensors, h);
     }
     let cogging = p.blocks.cogging.as_ref();
     let feedforward = cogging.map_or(x.held.feedforward, |cogging| {
@@ -336,7 +332,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
             if params.operation.is_plain() && max_current >= params.max_current {
                 EffortLimits::both(params.max_effort())
             } else {
-                let max_voltage = voltage_limit(params, &p.blocks, sensors);
+                let max_voltage = watch::voltage_limit(params, &p.blocks, sensors);
                 let params = current::Params { max_current, max_voltage, ..*params };
                 operating_point::step(&params, &mut x.operation, x.held.current.computed, h);
                 let omega_e = params.motor.electrical_ratio * x.filtered_velocity;
@@ -383,34 +379,6 @@ fn thermal_limit(p: &Params, x: &mut State, most: f64, h: f64) -> f64 {
     limit
 }
 
-/// Largest voltage amplitude (V): that of the estimated DC link, or of the measured one.
-#[inline(always)]
-fn voltage_limit(p: &current::Params, blocks: &Blocks, sensors: &Sensors) -> f64 {
-    if blocks.measures_dc_link { current::voltage_limit(sensors.dc_link) } else { p.max_voltage }
-}
-
-#[cold]
-fn watch_motion(p: &supervision::Params, x: &mut State, sensors: &Sensors, h: f64) {
-    if x.closed == Closed::None {
-        x.supervision = supervision::State::default();
-        return;
-    }
-    let is_cut = x.held.effort.cut.is_some();
-    let input = supervision::Motion { velocity: x.filtered_velocity, dc_link: sensors.dc_link, is_cut };
-    supervision::watch_motion(p, &mut x.supervision, &input, h);
-}
-
-#[cold]
-fn watch_currents(p: &supervision::Params, x: &mut State, input: &current::Input, h: f64) {
-    let currents = supervision::Currents {
-        velocity: x.filtered_velocity,
-        q: x.held.current.current.q,
-        reference: input.reference.to_alpha_beta(input.rotor),
-        measured: input.current,
-    };
-    supervision::watch_currents(p, &mut x.supervision, &currents, h);
-}
-
 #[inline(always)]
 fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
@@ -430,14 +398,14 @@ fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &S
         )),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
-    if blocks.measures_dc_link {
-        let max_voltage = voltage_limit(p, blocks, sensors);
-        x.held.current = current::step(&current::Params { max_voltage, ..*p }, &mut x.current, input, h);
+    x.held.current = if blocks.measures_dc_link {
+        let max_voltage = watch::voltage_limit(p, blocks, sensors);
+        current::step(&current::Params { max_voltage, ..*p }, &mut x.current, input, h)
     } else {
-        x.held.current = current::step(p, &mut x.current, input, h);
-    }
+        current::step(p, &mut x.current, input, h)
+    };
     if let Some(supervision) = &blocks.supervision {
-        watch_currents(supervision, x, &input, h);
+        watch::currents(supervision, x, &input, h);
     }
 }
 

@@ -259,8 +259,8 @@ mod tests {
             (0.0, 0.0, Some(Finding::UnderVoltage)),
             (300.0, -97.1, Some(Finding::OverSpeed)),
         ] {
-            assert_eq!(of_motion(&p, Motion { dc_link, velocity, ..NONE }), found, "{dc_link} V, {velocity} rad/s");
-            assert_eq!(of_motion(&Params::default(), Motion { dc_link, velocity, ..NONE }), None, "off");
+            assert_eq!(of_motion(&p, Motion { velocity, dc_link, ..NONE }), found, "{dc_link} V, {velocity} rad/s");
+            assert_eq!(of_motion(&Params::default(), Motion { velocity, dc_link, ..NONE }), None, "off");
         }
     }
 

@@ -177,11 +177,11 @@ impl PowerStage {
         self.synchronous().map_or_else(Default::default, Synchronous::link)
     }
 
-    /// Whether the DC link of a motor is empty.
+    /// Whether the DC link has less than half of its voltage without load.
     #[inline(always)]
     #[must_use]
-    pub fn link_is_empty(&self) -> bool {
-        self.synchronous().is_some_and(|synchronous| synchronous.link().0 <= 0.0)
+    pub fn link_has_collapsed(&self) -> bool {
+        self.synchronous().is_some_and(Synchronous::link_has_collapsed)
     }
 
     /// Leaves the powers of the motor out from now on.

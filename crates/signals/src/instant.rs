@@ -78,8 +78,8 @@ pub struct Instant {
 /// What hardware says of itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Alarms {
-    /// The DC link is empty.
-    pub empty_link: bool,
+    /// The DC link has less than half of its voltage.
+    pub collapsed_link: bool,
     /// The encoder of the motor has found that its signals cannot be trusted.
     pub motor_encoder: bool,
     /// That of the load has.

@@ -6,7 +6,7 @@ use servobench_trace::{Event, Recorder};
 
 /// Who has an alarm, and what it says.
 const WORDS: [(&str, &str); 3] = [
-    ("DC link", "the DC link is empty: it does not give what motor and devices take"),
+    ("DC link", "the DC link has less than half of its voltage"),
     ("motor encoder", "the motor encoder has an error: its signals cannot be trusted"),
     ("load encoder", "the load encoder has an error: its signals cannot be trusted"),
 ];
@@ -35,9 +35,9 @@ impl AlarmWatch {
     #[cold]
     fn note(&mut self, t: f64, alarms: Alarms, recorder: &mut Recorder) {
         self.last = alarms;
-        let Alarms { empty_link, motor_encoder, load_encoder } = alarms;
+        let Alarms { collapsed_link, motor_encoder, load_encoder } = alarms;
         for ((watch, alarm), (source, words)) in
-            self.watches.iter_mut().zip([empty_link, motor_encoder, load_encoder]).zip(WORDS)
+            self.watches.iter_mut().zip([collapsed_link, motor_encoder, load_encoder]).zip(WORDS)
         {
             watch.tick(t, alarm.then_some(0.0), recorder, |start, end, is_last| {
                 Event::new(start, end, source, format!("{words}{}", Event::noted(is_last)))
@@ -63,10 +63,10 @@ mod tests {
         };
         let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
         let mut watch = AlarmWatch::default();
-        for (t, empty_link, motor_encoder) in
+        for (t, collapsed_link, motor_encoder) in
             [(0.0, false, false), (1.0, true, false), (2.0, true, true), (3.0, false, true)]
         {
-            watch.tick(t, Alarms { empty_link, motor_encoder, load_encoder: false }, &mut recorder);
+            watch.tick(t, Alarms { collapsed_link, motor_encoder, load_encoder: false }, &mut recorder);
         }
         watch.finish(7.0, &mut recorder);
         let events = recorder.finish().0.events;

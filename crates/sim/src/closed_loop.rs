@@ -171,7 +171,7 @@ impl ClosedLoop {
         now.temperatures = self.state.power.temperatures();
         now.inverter_loss = self.state.power.inverter_loss();
         (now.dc_link, now.link_power) = self.state.power.link();
-        now.alarms.empty_link = self.state.power.link_is_empty();
+        now.alarms.collapsed_link = self.state.power.link_has_collapsed();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 

@@ -180,6 +180,14 @@ impl Synchronous {
         (self.u_dc, self.inverter.as_ref().map_or_else(inverter::LinkPower::default, |inverter| inverter.link_power()))
     }
 
+    /// Whether the link has less than half of its voltage without load (assumed: drives give up somewhere between half and three quarters).
+    #[inline(always)]
+    pub(super) fn link_has_collapsed(&self) -> bool {
+        self.inverter
+            .as_ref()
+            .is_some_and(|inverter| inverter.link_voltage().is_some_and(|full| self.u_dc < 0.5 * full))
+    }
+
     /// Leaves the powers out from now on, unless a link has to supply them.
     pub(super) fn leave_power_out(&mut self) {
         if !self.inverter.as_ref().is_some_and(|inverter| inverter.has_link()) {

@@ -66,6 +66,11 @@ impl RealInverter {
         self.link.is_some()
     }
 
+    /// Voltage of the link without load (V).
+    pub(super) fn link_voltage(&self) -> Option<f64> {
+        self.link.as_ref().map(|(params, _)| params.voltage)
+    }
+
     /// The link supplies what the motor takes, `power` (W), and the devices, over a tick of `h` (s). Its voltage from now on is returned,
     /// if it changes.
     fn supply(&mut self, power: f64, h: f64) -> Option<f64> {
