@@ -1,7 +1,8 @@
 //! Why an axis is not available: the error codes that the drive (603Fh) and the link to it give, and the error register (1001h).
 //!
 //! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), and those of CiA 301 (table 26) for communication
-//! and for what is outside. Neither has one for a limit switch or for what the link finds: FF00h to FFFFh are the device's own.
+//! and for what is outside. For a motor phase that is open there is no code of its own: 3321h, an interrupted armature circuit, is the one
+//! of the output voltage (33xxh); drives use codes of their own beside it (Kollmorgen S300 2380h, ABB ACS580 3381h). Neither has one for a limit switch or for what the link finds: FF00h to FFFFh are the device's own.
 use core::fmt;
 
 /// Declares the error codes: number, who gives it, text, when.
@@ -63,10 +64,22 @@ const fn drive(class: u8) -> Source {
 error_codes! {
     LoadLevel = 0x2350, drive(CURRENT), "load level fault (I²t, thermal state)",
         "The I²t load of motor or drive was reached where its reaction is a fault";
+    DcLinkOverVoltage = 0x3210, drive(VOLTAGE), "DC link over-voltage",
+        "The measured DC link was above its threshold while the drive function was enabled";
     DcLinkUnderVoltage = 0x3220, drive(VOLTAGE), "DC link under-voltage",
-        "The power was gone while the drive function was enabled";
+        "The power was gone while the drive function was enabled, or the measured DC link below its threshold";
+    ArmatureInterrupted = 0x3321, drive(VOLTAGE), "armature circuit interrupted",
+        "A phase of the motor had no current that it was to have";
+    MotorBlocked = 0x7121, drive(PROFILE), "motor blocked",
+        "The motor stood although the loops were at their limit";
+    Commutation = 0x7122, drive(PROFILE), "motor error or commutation malfunction",
+        "The motor gained speed against its torque-producing current";
     IncrementalSensor = 0x7305, drive(PROFILE), "incremental sensor 1 fault",
-        "A velocity or an effort that is no number was measured";
+        "The encoder of the motor failed, or a velocity or an effort that is no number was measured";
+    IncrementalSensor2 = 0x7306, drive(PROFILE), "incremental sensor 2 fault",
+        "The encoder of the load failed";
+    Speed = 0x7310, drive(PROFILE), "speed",
+        "The motor was faster than its threshold";
     DriveTimeout = 0x8130, Source::Link, "drive time-out",
         "The drive was silent, or did not do what it was told, for longer than the drive time-out";
     FollowingError = 0x8611, drive(PROFILE), "following error",
@@ -132,9 +145,17 @@ mod tests {
     /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 4 for communication, bit 5 for what the profile has.
     #[test]
     fn the_register_tells_the_class() {
-        for (code, register) in
-            [(0, 0), (0x2350, 0x03), (0x3220, 0x05), (0x7305, 0x21), (0x8611, 0x21), (0x8700, 0x31), (0x9000, 0x01)]
-        {
+        for (code, register) in [
+            (0, 0),
+            (0x2350, 0x03),
+            (0x3220, 0x05),
+            (0x3321, 0x05),
+            (0x7122, 0x21),
+            (0x7305, 0x21),
+            (0x8611, 0x21),
+            (0x8700, 0x31),
+            (0x9000, 0x01),
+        ] {
             assert_eq!(ErrorCode::register(code), register, "{code:04X}h");
         }
     }

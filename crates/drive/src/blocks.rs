@@ -1,5 +1,5 @@
 //! Blocks of the firmware that answer real hardware; by default none of them is there.
-use crate::{cogging, filter, overload, schedule};
+use crate::{cogging, filter, overload, schedule, supervision};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{RATIO, VELOCITY};
 use servobench_config::{Bound, Measure, ParameterError, positive};
@@ -31,6 +31,10 @@ pub struct Blocks {
     pub max_speed: f64,
     /// Weight of the velocity reference in the proportional part of the velocity loop.
     pub reference_weight: f64,
+    /// What is watched of motor and power stage.
+    pub supervision: Option<supervision::Params>,
+    /// Whether the voltage limit is that of the measured DC link.
+    pub measures_dc_link: bool,
 }
 
 impl Default for Blocks {
@@ -43,6 +47,8 @@ impl Default for Blocks {
             schedule: None,
             max_speed: f64::INFINITY,
             reference_weight: 1.0,
+            supervision: None,
+            measures_dc_link: false,
         }
     }
 }
@@ -56,6 +62,9 @@ impl Blocks {
         }
         if let Some(schedule) = &self.schedule {
             schedule.check()?;
+        }
+        if let Some(supervision) = &self.supervision {
+            supervision.check()?;
         }
         Parameter::REFERENCE_WEIGHT.check(self.reference_weight)?;
         servobench_base::limit(Parameter::MAX_SPEED, self.max_speed).map(|_| ())

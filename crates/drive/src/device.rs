@@ -3,7 +3,8 @@
 //! Order of events in a [`step`]:
 //!
 //! 1. the frame that came is converted: drive units end here,
-//! 2. faults are looked for: from outside, of the power, of the encoder, missing frames, following error (603Fh),
+//! 2. faults are looked for: from outside, of the power, of the encoders, of motor and power stage, missing frames, following error
+//!    (603Fh),
 //! 3. the power state machine takes the transition that is due,
 //! 4. the mode of operation, or the stop that is asked for, says what the loops are to do,
 //! 5. limits cut it: ends of the axis, effort.
@@ -20,9 +21,11 @@
 //!
 //! # A lost encoder
 //!
-//! A velocity or an effort that is no number leaves nothing to close a loop by. Whatever the fault reaction option code (605Eh)
-//! says, the power stage is then switched off at once and the axis coasts; so it is when the encoder fails while another fault
-//! is being braked.
+//! An encoder of the motor that says that it has failed, a velocity or an effort that is no number leaves nothing to close a loop by.
+//! Whatever the fault reaction option code (605Eh) says, the power stage is then switched off at once and the axis coasts; so it is when
+//! the encoder fails while another fault is being braked, and where the current does not brake any more
+//! ([`Finding::leaves_no_brake`](crate::supervision::Finding::leaves_no_brake)). Without the encoder of the load the axis is braked by its
+//! velocity, which is the motor's.
 //!
 //! # Take-over
 //!
@@ -56,6 +59,7 @@ pub use window::{Dwell, Window};
 use crate::modes::interpolated::{Buffer, DataRecord};
 use crate::modes::stop::Ramp;
 use crate::modes::{Actual, Answer, Moment, Targets};
+use crate::supervision::Finding;
 use crate::{Demand, EffortLimits};
 use running::Running;
 use servobench_base::{ParamError, Setpoint};
@@ -101,6 +105,12 @@ pub struct Measured {
     pub index: Option<i64>,
     /// Whether an I²t load is reached that is a fault.
     pub is_overloaded: bool,
+    /// Whether the encoder of the motor says that it has failed.
+    pub motor_encoder_error: bool,
+    /// Whether that of the load does.
+    pub load_encoder_error: bool,
+    /// What the supervision of motor and power stage has found.
+    pub finding: Option<Finding>,
 }
 
 /// What a step gives.
@@ -118,6 +128,7 @@ pub struct Outputs {
 
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {
     power: PowerMemory,
     /// The mode that the master asks for and the one that is active.
@@ -147,8 +158,10 @@ pub struct State {
     /// What homing adds to every position from the next step on.
     shift: Option<f64>,
     fault: Option<Fault>,
-    /// Whether the encoder failed before or during the fault that the drive is in.
-    has_lost_encoder: bool,
+    /// Whether what leaves no loop to brake by came before or during the fault that the drive is in.
+    cannot_brake: bool,
+    /// Whether the encoder of the load failed.
+    has_lost_load: bool,
     beyond_following_error: Dwell,
     at_standstill: Dwell,
     statusword: Statusword,
@@ -189,7 +202,8 @@ impl State {
             origin: 0,
             shift: None,
             fault: None,
-            has_lost_encoder: false,
+            cannot_brake: false,
+            has_lost_load: false,
             beyond_following_error: Dwell::default(),
             at_standstill: Dwell::default(),
             statusword: Statusword::default(),
@@ -396,8 +410,9 @@ impl State {
             Deceleration::QuickStopRamp => Some(p.profile.quick_stop_deceleration),
             Deceleration::CurrentLimit | Deceleration::VoltageLimit => None,
         };
-        let closes_position =
-            deceleration.is_some() && !matches!(self.last, Demand::Velocity { .. } | Demand::Effort(_));
+        let closes_position = deceleration.is_some()
+            && !self.has_lost_load
+            && !matches!(self.last, Demand::Velocity { .. } | Demand::Effort(_));
         if self.stop.is_none_or(|(as_before, _)| as_before != how) {
             let ramp = Ramp::begin(&self.now.demanded, self.last.offsets(), deceleration, closes_position);
             self.stop = Some((how, ramp));

@@ -7,11 +7,13 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod watch;
+
 use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
 use crate::params::{Params, Stage};
-use crate::{Demand, EffortLimits};
-use crate::{current, delay, filter, overload, velocity};
+use crate::{Blocks, Demand, EffortLimits};
+use crate::{current, delay, filter, overload, supervision, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
 
@@ -38,6 +40,8 @@ pub struct Sensors {
     pub feedback: Feedback,
     /// Stator current (A, peak).
     pub current: AlphaBeta,
+    /// DC link (V).
+    pub dc_link: f64,
     /// A rotation that somebody has worked out: where it is that of the angle that the firmware reads, it is taken from here.
     pub known_rotation: KnownRotation,
 }
@@ -97,6 +101,7 @@ pub struct State {
     operation: operating_point::State,
     /// Thermal loads of the motor and of the drive.
     loads: [overload::State; 2],
+    supervision: supervision::State,
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
@@ -124,6 +129,7 @@ impl State {
             current: current::State::default(),
             operation: operating_point::State::default(),
             loads: [overload::State::default(); 2],
+            supervision: supervision::State::default(),
             filtered_velocity: 0.0,
             last_position: None,
             closed: Closed::Position,
@@ -205,7 +211,7 @@ pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, se
                 return PowerCommand::Off;
             }
             if is_due {
-                current_loop(params, x, sensors, p.period(*every));
+                current_loop(params, &p.blocks, x, sensors, p.period(*every));
             }
             PowerCommand::Voltage(x.held.current.voltage)
         }
@@ -312,6 +318,9 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
+    if let Some(supervision) = &p.blocks.supervision {
+        watch::motion(supervision, x, sensors, h);
+    }
     let cogging = p.blocks.cogging.as_ref();
     let feedforward = cogging.map_or(x.held.feedforward, |cogging| {
         x.held.feedforward + cogging.effort(sensors.motor_position, x.filtered_velocity)
@@ -323,7 +332,8 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
             if params.operation.is_plain() && max_current >= params.max_current {
                 EffortLimits::both(params.max_effort())
             } else {
-                let params = current::Params { max_current, ..*params };
+                let max_voltage = watch::voltage_limit(params, &p.blocks, sensors);
+                let params = current::Params { max_current, max_voltage, ..*params };
                 operating_point::step(&params, &mut x.operation, x.held.current.computed, h);
                 let omega_e = params.motor.electrical_ratio * x.filtered_velocity;
                 let envelope = Envelope::new(&params, &x.operation, omega_e);
@@ -370,7 +380,7 @@ fn thermal_limit(p: &Params, x: &mut State, most: f64, h: f64) -> f64 {
 }
 
 #[inline(always)]
-fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
+fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &Sensors, h: f64) {
     // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
     let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
     x.held.current_reference = wanted.clamp(-most, most);
@@ -388,7 +398,15 @@ fn current_loop(p: &current::Params, x: &mut State, sensors: &Sensors, h: f64) {
         )),
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
-    x.held.current = current::step(p, &mut x.current, input, h);
+    x.held.current = if blocks.measures_dc_link {
+        let max_voltage = watch::voltage_limit(p, blocks, sensors);
+        current::step(&current::Params { max_voltage, ..*p }, &mut x.current, input, h)
+    } else {
+        current::step(p, &mut x.current, input, h)
+    };
+    if let Some(supervision) = &blocks.supervision {
+        watch::currents(supervision, x, &input, h);
+    }
 }
 
 #[cfg(test)]

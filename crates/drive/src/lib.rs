@@ -18,6 +18,7 @@ pub mod modes;
 pub mod overload;
 mod params;
 pub mod schedule;
+pub mod supervision;
 pub mod unwrap;
 pub mod velocity;
 

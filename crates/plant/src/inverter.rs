@@ -14,6 +14,8 @@ mod params;
 mod switching;
 
 pub(crate) use averaged::Averaged;
+#[cfg(test)]
+pub(crate) use legs::vector;
 pub(crate) use legs::{Legs, legs};
 pub use link::{Brake, LinkParameter, LinkParams, LinkPower, LinkState, Sag};
 pub use params::{MOST_DEAD, Modulation, Parameter, Params};

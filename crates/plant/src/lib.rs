@@ -23,6 +23,7 @@ mod refusal;
 mod sensor;
 mod source;
 mod switches;
+mod wiring;
 
 pub use chain::{Body, Chain, ChainParameter, Link};
 pub use end_stops::{EndStopError, EndStopParameter, EndStops};
@@ -47,3 +48,4 @@ pub use sensor::{
 };
 pub use source::{IdealSource, SourceOutput};
 pub use switches::{SwitchPoint, SwitchReading, Switches};
+pub use wiring::{Phase, Swap, Wiring, WiringParameter};

@@ -5,6 +5,7 @@ mod synchronous;
 use crate::mechanics::BodyState;
 use crate::sensor::{CurrentSensor, CurrentSensorState};
 use crate::source::IdealSource;
+use crate::wiring::Wiring;
 use crate::{inverter, pmsm};
 use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand};
 use synchronous::Synchronous;
@@ -76,6 +77,17 @@ impl PowerStage {
     ) -> Result<Self, ParamError> {
         if let Stage::Synchronous(synchronous) = &mut self.0 {
             synchronous.put_on(inverter, link, h)?;
+        }
+        Ok(self)
+    }
+
+    /// With a motor that is connected like this; without a motor nothing is.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of the wiring that is out of its bound.
+    pub fn with_wiring(mut self, wiring: Wiring) -> Result<Self, ParamError> {
+        if let Stage::Synchronous(synchronous) = &mut self.0 {
+            synchronous.put_behind(wiring)?;
         }
         Ok(self)
     }
@@ -163,6 +175,13 @@ impl PowerStage {
     #[must_use]
     pub fn link(&self) -> (f64, inverter::LinkPower) {
         self.synchronous().map_or_else(Default::default, Synchronous::link)
+    }
+
+    /// Whether the DC link has less than half of its voltage without load.
+    #[inline(always)]
+    #[must_use]
+    pub fn link_has_collapsed(&self) -> bool {
+        self.synchronous().is_some_and(Synchronous::link_has_collapsed)
     }
 
     /// Leaves the powers of the motor out from now on.

@@ -17,6 +17,7 @@ mod program;
 mod requirements;
 mod sensors;
 mod setpoint;
+mod supervision;
 
 pub(crate) use axis::{Axis, Body, FrictionKeys, Mjcf};
 pub(crate) use bus::{Bus, BusFault, DriveInterpolation, FaultName};

@@ -89,6 +89,7 @@ mod tests {
             drive::BlockParameter::ALL,
             drive::overload::Parameter::ALL,
             drive::schedule::Parameter::ALL,
+            drive::supervision::Parameter::ALL,
         ];
         all.into_iter().flatten().copied()
     }

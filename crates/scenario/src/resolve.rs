@@ -31,6 +31,7 @@ mod program;
 mod requirements;
 mod rockwell;
 mod sensors;
+mod supervision;
 mod time;
 mod torque_filter;
 mod torque_limit;

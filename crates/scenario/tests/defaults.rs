@@ -128,6 +128,8 @@ order = 6
 speed = "3000 rpm"
 [motor.temperature]
 winding = "80 degC"
+[motor.connection]
+open = "a"
 [drive]
 model = "servo-16khz"
 "#;

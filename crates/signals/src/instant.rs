@@ -67,10 +67,23 @@ pub struct Instant {
     pub measured_position: [f64; 2],
     /// Currents of the motor as the current loop measured them at its last cycle.
     pub measured_current: Dq,
+    /// What hardware says of itself at this tick.
+    pub alarms: Alarms,
     /// Which limits bind at this tick.
     pub binds: PerLimit<bool>,
     /// In which share of the ticks since the last row they did.
     pub saturation: PerLimit<f64>,
+}
+
+/// What hardware says of itself.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Alarms {
+    /// The DC link has less than half of its voltage.
+    pub collapsed_link: bool,
+    /// The encoder of the motor has found that its signals cannot be trusted.
+    pub motor_encoder: bool,
+    /// That of the load has.
+    pub load_encoder: bool,
 }
 
 /// Something for each limit that is watched.

@@ -8,7 +8,7 @@ mod signal;
 mod unit;
 
 pub use equipment::{Amplifier, Equipment, Erring, Motor, MotorEffects, Presence, Rates, Writer};
-pub use instant::{Instant, PerLimit};
+pub use instant::{Alarms, Instant, PerLimit};
 pub use selection::{NotRecorded, Selection};
 pub use signal::{Signal, UnknownSignal, write_row};
 pub use unit::Unit;

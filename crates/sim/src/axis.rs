@@ -1,5 +1,6 @@
 //! One axis: its closed loop, what acts on it from outside, and what is recorded of it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use crate::alarm_watch::AlarmWatch;
 use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::external::External;
 use crate::joint_watch::JointWatch;
@@ -29,6 +30,7 @@ pub(crate) struct Axis {
     ticks_to_row: u32,
     limits: LimitWatch,
     joints: JointWatch,
+    alarms: AlarmWatch,
 }
 
 /// An axis at a tick, the mechanics apart, which remember that tick themselves.
@@ -39,6 +41,7 @@ pub(crate) struct Saved {
     ticks_to_row: u32,
     limits: LimitWatch,
     joints: JointWatch,
+    alarms: AlarmWatch,
     mark: Mark,
 }
 
@@ -54,8 +57,8 @@ impl Axis {
     pub(crate) fn new(closed_loop: ClosedLoop, wanted: Selection, recorder: Recorder, record_every: u32) -> Self {
         let (external, mut now) = (External::default(), Instant::default());
         closed_loop.sample(&external, &mut now);
-        let (limits, joints) = (LimitWatch::default(), JointWatch::default());
-        Self { closed_loop, external, now, wanted, recorder, record_every, ticks_to_row: 0, limits, joints }
+        let (limits, joints, alarms) = (LimitWatch::default(), JointWatch::default(), AlarmWatch::default());
+        Self { closed_loop, external, now, wanted, recorder, record_every, ticks_to_row: 0, limits, joints, alarms }
     }
 
     /// The same axis with nothing recorded of it.
@@ -77,6 +80,7 @@ impl Axis {
         let now = &mut self.now;
         let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
         self.limits.tick(time, &now.binds, cut, &mut self.recorder);
+        self.alarms.tick(time, now.alarms, &mut self.recorder);
         self.joints.tick(time, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
@@ -125,6 +129,7 @@ impl Axis {
             ticks_to_row: self.ticks_to_row,
             limits: self.limits.clone(),
             joints: self.joints.clone(),
+            alarms: self.alarms.clone(),
             mark: self.recorder.mark(time),
         })
     }
@@ -138,6 +143,7 @@ impl Axis {
         (self.external, self.now, self.ticks_to_row) = (saved.external, saved.now, saved.ticks_to_row);
         self.limits.clone_from(&saved.limits);
         self.joints.clone_from(&saved.joints);
+        self.alarms.clone_from(&saved.alarms);
         self.recorder.rewind(&saved.mark);
         Ok(())
     }
@@ -159,6 +165,7 @@ impl Axis {
         self.closed_loop.mechanics.end();
         self.note_log(present);
         self.limits.finish(end, &mut self.recorder);
+        self.alarms.finish(end, &mut self.recorder);
         self.joints.finish(end, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
             network.finish(end, *delay, &mut self.recorder);

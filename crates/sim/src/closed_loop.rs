@@ -171,6 +171,7 @@ impl ClosedLoop {
         now.temperatures = self.state.power.temperatures();
         now.inverter_loss = self.state.power.inverter_loss();
         (now.dc_link, now.link_power) = self.state.power.link();
+        now.alarms.collapsed_link = self.state.power.link_has_collapsed();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 
@@ -198,6 +199,7 @@ impl ClosedLoop {
             return PowerCommand::Output(0.0);
         };
         let reading = control.motor_encoder.read(motor);
+        now.alarms.motor_encoder = reading.error;
         if control.motor_encoder.encoder.errs() {
             now.measured_position[0] = direction * self.transmission * reading.position;
         }
@@ -208,7 +210,8 @@ impl ClosedLoop {
             feedback: match &mut control.load_encoder {
                 None => Feedback::Motor,
                 Some(input) => {
-                    let position = input.read(load).position;
+                    let Reading { position, error, .. } = input.read(load);
+                    now.alarms.load_encoder = error;
                     if input.encoder.errs() {
                         now.measured_position[1] = direction * position;
                     }
@@ -216,6 +219,7 @@ impl ClosedLoop {
                 }
             },
             current: self.state.power.measured_current(motor),
+            dc_link: now.dc_link,
             known_rotation: self.state.power.rotation(),
         };
         let Control { params, state, .. } = control;
@@ -247,6 +251,8 @@ impl ClosedLoop {
                     effort_is_cut: state.held().effort.cut.is_some(),
                     following_error: state.following_error(params, &sensors),
                     is_overloaded: state.is_overloaded(params),
+                    encoder_errors: [now.alarms.motor_encoder, now.alarms.load_encoder],
+                    finding: state.finding(),
                     switches,
                 };
                 let t = self.base_rate.time(Tick(k));

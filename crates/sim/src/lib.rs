@@ -3,6 +3,7 @@
 //! `machine::Machine::tick` is the whole loop in one function, in execution order, whoever steps it: a run, a co-simulation, or an
 //! external simulation through a [`Stepper`].
 
+mod alarm_watch;
 mod axis;
 mod bench;
 mod closed_loop;

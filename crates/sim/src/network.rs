@@ -25,6 +25,7 @@ use reference::DelayedReference;
 use servobench_base::{Countdown, Divider, Setpoint, Tick};
 use servobench_cia402::{Commands, Mode};
 use servobench_drive::modes::interpolated::serial::Port;
+use servobench_drive::supervision::Finding;
 use servobench_drive::{Demand, EffortLimits, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
@@ -161,6 +162,10 @@ pub(crate) struct Measurement {
     pub(crate) following_error: f64,
     /// Whether an I²t load is reached that is a fault.
     pub(crate) is_overloaded: bool,
+    /// Whether the encoders of motor and load say that they have failed.
+    pub(crate) encoder_errors: [bool; 2],
+    /// What the supervision of motor and power stage has found.
+    pub(crate) finding: Option<Finding>,
     /// The switches.
     pub(crate) switches: SwitchReading,
 }
@@ -203,6 +208,9 @@ impl Network {
             home: measurement.switches.home,
             index: self.index.take(),
             is_overloaded: measurement.is_overloaded,
+            motor_encoder_error: measurement.encoder_errors[0],
+            load_encoder_error: measurement.encoder_errors[1],
+            finding: measurement.finding,
         };
         let inputs = device::Inputs { frame: frame.as_ref(), measured, fault: None, main_voltage: true };
         let device::Outputs { demand, effort_limits, .. } = device::step(params, state, &inputs);

@@ -39,6 +39,8 @@ pub enum NotAnalysed {
     Fmus,
     /// Sensors are late, or the commutation is off: what is analysed is the loop with sensors that are not.
     LateSensors,
+    /// The motor is connected wrongly: what is analysed is the loop with a cable that is right.
+    Wiring,
     /// The poles could not be computed.
     Failed(stability::StabilityError),
 }
@@ -60,6 +62,9 @@ impl Display for NotAnalysed {
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
             Self::LateSensors => f.write_str(
                 "delays of the sensors and an error of the commutation are not analysed; the loop without them is",
+            ),
+            Self::Wiring => f.write_str(
+                "swapped wires and a lost phase of the motor are not analysed; the loop with a cable that is right is",
             ),
             Self::Failed(error) => error.fmt(f),
         }
@@ -121,6 +126,8 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal)).then_some(NotAnalysed::Fmus)
     };
     let without = without.or_else(|| sensors_are_late(&scenario.actuator).then_some(NotAnalysed::LateSensors));
+    let is_wrong = matches!(&scenario.actuator, Actuator::Pmsm { wiring, .. } if !wiring.is_right());
+    let without = without.or(is_wrong.then_some(NotAnalysed::Wiring));
     Ok(Ok((model, without)))
 }
 

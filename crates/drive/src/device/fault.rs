@@ -1,4 +1,5 @@
 //! What sends the drive into its fault reaction.
+use crate::supervision::Finding;
 use servobench_cia402::ErrorCode;
 
 /// A fault, with the code that the profile gives it (603Fh; IEC 61800-7-201, error codes).
@@ -8,8 +9,12 @@ pub enum Fault {
     MainsMissing,
     /// The I²t load of motor or drive was reached.
     Overload,
-    /// A velocity or an effort that is no number was measured.
+    /// The encoder of the motor failed, or a velocity or an effort that is no number was measured.
     Encoder,
+    /// The encoder of the load failed.
+    LoadEncoder,
+    /// Motor or power stage are not as they should be.
+    Supervision(Finding),
     /// More cycles without a frame than the drive bridges.
     FramesMissing,
     /// The following error was outside its window (6065h) for longer than its time-out (6066h).
@@ -20,16 +25,34 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault that the drive finds itself.
-    pub const OWN: [Self; 5] =
-        [Self::MainsMissing, Self::Overload, Self::Encoder, Self::FramesMissing, Self::FollowingError];
+    pub const OWN: [Self; 12] = [
+        Self::MainsMissing,
+        Self::Overload,
+        Self::Encoder,
+        Self::LoadEncoder,
+        Self::Supervision(Finding::OverVoltage),
+        Self::Supervision(Finding::UnderVoltage),
+        Self::Supervision(Finding::LostPhase),
+        Self::Supervision(Finding::Stall),
+        Self::Supervision(Finding::Commutation),
+        Self::Supervision(Finding::OverSpeed),
+        Self::FramesMissing,
+        Self::FollowingError,
+    ];
 
     /// Value of 603Fh.
     #[must_use]
     pub const fn code(self) -> u16 {
         let code = match self {
-            Self::MainsMissing => ErrorCode::DcLinkUnderVoltage,
+            Self::MainsMissing | Self::Supervision(Finding::UnderVoltage) => ErrorCode::DcLinkUnderVoltage,
             Self::Overload => ErrorCode::LoadLevel,
             Self::Encoder => ErrorCode::IncrementalSensor,
+            Self::LoadEncoder => ErrorCode::IncrementalSensor2,
+            Self::Supervision(Finding::OverVoltage) => ErrorCode::DcLinkOverVoltage,
+            Self::Supervision(Finding::LostPhase) => ErrorCode::ArmatureInterrupted,
+            Self::Supervision(Finding::Stall) => ErrorCode::MotorBlocked,
+            Self::Supervision(Finding::Commutation) => ErrorCode::Commutation,
+            Self::Supervision(Finding::OverSpeed) => ErrorCode::Speed,
             Self::FramesMissing => ErrorCode::SyncController,
             Self::FollowingError => ErrorCode::FollowingError,
             Self::External(code) => return code,

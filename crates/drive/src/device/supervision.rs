@@ -1,12 +1,13 @@
 //! What the drive watches: faults and standstill.
 use super::{CycleEvent, Fault, Inputs, Measured, Params, Running, State};
 use crate::Demand;
+use crate::supervision::Finding;
 use servobench_cia402::{FaultReactionOption, Mode, PowerParams, PowerState, Transition};
 
 impl Measured {
     /// Whether there is something to close a loop by.
     const fn is_valid(&self) -> bool {
-        self.velocity.is_finite() && self.effort.is_finite()
+        self.velocity.is_finite() && self.effort.is_finite() && !self.motor_encoder_error
     }
 }
 
@@ -26,6 +27,10 @@ impl State {
             Some(Fault::MainsMissing)
         } else if !u.measured.is_valid() {
             Some(Fault::Encoder)
+        } else if u.measured.load_encoder_error {
+            Some(Fault::LoadEncoder)
+        } else if let Some(finding) = u.measured.finding.filter(|_| is_enabled) {
+            Some(Fault::Supervision(finding))
         } else if is_enabled && u.measured.is_overloaded {
             Some(Fault::Overload)
         } else if lacks_frames {
@@ -35,10 +40,11 @@ impl State {
         }
     }
 
-    /// How the axis stops: by the option codes, but for a lost encoder, which leaves no loop to brake by.
-    pub(super) const fn reactions(&mut self, p: &Params, measured: &Measured) -> PowerParams {
-        self.has_lost_encoder |= !measured.is_valid();
-        if self.has_lost_encoder {
+    /// How the axis stops: by the option codes, but for what leaves no loop to brake by.
+    pub(super) fn reactions(&mut self, p: &Params, measured: &Measured) -> PowerParams {
+        self.cannot_brake |= !measured.is_valid() || measured.finding.is_some_and(Finding::leaves_no_brake);
+        self.has_lost_load |= measured.load_encoder_error;
+        if self.cannot_brake {
             PowerParams { fault_reaction: FaultReactionOption::Disable, ..p.power }
         } else {
             p.power
@@ -53,7 +59,7 @@ impl State {
                 found
             }
             PowerState::SwitchOnDisabled => {
-                (self.fault, self.has_lost_encoder) = (None, false);
+                (self.fault, self.cannot_brake, self.has_lost_load) = (None, false, false);
                 None
             }
             _ => None,

@@ -264,3 +264,49 @@ fn the_velocity_loop_knows_what_the_speed_leaves() {
         assert_eq!(x.held.references, envelope.currents(&params, left));
     }
 }
+
+/// Oracle: U/√3 of the link that is measured, at each cycle; without the block it is that of the estimate.
+#[test]
+fn the_voltage_limit_may_be_that_of_the_measured_link() {
+    for (measures_dc_link, dc_link, limit) in
+        [(true, 137.0, 137.0 / 3.0_f64.sqrt()), (true, 0.0, 0.0), (false, 137.0, 300.0)]
+    {
+        let p = Params { blocks: crate::Blocks { measures_dc_link, ..crate::Blocks::default() }, ..synchronous() };
+        let mut x = at_rest(&p);
+        let sensors = Sensors { motor_velocity: Some(-100.0), dc_link, ..Sensors::default() };
+        for k in 0..400 {
+            step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
+            assert!(x.held.current.computed.magnitude() <= limit * (1.0 + 1e-12), "{k}: {:?}", x.held.current);
+        }
+        assert!((x.held.current.computed.magnitude() - limit).abs() < 1e-9, "{limit}: {:?}", x.held.current);
+        assert!(x.held.current.saturated);
+    }
+}
+
+/// A finding stays until the power goes off, and changes nothing of what the loops do.
+#[test]
+fn a_finding_is_told_until_the_power_goes_off() {
+    use crate::supervision::{Finding, Params as Supervision, Stall};
+    let stall = Some(Stall { speed: 0.1, time: 17e-3 });
+    let supervision = Some(Supervision { undervoltage: Some(200.0), stall, ..Supervision::default() });
+    let blocks = crate::Blocks { supervision, ..crate::Blocks::default() };
+    let (watched, plain) = (Params { blocks, ..synchronous() }, synchronous());
+    let (mut x, mut y) = (at_rest(&watched), at_rest(&plain));
+    let demand = Demand::position(Setpoint::at_rest(1e3));
+    for k in 0..16_000_u32 {
+        // It stands although it is asked for all; the link sags for a moment in between.
+        let dc_link = if k == 12_000 { 150.0 } else { 540.0 };
+        let sensors = Sensors { motor_velocity: Some(0.0), dc_link, ..Sensors::default() };
+        let commands = [
+            step(&watched, &mut x, &demand, EffortLimits::NONE, &sensors),
+            step(&plain, &mut y, &demand, EffortLimits::NONE, &sensors),
+        ];
+        assert!(commands[0] == commands[1] && x.held == y.held, "{k}");
+        // 136 cycles of the velocity loop, the first of which has not seen a cut yet: the one at tick 2·136.
+        assert_eq!(x.finding(), (k >= 272).then_some(Finding::Stall), "{k}: what was found first");
+    }
+    for _ in 0..8 {
+        step(&watched, &mut x, &Demand::Off, EffortLimits::NONE, &Sensors::default());
+    }
+    assert_eq!(x.finding(), None, "and without power nothing is looked for");
+}

@@ -135,6 +135,11 @@ impl RealMotor {
         self.effects.vary().then_some(Varying { params, harmonics, phases, series })
     }
 
+    /// What a winding of another kind has of the same.
+    pub(super) fn harmonics_and_phases(&self) -> (&[FluxHarmonic], PhaseMatrix) {
+        (&self.effects.flux_harmonics, self.phases)
+    }
+
     /// What acts on the rotor over a tick with what the `winding` does in it, and the powers. The currents go from the first of `x` to the
     /// second one.
     pub(crate) fn on_the_rotor(&mut self, p: &Params, winding: Output, x: [State; 2], travel: Travel) -> Output {

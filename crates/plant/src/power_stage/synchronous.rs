@@ -4,6 +4,7 @@ mod real;
 
 use crate::mechanics::BodyState;
 use crate::sensor::CurrentSensorState;
+use crate::wiring::{Cable, Wiring};
 use crate::{inverter, pmsm};
 use real::RealInverter;
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError};
@@ -36,6 +37,8 @@ pub(super) struct Synchronous {
     inverter: Option<Box<RealInverter>>,
     /// The current sensors, where they err.
     sensor: Option<Box<CurrentSensorState>>,
+    /// The cable, where it is not as it should be.
+    cable: Option<Box<Cable>>,
 }
 
 impl Synchronous {
@@ -57,6 +60,7 @@ impl Synchronous {
             effects: None,
             inverter: None,
             sensor: None,
+            cable: None,
         })
     }
 
@@ -92,6 +96,15 @@ impl Synchronous {
         self.sensor = Some(Box::new(sensor));
     }
 
+    /// Behind a cable that is like this.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the parameter of it that is out of its bound.
+    pub(super) fn put_behind(&mut self, wiring: Wiring) -> Result<(), ParamError> {
+        self.cable = if wiring.is_right() { None } else { Some(Box::new(Cable::new(wiring)?)) };
+        Ok(())
+    }
+
     /// Brings the rotor to `motor`, and gives its electrical angle.
     #[inline(always)]
     pub(super) fn turn_to(&mut self, motor: BodyState) -> ElectricalAngle {
@@ -105,6 +118,9 @@ impl Synchronous {
     pub(super) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         let angle = self.turn_to(motor);
         let rotor = self.rotor.rotation();
+        if self.cable.is_some() {
+            return self.measured_at_the_legs(angle);
+        }
         match &mut self.sensor {
             None => self.state.current.to_alpha_beta(rotor),
             Some(sensor) => sensor.read(self.state.current, angle, rotor),
@@ -164,6 +180,14 @@ impl Synchronous {
         (self.u_dc, self.inverter.as_ref().map_or_else(inverter::LinkPower::default, |inverter| inverter.link_power()))
     }
 
+    /// Whether the link has less than half of its voltage without load (assumed: drives give up somewhere between half and three quarters).
+    #[inline(always)]
+    pub(super) fn link_has_collapsed(&self) -> bool {
+        self.inverter
+            .as_ref()
+            .is_some_and(|inverter| inverter.link_voltage().is_some_and(|full| self.u_dc < 0.5 * full))
+    }
+
     /// Leaves the powers out from now on, unless a link has to supply them.
     pub(super) fn leave_power_out(&mut self) {
         if !self.inverter.as_ref().is_some_and(|inverter| inverter.has_link()) {
@@ -176,7 +200,7 @@ impl Synchronous {
     pub(super) fn advance(&mut self, wanted: AlphaBeta, motor: BodyState, h: f64) -> f64 {
         let mean_speed = self.mean_speed(motor);
         self.last_speed = motor.velocity;
-        if self.effects.is_some() || self.inverter.is_some() {
+        if self.effects.is_some() || self.inverter.is_some() || self.cable.is_some() {
             return self.advance_real(wanted, pmsm::Travel { position: motor.position, speed: mean_speed }, h);
         }
         let given = inverter::output(wanted, self.u_dc);
@@ -209,6 +233,9 @@ impl Synchronous {
             let travel = pmsm::Travel { position: motor.position, speed: self.mean_speed(motor) };
             output = self.rest(output, travel, h);
         }
+        if let Some(cable) = &mut self.cable {
+            cable.rest();
+        }
         self.power = self.power.map(|_| output.power);
         self.state = pmsm::State::default();
         (self.last_speed, self.shortens, self.voltage) = (motor.velocity, false, Dq::default());
@@ -221,3 +248,6 @@ fn is_shorter(given: AlphaBeta, wanted: AlphaBeta) -> bool {
     let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
     given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! `[drive]`: the firmware.
 use super::inverter::{Inverter, Link};
+use super::supervision::Supervision;
 use crate::field::{Either, EitherMeasure};
 use crate::file::{CoggingHarmonic, CurrentSensor, DeadTimeCompensation, GainSchedule, I2t, LoadEncoder, TorqueFilter};
 use crate::list::{Automatic, Many, Share};
@@ -71,6 +72,8 @@ table! {
         gain_schedule: GainSchedule = (),
         /// I²t of motor and drive; default: none.
         i2t: I2t = (),
+        /// What the drive watches of motor and power stage; default: nothing.
+        supervision: Supervision = (),
         /// Feedforward; default: none.
         feedforward: Feedforward = (),
         /// What the firmware believes of the axis; default: the truth.
@@ -109,6 +112,8 @@ table! {
         field_weakening_share: f64 = operating_point::Parameter::SHARE,
         /// default: none.
         field_weakening_feedback: f64 = operating_point::Parameter::FEEDBACK,
+        /// Whether the voltage limit is that of the measured DC link, not of the estimated one; default: false.
+        measured_dc_link: bool = (),
         /// Compensation of the inverter's dead time; default: none.
         dead_time_compensation: DeadTimeCompensation = (),
         /// Sensors of the current; default: without error.

@@ -1,7 +1,7 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
 use crate::file::Encoder;
-use crate::file::motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
+use crate::file::motor_effects::{Cogging, Connection, FluxHarmonic, IronLoss, Temperature, Thermal};
 use crate::list::Many;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -75,6 +75,8 @@ table! {
         temperature: Temperature = (),
         /// How the losses warm them; without it the temperature stays.
         thermal: Thermal = (),
+        /// How it is connected to the inverter; default: as it should be.
+        connection: Connection = (),
         /// Encoder on the motor; default: ideal.
         encoder: Encoder = (),
     }

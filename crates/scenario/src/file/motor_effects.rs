@@ -1,8 +1,10 @@
 //! Parts of `[motor]`: what a real one does beside its equations.
+use crate::simple::OneOf;
 use crate::table::table;
 use servobench_plant::pmsm::{
     CoggingParameter, FluxHarmonic as Harmonic, FluxHarmonicParameter, IronLossParameter, TemperatureParameter,
 };
+use servobench_plant::{Phase, Swap, WiringParameter};
 
 table! {
     /// A harmonic of the cogging: torque or force F·sin(n·x + φ) on the rotor, with or without current. Give its order n in one
@@ -30,6 +32,18 @@ table! {
         q: f64 = FluxHarmonicParameter::Q,
         /// default: 0.
         phase: f64 = FluxHarmonicParameter::PHASE,
+    }
+}
+
+table! {
+    /// Cable between inverter and motor, where it is not as it should be: docs/faults.md.
+    pub(crate) struct Connection {
+        /// Two phases that are exchanged; default: none.
+        swapped: Swap = OneOf,
+        /// Phase of the motor that is lost: no current flows in it any more; default: none.
+        open: Phase = OneOf,
+        /// default: 0.
+        open_at: f64 = WiringParameter::OPEN_AT,
     }
 }
 

@@ -3,7 +3,7 @@ use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Alternative, one_of, torque_filter};
+use crate::resolve::{Alternative, one_of, supervision, torque_filter};
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::cogging::{self, Harmonic};
 use servobench_drive::current::dead_time;
@@ -37,6 +37,11 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
     }
     let [motor_load, drive_load] = loads(drive, known, report);
     let (cogging, schedule) = (cogging(drive, known, report), schedule(drive, report));
+    let supervision = supervision::resolve(drive, known, report);
+    let measures_dc_link = match drive.current.optional()? {
+        Some(current) => current.measured_dc_link.optional()?.copied().unwrap_or(false),
+        None => false,
+    };
     Ok(Blocks {
         filters: filters?,
         cogging: cogging?,
@@ -45,6 +50,8 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         schedule: schedule?,
         max_speed: max_speed?,
         reference_weight: reference_weight?,
+        supervision: supervision?,
+        measures_dc_link,
     })
 }
 

@@ -94,9 +94,10 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let drive = Drive { params, position_feedback, estimate, current_tuning, current_sensor };
     match known.motor? {
         Motor::Prescribed => None,
-        Motor::Pmsm { motor, effects, encoder, .. } => Some(Actuator::Pmsm {
+        Motor::Pmsm { motor, effects, wiring, encoder, .. } => Some(Actuator::Pmsm {
             motor: *motor,
             effects: effects.clone(),
+            wiring: *wiring,
             encoder: *encoder,
             dc_link: dc_link?,
             inverter: inverter.ok()?,

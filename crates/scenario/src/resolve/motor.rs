@@ -1,8 +1,8 @@
 //! `[motor]`: one set of parameters from whichever a data sheet gives.
 use crate::diagnostic::Report;
-use crate::field::{Either, Slot};
+use crate::field::{Either, Reported, Slot};
 use servobench_base::{Coordinate, Dq};
-use servobench_plant::{Encoder, IdealSource, SourceOutput, pmsm};
+use servobench_plant::{Encoder, IdealSource, SourceOutput, Wiring, pmsm};
 
 use crate::file;
 use crate::file::MotorKind;
@@ -18,6 +18,7 @@ pub(super) enum Motor {
     Pmsm {
         motor: pmsm::Params,
         effects: Box<pmsm::Effects>,
+        wiring: Wiring,
         encoder: Encoder,
         max_current: f64,
     },
@@ -50,6 +51,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
         ("phase_resistance", motor.phase_resistance.span()),
         ("temperature", motor.temperature.span()),
         ("thermal", motor.thermal.span()),
+        ("connection", motor.connection.span()),
     ];
     let ideal: &Keys<'_> = &[("gain", motor.gain.span()), ("limit", motor.limit.span())];
     let encoder = encoder(&motor.encoder, report);
@@ -88,7 +90,18 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
     };
     let effects = Box::new(motor_effects::resolve(motor, &params, report).ok()?);
     let encoder = sensors::with_commutation(encoder?, &motor.encoder, params.electrical_ratio).ok()?;
-    Some(Motor::Pmsm { motor: params, effects, encoder, max_current: max_current? })
+    let wiring = wiring(motor, report).ok()?;
+    Some(Motor::Pmsm { motor: params, effects, wiring, encoder, max_current: max_current? })
+}
+
+fn wiring(motor: &file::Motor, report: &mut Report) -> Result<Wiring, Reported> {
+    let Some(given) = motor.connection.optional()? else { return Ok(Wiring::default()) };
+    if let (Some(span), None) = (given.open_at.span(), given.open.span()) {
+        report.error(span, "`open_at` is when a phase is lost, and none is", "give `open`, or leave it out");
+        return Err(Reported);
+    }
+    let at = given.open_at.optional()?.copied().unwrap_or(0.0);
+    Ok(Wiring { swapped: given.swapped.optional()?.copied(), open: given.open.optional()?.map(|phase| (*phase, at)) })
 }
 
 /// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.

@@ -1,7 +1,7 @@
 //! What moves the axis: the part of the plant that a drive commands, and the drive that goes with it.
 use super::drive::Drive;
 use servobench_drive::Stage;
-use servobench_plant::{Encoder, IdealSource, inverter, pmsm};
+use servobench_plant::{Encoder, IdealSource, Wiring, inverter, pmsm};
 
 /// What moves the axis, and what commands that.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,8 @@ pub enum Actuator {
         motor: pmsm::Params,
         /// What it does beside its equations.
         effects: Box<pmsm::Effects>,
+        /// How it is connected to the inverter.
+        wiring: Wiring,
         /// Encoder on the motor.
         encoder: Encoder,
         /// DC-link voltage of the inverter (V).

@@ -53,3 +53,28 @@ fn a_schedule_goes_up_and_a_p_loop_follows_its_reference() {
     let nine = "[[drive.cogging]]\norder = 12\namplitude = \"0.02 Nm\"\n".repeat(9);
     says(&with(&nine), &["more than 8 harmonics"]);
 }
+
+/// On the axis of the other tests, over a bus.
+fn supervised(keys: &str) -> Vec<String> {
+    with(&format!("[bus]\ncycle = \"1 ms\"\nunits = {{ drive = 1, axis = \"1 um\" }}\n[drive.supervision]\n{keys}"))
+}
+
+#[test]
+fn a_supervision_needs_somebody_to_tell_and_thresholds_in_order() {
+    let all = "undervoltage = \"200 V\"\novervoltage = \"400 V\"\noverspeed = \"6500 rpm\"\n\
+        commutation = { speed = \"200 rpm\", current = \"4 Arms\" }\nstall = { speed = \"5 rpm\", time = \"0.2 s\" }\n\
+        phase_loss = { current = \"1 Arms\", time = \"10 ms\" }";
+    assert_eq!(supervised(all), [""; 0]);
+    says(&with(&format!("[drive.supervision]\n{all}")), &["without a `[bus]`"]);
+    says(&supervised("undervoltage = \"400 V\"\novervoltage = \"400 V\""), &["`overvoltage` must be above"]);
+    says(&supervised("stall = { speed = \"5 rpm\" }"), &["missing `time`"]);
+    says(&supervised("phase_loss = { current = \"0 Arms\", time = \"10 ms\" }"), &["current", "0"]);
+}
+
+#[test]
+fn a_phase_is_lost_at_a_time_only_if_it_is_lost() {
+    let connection = |keys: &str| with(&format!("[motor.connection]\n{keys}"));
+    assert_eq!(connection("swapped = \"ab\"\nopen = \"c\"\nopen_at = \"0.3 s\""), [""; 0]);
+    says(&connection("open_at = \"0.3 s\""), &["`open_at` is when a phase is lost", "give `open`"]);
+    says(&connection("swapped = \"aa\""), &["aa"]);
+}

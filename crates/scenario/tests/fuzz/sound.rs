@@ -19,7 +19,8 @@ pub(crate) fn check(scenario: &Scenario) {
     }
     match actuator {
         Actuator::Prescribed | Actuator::Off => {}
-        Actuator::Pmsm { motor, effects, encoder, dc_link, inverter, link, drive } => {
+        Actuator::Pmsm { motor, effects, wiring, encoder, dc_link, inverter, link, drive } => {
+            assert_eq!(wiring.check(), Ok(()));
             assert_eq!((motor.check(), effects.check(), encoder.check()), (Ok(()), Ok(()), Ok(())));
             positive("dc_link", *dc_link);
             assert_eq!(inverter.map_or(Ok(()), |inverter| inverter.check()), Ok(()));

@@ -166,7 +166,7 @@ fn blocks_of_the_firmware_are_those_of_the_file() {
         drive = { continuous_current = \"5 Arms\", peak_time = \"2 s\" }\n";
     let scenario = scenario(&format!("{SCREW}\n{given}"));
     let (params, (_, dc_link, current)) = (params(&scenario), motor(&scenario));
-    let Blocks { filters, cogging, motor_load, drive_load, schedule, max_speed, reference_weight } = &params.blocks;
+    let Blocks { filters, cogging, motor_load, drive_load, schedule, max_speed, reference_weight, .. } = &params.blocks;
     let (zero_frequency, zero_damping, pole_frequency, pole_damping) = (400.0, 0.1, 500.0, 0.7);
     let exact = [
         filter::Filter::LowPass { frequency: 700.0 },
@@ -186,4 +186,39 @@ fn blocks_of_the_firmware_are_those_of_the_file() {
     assert_eq!(current.operation.strategy, Strategy::Mtpa);
     assert_eq!(current.operation.weakening, Some(Weakening { share: 0.95, feedback: 0.0 }));
     assert!(same(current.dead_time.unwrap().loss(), 2e-6 * 8e3 * dc_link));
+}
+
+/// Oracle: by hand, from the file to plant and firmware.
+#[test]
+fn faults_and_their_supervision_are_those_of_the_file() {
+    use servobench_drive::supervision::{Commutation, Params, Phases, Stall};
+    use servobench_plant::{Phase, Swap, Wiring};
+    let given = "[motor.connection]\nswapped = \"ca\"\nopen = \"b\"\nopen_at = \"0.3 s\"\n\
+        [drive.current]\nmeasured_dc_link = true\n[bus]\ncycle = \"1 ms\"\n\
+        [drive.supervision]\nundervoltage = \"201 V\"\novervoltage = \"402 V\"\noverspeed = \"3000 rpm\"\n\
+        commutation = { speed = \"300 rpm\", current = \"4 Arms\" }\nstall = { speed = \"30 rpm\", time = \"0.2 s\" }\n\
+        phase_loss = { current = \"1.5 Apk\", time = \"7 ms\" }\n";
+    let scenario = scenario(&format!("{SCREW}\n{given}"));
+    let Actuator::Pmsm { wiring, .. } = &scenario.actuator else { panic!("a motor") };
+    assert_eq!(*wiring, Wiring { swapped: Some(Swap::Ca), open: Some((Phase::B, 0.3)) });
+    let blocks = &params(&scenario).blocks;
+    let rpm = TAU / 60.0;
+    let expected = Params {
+        undervoltage: Some(201.0),
+        overvoltage: Some(402.0),
+        overspeed: Some(3000.0 * rpm),
+        commutation: Some(Commutation { speed: 300.0 * rpm, current: 4.0 * 2_f64.sqrt() }),
+        stall: Some(Stall { speed: 30.0 * rpm, time: 0.2 }),
+        phases: Some(Phases { current: 1.5, time: 7e-3 }),
+    };
+    let found = blocks.supervision.unwrap();
+    assert!(blocks.measures_dc_link);
+    let numbers = |p: &Params| {
+        let (commutation, stall, phases) = (p.commutation.unwrap(), p.stall.unwrap(), p.phases.unwrap());
+        let [low, high, speed] = [p.undervoltage, p.overvoltage, p.overspeed].map(Option::unwrap);
+        [low, high, speed, commutation.speed, commutation.current, stall.speed, stall.time, phases.current, phases.time]
+    };
+    for (found, expected) in numbers(&found).into_iter().zip(numbers(&expected)) {
+        assert!(same(found, expected), "{found} {expected}");
+    }
 }

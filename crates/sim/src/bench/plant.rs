@@ -93,8 +93,9 @@ pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<Pow
     Ok(match actuator {
         Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
         Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
-        Actuator::Pmsm { motor, effects, dc_link, inverter, link, drive, .. } => {
-            let mut stage = PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?;
+        Actuator::Pmsm { motor, effects, wiring, dc_link, inverter, link, drive, .. } => {
+            let mut stage =
+                PowerStage::pmsm(*motor, *dc_link, speed, h)?.with_effects(effects, h)?.with_wiring(*wiring)?;
             if inverter.is_some() || link.is_some() {
                 stage = stage.with_inverter(&inverter.unwrap_or(inverter::Params::IDEAL), link.as_ref(), h)?;
             }

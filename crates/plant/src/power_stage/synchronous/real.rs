@@ -1,13 +1,13 @@
-//! The tick of a motor with effects, or on an inverter or a link that is not ideal.
+//! The tick of a motor with effects, behind a cable that is not as it should be, or on an inverter or a link that is not ideal.
 //!
 //! ```text
-//! inverter (averaged: one voltage; switching: one from edge to edge) → winding (currents, torque, losses) → rotor (cogging, drag of the
+//! cable (mirror image of what is asked for, a phase that opens) → inverter (averaged: one voltage; switching: one from edge to edge) → winding (currents, torque, losses) → rotor (cogging, drag of the
 //! iron, temperature) → link (supplies what motor and devices took)
 //! ```
 use super::{Synchronous, is_shorter};
 use crate::inverter::{self, Averaged, Bridge, Legs, LinkParams, LinkPower, LinkState, Modulation, Switching, legs};
 use crate::pmsm;
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation};
 use std::sync::Arc;
 
 /// An inverter on its link, and what they did in the last tick.
@@ -66,6 +66,11 @@ impl RealInverter {
         self.link.is_some()
     }
 
+    /// Voltage of the link without load (V).
+    pub(super) fn link_voltage(&self) -> Option<f64> {
+        self.link.as_ref().map(|(params, _)| params.voltage)
+    }
+
     /// The link supplies what the motor takes, `power` (W), and the devices, over a tick of `h` (s). Its voltage from now on is returned,
     /// if it changes.
     fn supply(&mut self, power: f64, h: f64) -> Option<f64> {
@@ -81,6 +86,8 @@ struct Winding<'a> {
     real: Option<&'a pmsm::RealMotor>,
     /// At this tick.
     params: &'a pmsm::Params,
+    /// Direction of the only current that flows, where a phase is lost.
+    line: Option<AlphaBeta>,
     h: f64,
 }
 
@@ -97,12 +104,20 @@ struct Driven {
 impl Winding<'_> {
     /// On a voltage that is held over the tick.
     fn step(&self, x: &mut pmsm::State, input: &pmsm::Input) -> pmsm::Output {
+        if let Some(open) = self.with_open_phase(0.0) {
+            return open.step(x, input, self.h);
+        }
         if let Some(varying) = self.real.and_then(|real| real.winding(self.params, 0.0)) {
             return varying.step(x, input, self.h);
         }
         let mut power = pmsm::Power::default();
         let torque = self.ticks.step_with_power(x, input, &mut power);
         pmsm::Output { torque, power }
+    }
+
+    /// Behind `series` (Ω); `None` where no phase is lost.
+    fn with_open_phase(&self, series: f64) -> Option<pmsm::OpenPhase<'_>> {
+        self.line.map(|line| pmsm::OpenPhase::new(self.params, self.real, series, line))
     }
 
     fn on_ideal(&self, x: &mut pmsm::State, wanted: AlphaBeta, u_dc: f64, input: pmsm::Input) -> Driven {
@@ -146,9 +161,10 @@ impl Winding<'_> {
         input: &inverter::SwitchingInput,
     ) -> Driven {
         let winding = self.real.and_then(|real| real.winding(self.params, switching.resistance()));
-        let tick = match winding {
-            Some(winding) => switching.step::<POWER, _>(&winding, bridge, &mut x.current, input),
-            None => switching.step::<POWER, _>(switching.equations(), bridge, &mut x.current, input),
+        let tick = match (self.with_open_phase(switching.resistance()), winding) {
+            (Some(open), _) => switching.step::<POWER, _>(&open, bridge, &mut x.current, input),
+            (None, Some(winding)) => switching.step::<POWER, _>(&winding, bridge, &mut x.current, input),
+            (None, None) => switching.step::<POWER, _>(switching.equations(), bridge, &mut x.current, input),
         };
         Driven {
             output: pmsm::Output { torque: tick.torque, power: tick.power },
@@ -160,15 +176,34 @@ impl Winding<'_> {
 }
 
 impl Synchronous {
-    /// [`Synchronous::advance`] with effects, or on an inverter or a link that is not ideal.
+    /// What sensors at the legs see, the rotor being at `angle`.
+    #[cold]
+    pub(super) fn measured_at_the_legs(&mut self, angle: ElectricalAngle) -> AlphaBeta {
+        let rotor = self.rotor.rotation();
+        let Some(cable) = &self.cable else { return self.state.current.to_alpha_beta(rotor) };
+        self.state.current = cable.settled(self.state.current, rotor);
+        let (current, angle, rotor) = cable.at_the_legs(self.state.current, angle, rotor);
+        match &mut self.sensor {
+            None => current.to_alpha_beta(rotor),
+            Some(sensor) => sensor.read(current, angle, rotor),
+        }
+    }
+
+    /// [`Synchronous::advance`] with effects, behind a cable, or on an inverter or a link that is not ideal.
     #[cold]
     pub(super) fn advance_real(&mut self, wanted: AlphaBeta, travel: pmsm::Travel, h: f64) -> f64 {
         let params = self.effects.as_ref().map_or(*self.motor.params(), |real| real.params(&self.motor));
-        let winding = Winding { ticks: &self.motor, real: self.effects.as_deref(), params: &params, h };
         let (rotor, omega_e) = (self.rotor.rotation(), params.electrical_ratio * travel.speed);
-        let input = pmsm::Input { voltage: wanted, rotor, omega_e };
         let (before, u_dc, x) = (self.state, self.u_dc, &mut self.state);
-        let driven = match self.inverter.as_mut().map(|inverter| &mut inverter.modulator) {
+        let (mut wanted, mut line, mut arc) = (wanted, None, 0.0);
+        if let Some(cable) = &mut self.cable {
+            wanted = cable.across(wanted);
+            arc = cable.begin(&params, &mut x.current, rotor, h) / h;
+            line = cable.line();
+        }
+        let winding = Winding { ticks: &self.motor, real: self.effects.as_deref(), params: &params, line, h };
+        let input = pmsm::Input { voltage: wanted, rotor, omega_e };
+        let mut driven = match self.inverter.as_mut().map(|inverter| &mut inverter.modulator) {
             None => winding.on_ideal(x, wanted, u_dc, input),
             Some(Modulator::Averaged(averaged, gain)) => winding.on_averaged((averaged, *gain), x, wanted, u_dc, input),
             Some(Modulator::Switching(switching, bridge)) => {
@@ -181,6 +216,10 @@ impl Synchronous {
                 }
             }
         };
+        if arc > 0.0 {
+            driven.output.power.copper += arc;
+            driven.output.power.stored -= arc;
+        }
         (self.voltage, self.shortens) = (driven.voltage, driven.shortens);
         self.account(&params, driven.output, before, travel, driven.loss, h).torque
     }

@@ -1,0 +1,361 @@
+//! What the drive watches of motor and power stage: DC link, commutation, stall, phases, speed. Each is there when its parameters are.
+//!
+//! | finding | when | 603Fh |
+//! |---|---|---|
+//! | over-voltage | the measured DC link is above `overvoltage` | 3210h |
+//! | under-voltage | it is below `undervoltage` | 3220h |
+//! | lost phase | a leg has had less than half of `current` for `time` while it was to have `current` or more | 3321h |
+//! | stall | the loops ask for more than their limit while the motor is slower than `speed`, for `time` | 7121h |
+//! | commutation | against a torque-producing current of `current` or more the motor has gained `speed` | 7122h |
+//! | over-speed | the motor is faster than `overspeed` | 7310h |
+//!
+//! - **Commutation.** i_q·v < 0 and |i_q| ≥ `current`: the current brakes. Then |v| falls, unless what the drive takes for the q axis is
+//!   not it, or a load is stronger than the motor. The gain is counted from the lowest |v| of that time on.
+//! - **Stall.** A motor whose commutation is off by 90° has no torque either; by its sensors a drive cannot tell it from a blocked one.
+//! - **Lost phase.** The time counts while the reference of the leg is there, and begins again as soon as half of `current` flows. A healthy
+//!   leg follows its reference with the lag of the current loop. At a standstill where the leg is to have no current nothing can be seen.
+//!
+//! The rules are ours (assumed): the profile has codes for what is found and none for how. Codes: IEC 61800-7-201, error codes of the
+//! emergency message.
+//!
+//! A finding stays until the power goes off. Without power nothing is looked for.
+use servobench_base::AlphaBeta;
+use servobench_config::Kind::{Motor, Plain};
+use servobench_config::quantities::{CURRENT, TIME, VELOCITY, VOLTAGE};
+use servobench_config::{ParameterError, positive};
+
+servobench_config::parameters! {
+    /// A parameter of the supervision of motor and power stage.
+    pub enum Parameter {
+        /// Measured DC link below which the drive tells a fault
+        UNDERVOLTAGE "under-voltage threshold" = positive(Plain(&VOLTAGE), "200 V");
+        /// Measured DC link above which it tells one
+        OVERVOLTAGE "over-voltage threshold" = positive(Plain(&VOLTAGE), "400 V");
+        /// Speed of the motor above which it tells one
+        OVERSPEED "over-speed threshold" = positive(Motor(&VELOCITY), "6500 rpm");
+        /// Speed that the motor gains against its torque-producing current
+        COMMUTATION_SPEED "speed gained against the current" = positive(Motor(&VELOCITY), "200 rpm");
+        /// Least torque-producing current that counts
+        COMMUTATION_CURRENT "current of the commutation supervision" = positive(Plain(&CURRENT), "4 Arms");
+        /// Speed below which the motor stands
+        STALL_SPEED "speed of a stalled motor" = positive(Motor(&VELOCITY), "5 rpm");
+        /// How long the loops are at their limit meanwhile
+        STALL_TIME "time of a stalled motor" = positive(Plain(&TIME), "0.2 s");
+        /// Least current reference of a leg that counts
+        PHASE_CURRENT "current of the phase supervision" = positive(Plain(&CURRENT), "1 Arms");
+        /// How long a leg has less than half of it
+        PHASE_TIME "time of a lost phase" = positive(Plain(&TIME), "10 ms");
+    }
+}
+
+/// What is watched; constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Params {
+    /// Lowest DC link (V).
+    pub undervoltage: Option<f64>,
+    /// Highest DC link (V).
+    pub overvoltage: Option<f64>,
+    /// Highest speed (motor coordinate, rad/s or m/s).
+    pub overspeed: Option<f64>,
+    /// Commutation.
+    pub commutation: Option<Commutation>,
+    /// Stall.
+    pub stall: Option<Stall>,
+    /// Phases.
+    pub phases: Option<Phases>,
+}
+
+/// When the commutation is wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Commutation {
+    /// Speed that is gained against the current (motor coordinate).
+    pub speed: f64,
+    /// Least current that counts (A, peak).
+    pub current: f64,
+}
+
+/// When a motor is blocked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stall {
+    /// Speed below which it stands (motor coordinate).
+    pub speed: f64,
+    /// For how long (s).
+    pub time: f64,
+}
+
+/// When a phase is lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phases {
+    /// Least reference of a leg that counts (A, peak).
+    pub current: f64,
+    /// For how long it has less than half of it (s).
+    pub time: f64,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Finding {
+    /// The DC link is too high.
+    OverVoltage,
+    /// The DC link is too low.
+    UnderVoltage,
+    /// A leg has no current.
+    LostPhase,
+    /// The motor stands although the loops are at their limit.
+    Stall,
+    /// The motor gains speed against its current.
+    Commutation,
+    /// The motor is too fast.
+    OverSpeed,
+}
+
+impl Finding {
+    /// Whether no loop can brake the axis any more: with a current that drives instead of braking, with two phases only, or with a link
+    /// that what comes back fills further.
+    #[must_use]
+    pub const fn leaves_no_brake(self) -> bool {
+        matches!(self, Self::Commutation | Self::LostPhase | Self::OverVoltage)
+    }
+}
+
+/// All that a snapshot must hold.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct State {
+    /// What was found first.
+    pub found: Option<Finding>,
+    /// Lowest speed since the current brakes.
+    lowest_speed: Option<f64>,
+    /// Cycles in which the motor stood at the limit.
+    stalled: u32,
+    /// Cycles in which a leg had no current that it was to have.
+    without_current: [u32; 3],
+}
+
+impl Params {
+    /// # Errors
+    /// [`ParameterError`] names the first parameter out of its bound.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let Self { undervoltage, overvoltage, overspeed, commutation, stall, phases } = *self;
+        for (parameter, value) in [
+            (Parameter::UNDERVOLTAGE, undervoltage),
+            (Parameter::OVERVOLTAGE, overvoltage),
+            (Parameter::OVERSPEED, overspeed),
+            (Parameter::COMMUTATION_SPEED, commutation.map(|one| one.speed)),
+            (Parameter::COMMUTATION_CURRENT, commutation.map(|one| one.current)),
+            (Parameter::STALL_SPEED, stall.map(|one| one.speed)),
+            (Parameter::STALL_TIME, stall.map(|one| one.time)),
+            (Parameter::PHASE_CURRENT, phases.map(|one| one.current)),
+            (Parameter::PHASE_TIME, phases.map(|one| one.time)),
+        ] {
+            if let Some(value) = value {
+                parameter.check(value)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What the velocity loop sees at a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Measured speed (motor coordinate).
+    pub velocity: f64,
+    /// Measured DC link (V).
+    pub dc_link: f64,
+    /// Whether the effort was cut at the last cycle.
+    pub is_cut: bool,
+}
+
+/// What the current loop sees at a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Currents {
+    /// Measured speed (motor coordinate).
+    pub velocity: f64,
+    /// Measured torque-producing current (A, peak).
+    pub q: f64,
+    /// Reference of the current, in the stator frame (A, peak).
+    pub reference: AlphaBeta,
+    /// Measured current in the stator frame (A, peak).
+    pub measured: AlphaBeta,
+}
+
+/// A cycle of the velocity loop of `h` (s).
+pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
+    let speed = u.velocity.abs();
+    let stands = p.stall.is_some_and(|stall| u.is_cut && speed <= stall.speed);
+    x.stalled = if stands { x.stalled.saturating_add(1) } else { 0 };
+    let is_beyond = |limit: Option<f64>, beyond: fn(f64, f64) -> bool, value| limit.is_some_and(|at| beyond(value, at));
+    let found = if is_beyond(p.overvoltage, |u, at| u > at, u.dc_link) {
+        Some(Finding::OverVoltage)
+    } else if is_beyond(p.undervoltage, |u, at| u < at, u.dc_link) {
+        Some(Finding::UnderVoltage)
+    } else if is_beyond(p.overspeed, |v, at| v > at, speed) {
+        Some(Finding::OverSpeed)
+    } else {
+        p.stall.filter(|stall| has_lasted(x.stalled, stall.time, h)).map(|_| Finding::Stall)
+    };
+    x.found = x.found.or(found);
+}
+
+/// A cycle of the current loop of `h` (s).
+pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
+    if let Some(commutation) = p.commutation {
+        let speed = u.velocity.abs();
+        let brakes = u.q * u.velocity < 0.0 && u.q.abs() >= commutation.current;
+        x.lowest_speed = brakes.then(|| x.lowest_speed.map_or(speed, |lowest| lowest.min(speed)));
+        if x.lowest_speed.is_some_and(|lowest| speed - lowest >= commutation.speed) {
+            x.found = x.found.or(Some(Finding::Commutation));
+        }
+    }
+    if let Some(phases) = p.phases {
+        let (asked, measured) = (legs(u.reference), legs(u.measured));
+        for (leg, cycles) in x.without_current.iter_mut().enumerate() {
+            if measured[leg].abs() >= 0.5 * phases.current {
+                *cycles = 0;
+            } else if asked[leg].abs() >= phases.current {
+                *cycles = cycles.saturating_add(1);
+                if has_lasted(*cycles, phases.time, h) {
+                    x.found = x.found.or(Some(Finding::LostPhase));
+                }
+            }
+        }
+    }
+}
+
+/// Whether so many cycles of `h` (s) are `time` (s), which a rounding does not make one more.
+fn has_lasted(cycles: u32, time: f64, h: f64) -> bool {
+    f64::from(cycles) * h >= time * (1.0 - 1e-12)
+}
+
+const HALF_SQRT_3: f64 = 0.866_025_403_784_438_6;
+
+fn legs(AlphaBeta { alpha, beta }: AlphaBeta) -> [f64; 3] {
+    [alpha, HALF_SQRT_3 * beta - 0.5 * alpha, -HALF_SQRT_3 * beta - 0.5 * alpha]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::TAU;
+
+    const NONE: Motion = Motion { velocity: 0.0, dc_link: 320.0, is_cut: false };
+    const H: f64 = 1.0 / 8e3;
+
+    fn of_motion(p: &Params, u: Motion) -> Option<Finding> {
+        let mut x = State::default();
+        watch_motion(p, &mut x, &u, H);
+        x.found
+    }
+
+    #[test]
+    fn link_and_speed_have_their_thresholds() {
+        let p =
+            Params { undervoltage: Some(211.0), overvoltage: Some(391.0), overspeed: Some(97.0), ..Params::default() };
+        for (dc_link, velocity, found) in [
+            (391.0, 97.0, None),
+            (211.0, -97.0, None),
+            (391.1, 0.0, Some(Finding::OverVoltage)),
+            (210.9, 0.0, Some(Finding::UnderVoltage)),
+            (0.0, 0.0, Some(Finding::UnderVoltage)),
+            (300.0, -97.1, Some(Finding::OverSpeed)),
+        ] {
+            assert_eq!(of_motion(&p, Motion { velocity, dc_link, ..NONE }), found, "{dc_link} V, {velocity} rad/s");
+            assert_eq!(of_motion(&Params::default(), Motion { velocity, dc_link, ..NONE }), None, "off");
+        }
+    }
+
+    /// Oracle: 17 ms are 136 cycles, at the 136th it is found, and a cycle that moves begins anew.
+    #[test]
+    fn a_stall_has_to_last() {
+        let p = Params { stall: Some(Stall { speed: 0.3, time: 17e-3 }), ..Params::default() };
+        let mut x = State::default();
+        let stands = Motion { velocity: -0.3, is_cut: true, ..NONE };
+        let count = |x: &mut State, of: Motion| {
+            (1..=1000).find(|_| {
+                watch_motion(&p, x, &of, H);
+                x.found.is_some()
+            })
+        };
+        for _ in 0..135 {
+            watch_motion(&p, &mut x, &stands, H);
+        }
+        watch_motion(&p, &mut x, &Motion { velocity: 0.31, ..stands }, H);
+        assert_eq!((count(&mut x, stands), x.found), (Some(136), Some(Finding::Stall)));
+        assert_eq!(count(&mut State::default(), Motion { is_cut: false, ..stands }), None, "it may stand");
+        assert_eq!(count(&mut State::default(), Motion { velocity: 5.0, ..stands }), None, "it may be at the limit");
+    }
+
+    fn commutation(way: impl Iterator<Item = (f64, f64)>) -> Option<usize> {
+        let p = Params { commutation: Some(Commutation { speed: 20.0, current: 4.0 }), ..Params::default() };
+        let mut x = State::default();
+        for (at, (velocity, q)) in way.enumerate() {
+            let u =
+                Currents { velocity, q, reference: AlphaBeta::default(), measured: AlphaBeta { alpha: q, beta: 0.0 } };
+            watch_currents(&p, &mut x, &u, H);
+            if x.found.is_some() {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    /// What accelerates, brakes, turns round or is driven by less current than counts is not a fault; what runs away is.
+    #[test]
+    fn speed_gained_against_the_current_is_a_fault() {
+        let line = |from: f64, step: f64, q: f64| (0..200).map(move |k| (from + step * f64::from(k), q));
+        assert_eq!(commutation(line(0.0, 1.0, 9.0)), None, "accelerates");
+        assert_eq!(commutation(line(150.0, -1.0, -9.0)), None, "brakes and turns round");
+        assert_eq!(commutation(line(0.0, 1.0, -3.9)), None, "friction or weight, at a small current");
+        // From rest on a cycle of -1 rad/s is the first against the current: 20 more.
+        assert_eq!(commutation(line(0.0, -1.0, 9.0)), Some(21), "runs away");
+        assert_eq!(commutation(line(70.0, 0.5, -4.0)), Some(40));
+        // Braking down to 30 first, and then faster again.
+        let way = (0..41).map(|k| 70.0 - f64::from(k)).chain((0..100).map(|k| 30.0 + f64::from(k)));
+        assert_eq!(commutation(way.map(|v| (v, -8.0))), Some(41 + 20));
+    }
+
+    /// Cycles after which a phase is found lost, of a reference of `length` (A) that goes on by so many turns per cycle, with what the motor
+    /// makes of it.
+    fn phases(length: f64, turn: f64, made: fn(AlphaBeta) -> AlphaBeta) -> Option<u32> {
+        let p = Params { phases: Some(Phases { current: 1.3, time: 10e-3 }), ..Params::default() };
+        let mut x = State::default();
+        (0..4000).find(|k| {
+            let (sin, cos) = (TAU * (turn * f64::from(*k) + 0.01)).sin_cos();
+            let reference = AlphaBeta { alpha: length * cos, beta: length * sin };
+            let measured = made(reference);
+            watch_currents(&p, &mut x, &Currents { velocity: 0.0, q: length, reference, measured }, H);
+            x.found == Some(Finding::LostPhase)
+        })
+    }
+
+    /// Oracle: 80 cycles with a reference of 1.3 A or more in that leg; at 5 A it has that for 1 − 2·asin(1.3/5)/π of a turn.
+    #[test]
+    fn a_leg_without_the_current_that_it_is_to_have_is_a_lost_phase() {
+        for turn in [0.0, 1.0 / 731.0, -1.0 / 97.3, 0.031] {
+            assert_eq!(phases(5.0, turn, |i| i), None, "healthy at {turn}");
+            let lagging = |AlphaBeta { alpha, beta }| AlphaBeta { alpha: 0.8 * alpha + 0.3 * beta, beta: 0.7 * beta };
+            assert_eq!(phases(5.0, turn, lagging), None, "lagging at {turn}");
+        }
+        let without_a = |AlphaBeta { beta, .. }| AlphaBeta { alpha: 0.0, beta };
+        for turn in [1.0 / 97.3, 0.031] {
+            let share = 1.0 - 2.0 / core::f64::consts::PI * (1.3_f64 / 5.0).asin();
+            let found = f64::from(phases(5.0, turn, without_a).unwrap());
+            // At most what a crossing of zero takes, earlier or later.
+            assert!((found - 80.0 / share).abs() < (1.0 - share) / turn + 2.0, "{turn}: {found}");
+        }
+        assert_eq!(phases(1.29, 0.01, |_| AlphaBeta::default()), None, "less than what counts");
+        assert_eq!(phases(5.0, 0.0, without_a), Some(79), "at rest, where it is to have some");
+        let without_c = |AlphaBeta { alpha, .. }| AlphaBeta { alpha, beta: alpha / 3.0_f64.sqrt() };
+        assert!(phases(5.0, 1.0 / 97.3, without_c).is_some());
+    }
+
+    #[test]
+    fn errors_name_the_parameter() {
+        let said = |p: Params| p.check().unwrap_err().to_string();
+        assert_eq!(Params::default().check(), Ok(()));
+        let wrong = Params { undervoltage: Some(0.0), ..Params::default() };
+        assert_eq!(said(wrong), "`under-voltage threshold` must be finite and positive, got 0");
+        let wrong = Params { phases: Some(Phases { current: 1.0, time: f64::NAN }), ..Params::default() };
+        assert_eq!(said(wrong), "`time of a lost phase` must be finite and positive, got NaN");
+    }
+}

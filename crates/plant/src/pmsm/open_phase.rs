@@ -1,0 +1,154 @@
+//! A winding of which a phase is lost: the other two are in series, and one current says all.
+//!
+//! ```text
+//! i = s·n      n = [cos γ, sin γ] in the rotor frame, γ = θ_n − θ      θ_n: at right angles to the axis of the lost phase, in the stator
+//! u_n = R_n·s + d(ℓ·s)/dt + ω·nᵀ·e      ℓ = nᵀ·L·n = L_d·cos²γ + L_q·sin²γ      R_n = nᵀ·R·n
+//! T = 3/2·p·(nᵀ·e·s + (L_d − L_q)·sin γ·cos γ·s²)                              e = [ψ_d′ − ψ_q, ψ_q′ + ψ_d]
+//! ```
+//! These are the equations of the motor along n; across it the voltage at the open terminal is whatever keeps the current of that phase at
+//! zero, and does no work. With w = √ℓ·s the energy of the field is ¾·w²,
+//!
+//! ```text
+//! dw/dt = (u_n − ω·nᵀ·e)/√ℓ − (R_n + ℓ′/2)/ℓ·w        ℓ′ = dℓ/dt = 2·ω·(L_d − L_q)·sin γ·cos γ
+//! ```
+//! solved by the Gauss method of two stages, which keeps quadratic invariants: the energies close to the rounding, as in `varying`. Its
+//! parts are as long as there. Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 4; Hairer, Lubich and Wanner, *Geometric
+//! Numerical Integration*, 2nd ed., ch. IV.2.
+use super::effects::RealMotor;
+use super::flux_harmonics::{Flux, FluxHarmonic};
+use super::phases::{Entries, PhaseMatrix};
+use super::winding::{Span, Sums, Winding};
+use super::{Input, Output, Params, State};
+use servobench_base::{AlphaBeta, Dq, Rotation};
+
+/// Largest turn of a harmonic in a part of a tick (rad).
+const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
+/// Largest turn of the rotor, and largest decay of the current.
+const LARGEST_PART: f64 = 0.25;
+/// A tick has no more parts than this.
+const MOST_PARTS: f64 = 4096.0;
+/// √3/6.
+const OFF_THE_MIDDLE: f64 = 0.288_675_134_594_812_9;
+
+/// A winding whose current stands along a line in the stator.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OpenPhase<'a> {
+    params: &'a Params,
+    harmonics: &'a [FluxHarmonic],
+    phases: PhaseMatrix,
+    /// Resistance before each phase that is not the motor's own (Ω).
+    series: f64,
+    /// n in the stator frame.
+    line: AlphaBeta,
+}
+
+/// The equation at a stage.
+struct Stage {
+    /// Along the line: voltage, what devices have taken of it (V), voltage per speed (V·s), resistance of the motor (Ω), inductance (H).
+    voltage: f64,
+    drop: f64,
+    per_speed: f64,
+    resistance: f64,
+    inductance: f64,
+    /// (L_d − L_q)·sin γ·cos γ.
+    reluctance: f64,
+}
+
+impl Winding for OpenPhase<'_> {
+    fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq {
+        let Span { rotor, omega, time, .. } = *over;
+        let (n, l) = self.along(rotor);
+        let parts = self.parts(omega * time, time);
+        let part = time / f64::from(parts);
+        let first = libm::sqrt(l) * (n.d * i.d + n.q * i.q);
+        let last =
+            (0..parts).fold(first, |w, k| self.part(w, over, rotor.ahead(omega * part * f64::from(k)), part, sums));
+        let (n, l) = self.along(rotor.ahead(omega * time));
+        let s = last / libm::sqrt(l);
+        Dq { d: s * n.d, q: s * n.q }
+    }
+
+    fn stored(&self, before: Dq, after: Dq) -> f64 {
+        let l = self.params.inductance;
+        0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
+    }
+}
+
+impl<'a> OpenPhase<'a> {
+    /// Of the motor that is `params` at this tick, with the effects of `real`, behind `series` (Ω), with a current along `line`.
+    pub(crate) fn new(params: &'a Params, real: Option<&'a RealMotor>, series: f64, line: AlphaBeta) -> Self {
+        let (harmonics, phases) = real.map_or((&[][..], PhaseMatrix::EQUAL), RealMotor::harmonics_and_phases);
+        Self { params, harmonics, phases, series, line }
+    }
+
+    /// Advances the current by a tick of `h` (s) and returns mean torque and powers.
+    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
+        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
+        let (before, mut sums) = (x.current, Sums::default());
+        x.current = self.advance::<true>(before, &over, &mut sums);
+        sums.output(self.stored(before, x.current), self.params.electrical_ratio, u.omega_e, h)
+    }
+
+    /// n in the frame of a rotor at `rotor`, and the inductance along it.
+    fn along(&self, rotor: Rotation) -> (Dq, f64) {
+        let (n, l) = (self.line.to_dq(rotor), self.params.inductance);
+        (n, l.d * n.d * n.d + l.q * n.q * n.q)
+    }
+
+    fn parts(&self, turn: f64, h: f64) -> u32 {
+        let Params { resistance, inductance, .. } = self.params;
+        let order = self.harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
+        let decay = h * (resistance * self.phases.largest() + self.series) / inductance.d.min(inductance.q);
+        let of_harmonics = f64::from(order) * turn.abs() / LARGEST_TURN_OF_A_HARMONIC;
+        let parts = of_harmonics.max(decay.max(turn.abs()) / LARGEST_PART).clamp(1.0, MOST_PARTS);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 4096")]
+        let whole = libm::ceil(parts) as u32;
+        whole.max(1)
+    }
+
+    fn stage(&self, over: &Span, rotor: Rotation) -> Stage {
+        let ((n, inductance), l) = (self.along(rotor), self.params.inductance);
+        let flux = Flux::at(self.params.flux_linkage, self.harmonics, rotor);
+        let Entries { dd, dq, qq } = self.phases.at(rotor);
+        let along = |of: AlphaBeta| self.line.alpha * of.alpha + self.line.beta * of.beta;
+        Stage {
+            voltage: along(over.voltage),
+            drop: along(over.drop),
+            per_speed: n.d * (flux.slope_d - flux.q) + n.q * (flux.slope_q + flux.d),
+            resistance: self.params.resistance * (dd * n.d * n.d + 2.0 * dq * n.d * n.q + qq * n.q * n.q),
+            inductance,
+            reluctance: (l.d - l.q) * n.d * n.q,
+        }
+    }
+
+    fn part(&self, w: f64, over: &Span, rotor: Rotation, h: f64, sums: &mut Sums) -> f64 {
+        let omega = over.omega;
+        let stages =
+            [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE].map(|at| self.stage(over, rotor.ahead(omega * h * at)));
+        // dw/dt = b − a·w.
+        let [a, b] = [
+            stages.each_ref().map(|one| (one.resistance + self.series + omega * one.reluctance) / one.inductance),
+            stages.each_ref().map(|one| (one.voltage - omega * one.per_speed) / libm::sqrt(one.inductance)),
+        ];
+        let (own, less, more) = (0.25 * h, (0.25 - OFF_THE_MIDDLE) * h, (0.25 + OFF_THE_MIDDLE) * h);
+        let known = [w + own * b[0] + less * b[1], w + more * b[0] + own * b[1]];
+        let [[m00, m01], [m10, m11]] = [[1.0 + own * a[0], less * a[1]], [more * a[0], 1.0 + own * a[1]]];
+        let determinant = m00 * m11 - m01 * m10;
+        let at_stages =
+            [(known[0] * m11 - known[1] * m01) / determinant, (known[1] * m00 - known[0] * m10) / determinant];
+        let mut change = 0.0;
+        for (k, stage) in stages.iter().enumerate() {
+            change += h / 2.0 * (b[k] - a[k] * at_stages[k]);
+            let s = at_stages[k] / libm::sqrt(stage.inductance);
+            sums.torque += h / 2.0 * (stage.per_speed * s + stage.reluctance * s * s);
+            sums.copper += h / 2.0 * stage.resistance * s * s;
+            sums.square += h / 2.0 * s * s;
+            sums.work += h / 2.0 * stage.voltage * s;
+            sums.other += h / 2.0 * stage.drop * s;
+        }
+        w + change
+    }
+}
+
+#[cfg(test)]
+mod tests;
