@@ -1,5 +1,5 @@
 //! Blocks of the firmware that answer real hardware; by default none of them is there.
-use crate::{cogging, filter, overload, schedule};
+use crate::{cogging, derivative, filter, measurement, overload, position, schedule};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{RATIO, VELOCITY};
 use servobench_config::{Bound, Measure, ParameterError, positive};
@@ -31,6 +31,12 @@ pub struct Blocks {
     pub max_speed: f64,
     /// Weight of the velocity reference in the proportional part of the velocity loop.
     pub reference_weight: f64,
+    /// How the velocity is measured; `None`: by an encoder that gives it, by differences of any other.
+    pub measurement: Option<measurement::Params>,
+    /// Derivative part of the velocity loop, of the measured velocity.
+    pub acceleration: Option<derivative::Params>,
+    /// Integral and derivative parts of the position loop.
+    pub position: Option<position::Params>,
 }
 
 impl Default for Blocks {
@@ -43,11 +49,20 @@ impl Default for Blocks {
             schedule: None,
             max_speed: f64::INFINITY,
             reference_weight: 1.0,
+            measurement: None,
+            acceleration: None,
+            position: None,
         }
     }
 }
 
 impl Blocks {
+    /// The observer that measures the velocity, where it is one.
+    #[must_use]
+    pub fn observer(&self) -> Option<&measurement::observer::Params> {
+        self.measurement.as_ref().and_then(measurement::Params::observer)
+    }
+
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
@@ -56,6 +71,15 @@ impl Blocks {
         }
         if let Some(schedule) = &self.schedule {
             schedule.check()?;
+        }
+        if let Some(measurement) = &self.measurement {
+            measurement.check()?;
+        }
+        if let Some(acceleration) = &self.acceleration {
+            acceleration.check([derivative::Parameter::VELOCITY_TIME, derivative::Parameter::VELOCITY_FILTER_TIME])?;
+        }
+        if let Some(position) = &self.position {
+            position.check()?;
         }
         Parameter::REFERENCE_WEIGHT.check(self.reference_weight)?;
         servobench_base::limit(Parameter::MAX_SPEED, self.max_speed).map(|_| ())

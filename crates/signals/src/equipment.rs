@@ -46,6 +46,8 @@ pub struct Erring {
     pub load_encoder: bool,
     /// The current sensors, or the angle by which their currents are known.
     pub current: bool,
+    /// The velocity, which the drive measures by a method of its own.
+    pub velocity: bool,
 }
 
 /// What there is of a motor.
@@ -106,6 +108,8 @@ pub enum Presence {
     LoadEncoderErrs,
     /// Where the measured current errs.
     CurrentErrs,
+    /// Where the drive measures the velocity by a method of its own.
+    MeasuresVelocity,
     /// With an inverter that is not ideal.
     WithInverter,
     /// With a DC link whose voltage changes.
@@ -133,6 +137,7 @@ impl Presence {
             Self::MotorEncoderErrs => equipment.erring.motor_encoder,
             Self::LoadEncoderErrs => equipment.erring.load_encoder,
             Self::CurrentErrs => equipment.erring.current,
+            Self::MeasuresVelocity => equipment.erring.velocity,
             Self::WithInverter => equipment.inverter[0],
             Self::WithLink => equipment.inverter[1],
         }
