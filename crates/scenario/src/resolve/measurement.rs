@@ -19,8 +19,7 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         if let Some(span) = span.filter(|_| method != Some(of)) {
             let name = servobench_config::Choice::name(of);
             let help = format!("write `measurement = \"{name}\"` in `[drive.velocity]`, or leave it out");
-            report.error(span, format!("the velocity is not measured by `{key}`"), help);
-            return Err(Reported);
+            report.warning(span, format!("`{key}` is not used"), help);
         }
     }
     Ok(match method {
