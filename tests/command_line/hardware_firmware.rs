@@ -57,7 +57,7 @@ fn i2t_is_told_as_a_fault() {
 #[test]
 fn the_m_t_method_takes_the_noise_of_low_speeds() {
     let others =
-        ["drive.velocity.measurement=difference", "drive.velocity.timer='2.5 us'", "drive.velocity.timer='0.4 us'"];
+        ["drive.velocity.measurement=difference", "drive.velocity.timer='2 us'", "drive.velocity.timer='0.5 us'"];
     passes_but_not_with("velocity-mt", &others);
 }
 

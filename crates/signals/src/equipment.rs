@@ -40,10 +40,8 @@ pub struct MotorEffects {
 /// Which sensors err.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Erring {
-    /// The encoder on the motor.
-    pub motor_encoder: bool,
-    /// The encoder on the load that closes the position loop.
-    pub load_encoder: bool,
+    /// The encoder on the motor, and that on the load where it closes the position loop.
+    pub encoders: [bool; 2],
     /// The current sensors, or the angle by which their currents are known.
     pub current: bool,
     /// The velocity, which the drive measures by a method of its own.
@@ -134,8 +132,8 @@ impl Presence {
             Self::WithEndStops => equipment.end_stops,
             Self::WithIronLoss => equipment.effects.iron_loss,
             Self::WithThermalModel => equipment.effects.thermal_model,
-            Self::MotorEncoderErrs => equipment.erring.motor_encoder,
-            Self::LoadEncoderErrs => equipment.erring.load_encoder,
+            Self::MotorEncoderErrs => equipment.erring.encoders[0],
+            Self::LoadEncoderErrs => equipment.erring.encoders[1],
             Self::CurrentErrs => equipment.erring.current,
             Self::MeasuresVelocity => equipment.erring.velocity,
             Self::WithInverter => equipment.inverter[0],

@@ -292,8 +292,10 @@ fn erring(actuator: &Actuator) -> Erring {
     let Some(drive) = actuator.drive() else { return Erring::default() };
     let motor = actuator.encoder().and_then(|encoder| encoder.errors);
     Erring {
-        motor_encoder: motor.is_some(),
-        load_encoder: matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
+        encoders: [
+            motor.is_some(),
+            matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
+        ],
         current: matches!(actuator, Actuator::Pmsm { .. }) && (drive.current_sensor.is_some() || motor.is_some()),
         velocity: drive.params.blocks.measurement.is_some(),
     }

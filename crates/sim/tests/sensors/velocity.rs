@@ -48,7 +48,9 @@ arrives = false
 
 /// Rows of the hold, in which nothing is left of the run-up.
 fn steady(hold: f64) -> std::ops::Range<usize> {
-    (1.2 * RATE) as usize..(hold * RATE) as usize
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few seconds")]
+    let row = |time: f64| (time * RATE) as usize;
+    row(1.2)..row(hold)
 }
 
 fn variance(values: &[f64]) -> f64 {
