@@ -1,5 +1,5 @@
 //! Blocks of the firmware that answer real hardware; by default none of them is there.
-use crate::{cogging, filter, overload, schedule, supervision};
+use crate::{cogging, derivative, filter, measurement, overload, position, schedule, supervision};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{RATIO, VELOCITY};
 use servobench_config::{Bound, Measure, ParameterError, positive};
@@ -35,6 +35,12 @@ pub struct Blocks {
     pub supervision: Option<supervision::Params>,
     /// Whether the voltage limit is that of the measured DC link.
     pub measures_dc_link: bool,
+    /// How the velocity is measured; `None`: by an encoder that gives it, by differences of any other.
+    pub measurement: Option<measurement::Params>,
+    /// Derivative part of the velocity loop, of the measured velocity.
+    pub acceleration: Option<derivative::Params>,
+    /// Integral and derivative parts of the position loop.
+    pub position: Option<position::Params>,
 }
 
 impl Default for Blocks {
@@ -49,11 +55,20 @@ impl Default for Blocks {
             reference_weight: 1.0,
             supervision: None,
             measures_dc_link: false,
+            measurement: None,
+            acceleration: None,
+            position: None,
         }
     }
 }
 
 impl Blocks {
+    /// The observer that measures the velocity, where it is one.
+    #[must_use]
+    pub fn observer(&self) -> Option<&measurement::observer::Params> {
+        self.measurement.as_ref().and_then(measurement::Params::observer)
+    }
+
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
@@ -65,6 +80,15 @@ impl Blocks {
         }
         if let Some(supervision) = &self.supervision {
             supervision.check()?;
+        }
+        if let Some(measurement) = &self.measurement {
+            measurement.check()?;
+        }
+        if let Some(acceleration) = &self.acceleration {
+            acceleration.check([derivative::Parameter::VELOCITY_TIME, derivative::Parameter::VELOCITY_FILTER_TIME])?;
+        }
+        if let Some(position) = &self.position {
+            position.check()?;
         }
         Parameter::REFERENCE_WEIGHT.check(self.reference_weight)?;
         servobench_base::limit(Parameter::MAX_SPEED, self.max_speed).map(|_| ())

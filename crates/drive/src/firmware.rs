@@ -11,11 +11,16 @@ mod watch;
 
 use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
+use crate::measurement::{self, Edge};
 use crate::params::{Params, Stage};
 use crate::{Blocks, Demand, EffortLimits};
-use crate::{current, delay, filter, overload, supervision, velocity};
+use crate::{current, delay, derivative, filter, overload, position, supervision, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
 use servobench_config::ParameterError;
+
+mod held;
+
+pub use held::Held;
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,6 +41,8 @@ pub struct Sensors {
     pub rotor_position: Option<f64>,
     /// Motor velocity, where the encoder gives one; otherwise the firmware forms differences.
     pub motor_velocity: Option<f64>,
+    /// Last edge of the motor's encoder, where it is timed.
+    pub motor_edge: Option<Edge>,
     /// What closes the position loop.
     pub feedback: Feedback,
     /// Stator current (A, peak).
@@ -68,33 +75,15 @@ enum Closed {
     None,
 }
 
-/// What each loop said at its last turn, which is what a faster one and a recording see until the next.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Held {
-    /// Load-side reference, delay-matched (axis coordinate).
-    pub reference: Setpoint,
-    /// Motor's own reference (axis coordinate).
-    pub motor_reference: MotorReference,
-    /// Velocity reference of the velocity loop at its last cycle (axis coordinate).
-    pub velocity_reference: f64,
-    /// Effort fed forward (motor coordinate).
-    pub feedforward: f64,
-    /// Effort reference (motor coordinate) and what cut it: the effort limit, or the current limit below it.
-    pub effort: velocity::Output,
-    /// q-axis current reference (A, peak).
-    pub current_reference: f64,
-    /// References of both axes (A, peak), where the d axis has no constant one.
-    pub references: Dq,
-    /// Output of the current loop.
-    pub current: current::Output,
-}
-
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     delay: delay::State,
     /// Velocity offsets wait with the set-points that they belong to.
     offset_delay: delay::Values,
+    position: position::State,
+    measurement: measurement::State,
+    acceleration: derivative::State,
     velocity: velocity::State,
     filters: filter::State,
     current: current::State,
@@ -124,6 +113,9 @@ impl State {
         Ok(Self {
             delay: delay::State::new(start),
             offset_delay: delay::Values::new(0.0),
+            position: position::State::default(),
+            measurement: measurement::State::default(),
+            acceleration: derivative::State::default(),
             velocity: velocity::State::default(),
             filters: filter::State::default(),
             current: current::State::default(),
@@ -226,6 +218,7 @@ fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
         Demand::Position { setpoint, velocity_offset, effort_offset } => {
             if x.closed != Closed::Position {
                 x.close(Closed::Position);
+                x.position = position::State::default();
                 x.delay = delay::State::new(setpoint);
                 x.offset_delay = delay::Values::new(velocity_offset);
             }
@@ -257,10 +250,19 @@ impl State {
         if closed == Closed::None && self.closed != Closed::None {
             (self.velocity, self.current) = (velocity::State::default(), current::State::default());
             (self.filters, self.operation) = (filter::State::default(), operating_point::State::default());
+            self.acceleration = derivative::State::default();
             let Held { reference, motor_reference, .. } = self.held;
             self.held = Held { reference, motor_reference, ..Held::default() };
         }
         self.closed = closed;
+    }
+
+    /// Sign in which the speed limit or the effort limit cut what the loops asked for at their last turn; 0 where none did.
+    fn cut(&self, p: &Params) -> f64 {
+        if self.velocity_command.abs() > p.blocks.max_speed * p.transmission.abs() {
+            return self.velocity_command.signum();
+        }
+        self.held.effort.cut.map_or(0.0, |_| self.held.effort.effort.signum())
     }
 
     /// Without a position loop the reference is where the axis is.
@@ -280,10 +282,14 @@ impl State {
 fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) {
     let reference = delay::step(&p.reference_delay, &mut x.delay, setpoint);
     let motor_reference = p.feedforward.motor_reference(reference);
-    let error = match sensors.feedback {
+    let mut error = match sensors.feedback {
         Feedback::Load(position) => reference.x - position,
         Feedback::Motor => motor_reference.position - p.transmission * sensors.motor_position,
     };
+    if let Some(shaping) = &p.blocks.position {
+        let cut = x.cut(p);
+        error = position::step(shaping, &mut x.position, error, cut, p.period(p.position_every));
+    }
     x.held.reference = reference;
     x.held.motor_reference = motor_reference;
     let gain = match &p.blocks.schedule {
@@ -297,6 +303,7 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
 #[inline(always)]
 fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
+    let method = p.blocks.measurement.as_ref();
     let mut followed = x.held.velocity_reference;
     if x.closed == Closed::Position && p.feedforward.interpolate {
         let fed_forward = |since: f64| {
@@ -305,7 +312,8 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         };
         let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period();
         // What is measured is as old as a difference and the filter make it: it is compared with what is as old.
-        let age = p.velocity_filter_time + if sensors.motor_velocity.is_some() { 0.0 } else { h / 2.0 };
+        let of_encoder = if sensors.motor_velocity.is_some() { 0.0 } else { h / 2.0 };
+        let age = p.velocity_filter_time + method.map_or(of_encoder, |method| method.age(h));
         followed = fed_forward(since - age);
         x.held.velocity_reference = fed_forward(since);
     }
@@ -315,20 +323,31 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         x.held.velocity_reference = x.held.velocity_reference.clamp(-most, most);
     }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
-    let measured = sensors.motor_velocity.unwrap_or((sensors.motor_position - last) / h);
+    let travelled = sensors.motor_position - last;
+    let measured = match method {
+        None => sensors.motor_velocity.unwrap_or(travelled / h),
+        Some(method) => {
+            let (position, edge, effort) = (sensors.motor_position, sensors.motor_edge, x.held.effort.effort);
+            measurement::step(method, &mut x.measurement, measurement::Input { position, travelled, edge, effort }, h)
+        }
+    };
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
     if let Some(supervision) = &p.blocks.supervision {
         watch::motion(supervision, x, sensors, h);
     }
     let cogging = p.blocks.cogging.as_ref();
-    let feedforward = cogging.map_or(x.held.feedforward, |cogging| {
+    let mut feedforward = cogging.map_or(x.held.feedforward, |cogging| {
         x.held.feedforward + cogging.effort(sensors.motor_position, x.filtered_velocity)
     });
+    if let Some(method) = method {
+        feedforward += x.measurement.compensation(method);
+    }
     let mut chosen = None;
     let available = match &p.stage {
         Stage::Current { params, .. } => {
-            let max_current = thermal_limit(p, x, params.max_current, h);
+            let loads = [p.blocks.motor_load.as_ref(), p.blocks.drive_load.as_ref()];
+            let max_current = overload::limit(loads, &mut x.loads, x.held.current.current, params.max_current, h);
             if params.operation.is_plain() && max_current >= params.max_current {
                 EffortLimits::both(params.max_effort())
             } else {
@@ -344,7 +363,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         Stage::Direct { .. } => EffortLimits::NONE,
     };
     let (reference, velocity) = (followed / p.transmission, x.filtered_velocity);
-    let input = velocity::Input { reference, velocity, feedforward, available, limits };
+    let mut input = velocity::Input { reference, velocity, feedforward, available, limits };
     let mut filtered = |effort: f64| filter::step(&p.blocks.filters, &mut x.filters, effort);
     x.held.effort = match x.closed {
         Closed::Position | Closed::Velocity => {
@@ -354,6 +373,9 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
                 .as_ref()
                 .map(|schedule| velocity::Params { k_p: schedule.factors(velocity).1 * p.velocity.k_p, ..p.velocity });
             let params = scheduled.as_ref().unwrap_or(&p.velocity);
+            if let Some(derivative) = &p.blocks.acceleration {
+                input.feedforward -= params.k_p * derivative::step(derivative, &mut x.acceleration, velocity, h);
+            }
             velocity::step_shaped(params, &mut x.velocity, input, h, p.blocks.reference_weight, filtered)
         }
         Closed::Effort => velocity::limited(&p.velocity, available, limits, filtered(feedforward)),
@@ -362,21 +384,6 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     if let Some((params, envelope)) = chosen {
         x.held.references = envelope.currents(&params, x.held.effort.effort);
     }
-}
-
-/// Largest current (A, peak) that the thermal loads leave of `most`.
-#[inline(always)]
-fn thermal_limit(p: &Params, x: &mut State, most: f64, h: f64) -> f64 {
-    let Dq { d, q } = x.held.current.current;
-    let mut limit = most;
-    for (load, state) in [&p.blocks.motor_load, &p.blocks.drive_load].into_iter().zip(&mut x.loads) {
-        let Some(load) = load else { continue };
-        overload::step(load, state, d * d + q * q, h);
-        if state.is_reached && load.reaction == overload::Reaction::Derate {
-            limit = limit.min(load.continuous_current);
-        }
-    }
-    limit
 }
 
 #[inline(always)]

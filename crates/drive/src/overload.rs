@@ -7,6 +7,8 @@
 //! Between two cycles of the velocity loop the current is taken as constant, for which the step is exact. At Θ = 1 the drive keeps to
 //! the continuous current until the load is below [`RELEASE`], or it tells a fault (CiA 402: 2350h).
 //! Source: IEC 60034-1, 2022, §4.2 (thermal equilibrium of duty types) for the lag of first order; by hand for its step.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use servobench_base::Dq;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{CURRENT, TIME};
 use servobench_config::{ParameterError, positive};
@@ -85,6 +87,22 @@ pub fn step(p: &Params, x: &mut State, square: f64, h: f64) {
     let nominal = p.continuous_current * p.continuous_current;
     x.load -= libm::expm1(-h / p.time_constant) * (square / nominal - x.load);
     x.is_reached = x.load >= 1.0 || x.is_reached && x.load > RELEASE;
+}
+
+/// Largest current (A, peak) that the thermal loads of motor and drive leave of `most` under the measured `current`, which they take
+/// for `h` (s).
+#[inline(always)]
+pub(crate) fn limit(loads: [Option<&Params>; 2], states: &mut [State; 2], current: Dq, most: f64, h: f64) -> f64 {
+    let Dq { d, q } = current;
+    let mut limit = most;
+    for (load, state) in loads.into_iter().zip(states) {
+        let Some(load) = load else { continue };
+        step(load, state, d * d + q * q, h);
+        if state.is_reached && load.reaction == Reaction::Derate {
+            limit = limit.min(load.continuous_current);
+        }
+    }
+    limit
 }
 
 #[cfg(test)]

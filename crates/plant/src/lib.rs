@@ -43,8 +43,8 @@ pub use modes::Mode;
 pub use power_stage::PowerStage;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{
-    Converter, CurrentSensor, CurrentSensorParameter, Encoder, EncoderErrors, EncoderParameter, EncoderState, Reading,
-    Signals, Track,
+    Converter, CurrentSensor, CurrentSensorParameter, Edge, Encoder, EncoderErrors, EncoderParameter, EncoderState,
+    Reading, Signals, Track,
 };
 pub use source::{IdealSource, SourceOutput};
 pub use switches::{SwitchPoint, SwitchReading, Switches};

@@ -2,6 +2,7 @@
 use crate::schema::json_schema;
 use serde_json::Value;
 use servobench_config::Parameter;
+use servobench_drive::measurement::mt;
 use servobench_drive::{self as drive, cogging, current, delay, feedforward, filter, velocity};
 use servobench_plant::SwitchPoint;
 use std::collections::VecDeque;
@@ -9,7 +10,7 @@ use std::sync::LazyLock;
 
 /// Parameters of the firmware whose key says them in another way – a bandwidth, a rate, a share –, and the table where several keys
 /// decide on one.
-const SAID_OTHERWISE: [(&Parameter, &str); 18] = [
+const SAID_OTHERWISE: [(&Parameter, &str); 19] = [
     (drive::Parameter::TRANSMISSION, "axis"),
     (drive::Parameter::POSITION_GAIN, "drive.position.gain"),
     (drive::Parameter::POSITION_RATE, "drive.position.rate"),
@@ -22,6 +23,7 @@ const SAID_OTHERWISE: [(&Parameter, &str); 18] = [
     (delay::Parameter::DELAY, "drive.feedforward.delay"),
     (cogging::Parameter::AMPLITUDE, "drive.cogging"),
     (cogging::Parameter::PHASE, "drive.cogging"),
+    (mt::Parameter::STEP, "motor.encoder"),
     (filter::Parameter::FREQUENCY, "drive.filter"),
     (filter::Parameter::DAMPING, "drive.filter"),
     (filter::Parameter::ZERO_FREQUENCY, "drive.filter"),
@@ -90,6 +92,10 @@ mod tests {
             drive::overload::Parameter::ALL,
             drive::schedule::Parameter::ALL,
             drive::supervision::Parameter::ALL,
+            drive::derivative::Parameter::ALL,
+            drive::position::Parameter::ALL,
+            mt::Parameter::ALL,
+            drive::measurement::observer::Parameter::ALL,
         ];
         all.into_iter().flatten().copied()
     }

@@ -21,6 +21,7 @@ mod inputs;
 mod inverter;
 mod keys;
 mod loops;
+mod measurement;
 mod mode;
 mod motor;
 mod motor_effects;

@@ -179,6 +179,12 @@ order = 12
 amplitude = "0.02 Nm"
 "#;
 
+/// The same with the velocity measured by `method`, which has these `keys`.
+fn measured_by(method: &str, keys: &str) -> String {
+    let with = format!("bandwidth = \"20 Hz\"\nmeasurement = \"{method}\"\n{keys}");
+    FIRMWARE.replace("bandwidth = \"20 Hz\"", &with)
+}
+
 /// Of a table of points, what only moves use: no block chooses velocities by these rules.
 const OF_MOVES: [&str; 2] = ["call[].table.passes", "call[].table.velocities"];
 
@@ -264,6 +270,8 @@ fn a_key_that_is_written_with_its_default_changes_nothing() {
         OF_FMU.to_owned(),
         OF_A_MOTOR.to_owned(),
         FIRMWARE.to_owned(),
+        measured_by("observer", "observer = { bandwidth = \"200 Hz\" }"),
+        measured_by("mt", "[motor.encoder]\nstep = \"0.1 deg\""),
     ]);
     let more: Vec<_> = more.map(|text| (text, repository())).collect();
     for (text, folder) in &more {

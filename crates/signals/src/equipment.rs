@@ -40,12 +40,12 @@ pub struct MotorEffects {
 /// Which sensors err.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Erring {
-    /// The encoder on the motor.
-    pub motor_encoder: bool,
-    /// The encoder on the load that closes the position loop.
-    pub load_encoder: bool,
+    /// The encoder on the motor, and that on the load where it closes the position loop.
+    pub encoders: [bool; 2],
     /// The current sensors, or the angle by which their currents are known.
     pub current: bool,
+    /// The velocity, which the drive measures by a method of its own.
+    pub velocity: bool,
 }
 
 /// What there is of a motor.
@@ -106,6 +106,8 @@ pub enum Presence {
     LoadEncoderErrs,
     /// Where the measured current errs.
     CurrentErrs,
+    /// Where the drive measures the velocity by a method of its own.
+    MeasuresVelocity,
     /// With an inverter that is not ideal.
     WithInverter,
     /// With a DC link whose voltage changes.
@@ -130,9 +132,10 @@ impl Presence {
             Self::WithEndStops => equipment.end_stops,
             Self::WithIronLoss => equipment.effects.iron_loss,
             Self::WithThermalModel => equipment.effects.thermal_model,
-            Self::MotorEncoderErrs => equipment.erring.motor_encoder,
-            Self::LoadEncoderErrs => equipment.erring.load_encoder,
+            Self::MotorEncoderErrs => equipment.erring.encoders[0],
+            Self::LoadEncoderErrs => equipment.erring.encoders[1],
             Self::CurrentErrs => equipment.erring.current,
+            Self::MeasuresVelocity => equipment.erring.velocity,
             Self::WithInverter => equipment.inverter[0],
             Self::WithLink => equipment.inverter[1],
         }

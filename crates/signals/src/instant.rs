@@ -65,6 +65,8 @@ pub struct Instant {
     pub end_stop: f64,
     /// What the encoders of motor and load say.
     pub measured_position: [f64; 2],
+    /// Velocity of the motor as the velocity loop saw it at its last cycle, where a method of the drive measures it.
+    pub measured_velocity: f64,
     /// Currents of the motor as the current loop measured them at its last cycle.
     pub measured_current: Dq,
     /// What hardware says of itself at this tick.

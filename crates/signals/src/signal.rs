@@ -180,6 +180,8 @@ signals! {
         "torque or force of the end stops on the load; where it has some";
     MeasuredMotorPosition "measured.motor.position" Axis(0) Encoder MotorEncoderErrs |now| now.measured_position[0];
         "position of the motor as its encoder says, in the axis coordinate; where the encoder errs";
+    MeasuredMotorVelocity "measured.motor.velocity" Axis(1) VelocityLoop MeasuresVelocity |now| now.measured_velocity;
+        "velocity of the motor as the velocity loop sees it, in the axis coordinate; where the drive measures it by a method of its own";
     MeasuredLoadPosition "measured.load.position" Axis(0) Encoder LoadEncoderErrs |now| now.measured_position[1];
         "position of the load as its encoder says; where the encoder errs";
     MeasuredCurrentD "measured.current.d" Ampere CurrentLoop CurrentErrs |now| now.measured_current.d;

@@ -13,6 +13,7 @@ use crate::machine::Machine;
 use crate::network::Network;
 use crate::program::Program;
 use servobench_base::{Rate, Setpoint, Tick};
+use servobench_drive::measurement;
 use servobench_drive::unwrap::Unwrap;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::JUDGED_BY;
@@ -187,7 +188,11 @@ impl Control {
             Feedback::Motor => None,
             Feedback::Load(encoder) => Some(EncoderInput::new(encoder, 1, h)?),
         };
-        Ok(Self { params, state, motor_encoder: EncoderInput::new(motor_encoder, 0, h)?, load_encoder })
+        let mut motor_encoder = EncoderInput::new(motor_encoder, 0, h)?;
+        if matches!(params.blocks.measurement, Some(measurement::Params::Mt(_))) {
+            motor_encoder.encoder = motor_encoder.encoder.with_timed_edges(0, h);
+        }
+        Ok(Self { params, state, motor_encoder, load_encoder })
     }
 }
 
@@ -287,9 +292,12 @@ fn erring(actuator: &Actuator) -> Erring {
     let Some(drive) = actuator.drive() else { return Erring::default() };
     let motor = actuator.encoder().and_then(|encoder| encoder.errors);
     Erring {
-        motor_encoder: motor.is_some(),
-        load_encoder: matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
+        encoders: [
+            motor.is_some(),
+            matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
+        ],
         current: matches!(actuator, Actuator::Pmsm { .. }) && (drive.current_sensor.is_some() || motor.is_some()),
+        velocity: drive.params.blocks.measurement.is_some(),
     }
 }
 

@@ -6,11 +6,13 @@ use crate::network::{Measurement, Network, Request};
 use crate::program::Program;
 use crate::run::Reason;
 use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
+use servobench_drive::measurement::Edge;
 use servobench_drive::unwrap::Unwrap;
 use servobench_drive::velocity::Cut;
 use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
 use servobench_plant::{
-    Actuation, BodyState, EncoderState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Reading, Switches,
+    self as plant, Actuation, BodyState, EncoderState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Reading,
+    Switches,
 };
 use servobench_scenario::DisturbedBody;
 use servobench_signals::Instant;
@@ -207,6 +209,7 @@ impl ClosedLoop {
             motor_position: reading.position,
             rotor_position: reading.to_rotor.map(|further| reading.position + further),
             motor_velocity: reading.velocity,
+            motor_edge: reading.edge.map(|plant::Edge { age, offset }| Edge { age, offset }),
             feedback: match &mut control.load_encoder {
                 None => Feedback::Motor,
                 Some(input) => {
@@ -275,6 +278,9 @@ impl ClosedLoop {
         now.current_reference = held.current_reference;
         now.voltage_reference = held.current.computed;
         now.measured_current = held.current.current;
+        if params.blocks.measurement.is_some() {
+            now.measured_velocity = direction * state.velocity(params);
+        }
         now.binds = PerLimit {
             voltage: held.current.saturated,
             current: held.effort.cut == Some(Cut::Available),

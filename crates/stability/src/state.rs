@@ -1,14 +1,17 @@
 //! What a base tick of the linear loop leaves to the next one: deviations from the operating point.
 use servobench_base::Dq;
 use servobench_drive::filter;
+use servobench_drive::measurement::observer;
 use servobench_plant::Chain;
 
 /// States of the mechanics: stretches and velocities of the longest chain.
 pub(crate) const MECHANICS: usize = 2 * Chain::MAX_BODIES - 1;
 /// Number of states of a loop without filters.
 pub(crate) const STATES: usize = MECHANICS + 17;
-/// Number of states with as many filters as there can be; those of the filters come last, two of each.
-pub(crate) const MOST_STATES: usize = STATES + 2 * filter::MOST;
+/// Number of states with as many filters as there can be, two of each.
+pub(crate) const FILTERED: usize = STATES + 2 * filter::MOST;
+/// Number of states with all that a drive can have; those of parts that most drives have not come last.
+pub(crate) const MOST_STATES: usize = FILTERED + 7;
 /// First current of the motor.
 pub(crate) const CURRENT: usize = MECHANICS + 2;
 /// First state of the controllers; all behind it are.
@@ -48,6 +51,16 @@ pub(crate) struct State {
     pub(crate) applied_travel: f64,
     /// Filters behind the velocity loop (motor coordinate).
     pub(crate) filters: filter::State,
+    /// Integral of the position error (axis coordinate).
+    pub(crate) position_integral: f64,
+    /// Position that closes the loop at the last cycle of the position loop (axis coordinate).
+    pub(crate) last_position: f64,
+    /// Filtered rate of change of the position error (axis coordinate).
+    pub(crate) position_rate: f64,
+    /// Filtered acceleration (motor coordinate).
+    pub(crate) acceleration: f64,
+    /// The observer of the velocity (motor coordinate).
+    pub(crate) observer: observer::State,
 }
 
 impl State {
@@ -56,6 +69,16 @@ impl State {
         let mut array = [0.0; MOST_STATES];
         let (mechanics, others) = array.split_at_mut(MECHANICS);
         let (others, filters) = others.split_at_mut(STATES - MECHANICS);
+        let (filters, parts) = filters.split_at_mut(FILTERED - STATES);
+        parts.copy_from_slice(&[
+            self.position_integral,
+            self.last_position,
+            self.position_rate,
+            self.acceleration,
+            self.observer.behind,
+            self.observer.velocity,
+            self.observer.disturbance,
+        ]);
         filters.copy_from_slice(self.filters.memory.as_flattened());
         mechanics.copy_from_slice(&self.mechanics);
         others.copy_from_slice(&[
@@ -84,6 +107,7 @@ impl State {
     pub(crate) fn unit(index: usize) -> Self {
         let entry = |i: usize| if i == index { 1.0 } else { 0.0 };
         let other = |i: usize| entry(MECHANICS + i);
+        let part = |i: usize| entry(FILTERED + i);
         Self {
             mechanics: std::array::from_fn(entry),
             position: other(0),
@@ -100,6 +124,11 @@ impl State {
             applied: Dq { d: other(14), q: other(15) },
             applied_travel: other(16),
             filters: filter::State { memory: std::array::from_fn(|i| [other(17 + 2 * i), other(18 + 2 * i)]) },
+            position_integral: part(0),
+            last_position: part(1),
+            position_rate: part(2),
+            acceleration: part(3),
+            observer: observer::State { behind: part(4), velocity: part(5), disturbance: part(6) },
         }
     }
 }

@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 
 /// What acts on what: bit j of row i says whether state j acts on state i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Pattern([u32; MOST_STATES]);
+pub(crate) struct Pattern([u64; MOST_STATES]);
 
 impl Pattern {
     /// Every state acts on itself alone.
@@ -28,7 +28,7 @@ impl Pattern {
 
     /// What acts on what when `first` comes before this one.
     pub(crate) fn after(&self, first: &Self) -> Self {
-        let through = |row: u32| (0..MOST_STATES).filter(|&j| row & 1 << j != 0).fold(0, |sum, j| sum | first.0[j]);
+        let through = |row: u64| (0..MOST_STATES).filter(|&j| row & 1 << j != 0).fold(0, |sum, j| sum | first.0[j]);
         Self(self.0.map(through))
     }
 

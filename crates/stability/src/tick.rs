@@ -5,10 +5,11 @@
 //! operating point at standstill: no set-point, no limit, no rounding of encoders. A loop that is opened puts out nothing.
 use crate::electrical::Electrical;
 use crate::model::{Loop, PositionFeedback, Source, VelocitySignal};
-use crate::state::{MECHANICS, STATES, State};
+use crate::state::{MECHANICS, MOST_STATES, STATES, State};
 use nalgebra::DMatrix;
 use servobench_base::Dq;
-use servobench_drive::{Stage, filter};
+use servobench_drive::measurement::{self, observer};
+use servobench_drive::{Stage, derivative, filter};
 use servobench_plant::transition;
 
 /// Which loops have their turn at a tick.
@@ -87,8 +88,12 @@ impl<'a> Tick<'a> {
         self.model
     }
 
-    /// Number of states: two more for each filter.
+    /// Number of states: two more for each filter, and all of them with parts that most drives have not.
     pub(crate) fn states(&self) -> usize {
+        let blocks = &self.model.drive.blocks;
+        if blocks.position.is_some() || blocks.acceleration.is_some() || blocks.observer().is_some() {
+            return MOST_STATES;
+        }
         STATES + 2 * self.model.drive.blocks.filters.sections().len()
     }
 
@@ -145,20 +150,52 @@ impl<'a> Tick<'a> {
             PositionFeedback::Load => self.load_position(x),
         };
         let gain = if self.closed.position { self.factors.position * p.position_gain } else { 0.0 };
-        x.velocity_reference = -gain * position;
+        let Some(parts) = &p.blocks.position else {
+            x.velocity_reference = -gain * position;
+            return;
+        };
+        let h = p.period(p.position_every);
+        let derivative = parts.derivative.map_or(0.0, |derivative| {
+            let mut of_error = derivative::State { last: Some(-x.last_position), rate: x.position_rate };
+            let derivative = derivative::step(&derivative, &mut of_error, -position, h);
+            (x.last_position, x.position_rate) = (position, of_error.rate);
+            derivative
+        });
+        x.velocity_reference = gain * (-position + x.position_integral + derivative);
+        if let Some(integral_time) = parts.integral_time {
+            x.position_integral -= h / integral_time * position;
+        }
     }
 
     fn velocity_loop(&self, x: &mut State) {
         let p = &self.model.drive;
         let h = p.period(p.velocity_every);
-        let measured = match self.model.velocity_signal {
-            VelocitySignal::Encoder => self.motor_speed(x),
-            VelocitySignal::Differences => std::mem::take(&mut x.travelled) / h,
+        let method = p.blocks.measurement.as_ref();
+        let measured = match (method, self.model.velocity_signal) {
+            (None, VelocitySignal::Encoder) => self.motor_speed(x),
+            (Some(measurement::Params::Observer(observer)), _) => {
+                let travelled = std::mem::take(&mut x.travelled);
+                observer::step(observer, &mut x.observer, travelled, x.effort)
+            }
+            (None | Some(measurement::Params::Difference | measurement::Params::Mt(_)), _) => {
+                std::mem::take(&mut x.travelled) / h
+            }
         };
+        let last = x.filtered_velocity;
         x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
         let gain = if self.closed.velocity { self.factors.velocity * p.velocity.k_p } else { 0.0 };
         let reference = x.velocity_reference / p.transmission;
-        let proportional = gain * (p.blocks.reference_weight * reference - x.filtered_velocity);
+        let mut proportional = gain * (p.blocks.reference_weight * reference - x.filtered_velocity);
+        if let Some(acceleration) = &p.blocks.acceleration {
+            let mut of_velocity = derivative::State { last: Some(last), rate: x.acceleration };
+            proportional -= gain * derivative::step(acceleration, &mut of_velocity, x.filtered_velocity, h);
+            x.acceleration = of_velocity.rate;
+        }
+        if let Some(observer) = p.blocks.observer()
+            && self.closed.velocity
+        {
+            proportional -= observer.compensation * x.observer.disturbance;
+        }
         x.effort = filter::step(&p.blocks.filters, &mut x.filters, proportional + x.velocity_integral);
         if let Some(integral_time) = p.velocity.integral_time {
             x.velocity_integral += h / integral_time * (gain * (reference - x.filtered_velocity));

@@ -139,6 +139,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[
             curve(&[Signal::LoadVelocity.name()], "load", style::LOAD, WIDEST),
             curve(&[Signal::MotorVelocity.name()], "motor", style::MOTOR, WIDE),
+            curve(&[Signal::MeasuredMotorVelocity.name()], "motor as measured", style::AUXILIARY, SLIM),
             curve(&[Signal::TableVelocity.name()], "table", style::TABLE, THIN),
             curve(
                 &[Signal::VelocityReference.name(), Signal::SetpointVelocity.name()],

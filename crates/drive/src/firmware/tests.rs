@@ -310,3 +310,89 @@ fn a_finding_is_told_until_the_power_goes_off() {
     }
     assert_eq!(x.finding(), None, "and without power nothing is looked for");
 }
+
+/// Oracle: by hand. By its own choice the drive takes differences of an encoder that gives a velocity; an observer has its state, driven by
+/// the effort of the cycle before.
+#[test]
+fn the_velocity_is_measured_by_the_method_that_is_chosen() {
+    use crate::measurement::{Params as Method, observer};
+    let h = 1e-3;
+    let observer = observer::Params::new(900.0, h, 130.0, 0.0).unwrap();
+    for measurement in [None, Some(Method::Difference), Some(Method::Observer(observer))] {
+        let p = Params { blocks: crate::Blocks { measurement, ..crate::Blocks::default() }, ..emps() };
+        let (mut x, mut alone, mut last, mut effort) = (at_rest(&p), observer::State::default(), None, 0.0);
+        for k in 0..50_u32 {
+            let position = 1e-5 * (0.3 * f64::from(k)).sin();
+            let sensors = Sensors { motor_position: position, motor_velocity: Some(0.7), ..Sensors::default() };
+            step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
+            let travelled = position - last.replace(position).unwrap_or(position);
+            let exact = match measurement {
+                None => 0.7,
+                Some(Method::Difference) => travelled / h,
+                _ => observer::step(&observer, &mut alone, travelled, effort),
+            };
+            assert!((x.velocity(&p) - exact).abs() < 1e-15, "{k}: {} {exact}", x.velocity(&p));
+            effort = x.held.effort.effort;
+            for _ in 1..16 {
+                step(&p, &mut x, &REST, EffortLimits::NONE, &sensors);
+            }
+        }
+    }
+}
+
+/// Oracle: the blocks by themselves: K_v·(e + I + D) is asked for, and the derivative of the velocity taken off. Without power nothing of
+/// them stays.
+#[test]
+fn integral_and_derivative_are_parts_of_their_loops() {
+    let derivative = derivative::Params { time: 3e-3, filter_time: 0.7e-3 };
+    let shaping = position::Params { integral_time: Some(40e-3), derivative: Some(derivative) };
+    let blocks = crate::Blocks { position: Some(shaping), acceleration: Some(derivative), ..crate::Blocks::default() };
+    let (with, without) = (Params { blocks, ..emps() }, emps());
+    let (mut x, mut of_position, mut of_velocity) =
+        (at_rest(&with), position::State::default(), derivative::State::default());
+    for k in 0..60_u32 {
+        let (position, velocity) = (3e-6 * (0.2 * f64::from(k)).cos(), 1e-5 * (0.31 * f64::from(k)).sin());
+        let sensors = Sensors { motor_position: position, motor_velocity: Some(velocity), ..Sensors::default() };
+        for _ in 0..16 {
+            step(&with, &mut x, &REST, EffortLimits::NONE, &sensors);
+        }
+        let asked = 160.18 * position::step(&shaping, &mut of_position, -position, 0.0, 1e-3);
+        let less = derivative::step(&derivative, &mut of_velocity, velocity, 1e-3);
+        let effort = without.velocity.k_p * (asked - velocity - less);
+        assert!((x.held.velocity_reference - asked).abs() < 1e-15, "{k}");
+        assert!((x.held.effort.effort - effort).abs() < 1e-12 * without.velocity.k_p, "{k}");
+    }
+    step(&with, &mut x, &Demand::Off, EffortLimits::NONE, &Sensors::default());
+    for _ in 0..16 {
+        step(&with, &mut x, &REST, EffortLimits::NONE, &Sensors::default());
+    }
+    assert_eq!((x.position.integral.to_bits(), x.acceleration.rate.to_bits()), (0, 0), "{x:?}");
+}
+
+/// Oracle: by hand. At the speed limit, and at the effort limit, the integral does not grow in the direction of the limit.
+#[test]
+fn the_integral_of_the_position_waits_at_limits() {
+    let shaping = Some(position::Params { integral_time: Some(40e-3), derivative: None });
+    for (max_speed, far) in [(0.01, 1e-3), (f64::INFINITY, 0.9)] {
+        let blocks = crate::Blocks { position: shaping, max_speed, ..crate::Blocks::default() };
+        let p = Params { blocks, ..emps() };
+        for sign in [1.0, -1.0] {
+            let mut x = at_rest(&p);
+            let demand = Demand::position(Setpoint::at_rest(sign * far));
+            for _ in 0..16 {
+                step(&p, &mut x, &demand, EffortLimits::NONE, &Sensors::default());
+            }
+            let first = x.position.integral;
+            assert!((first - sign * far * 1e-3 / 40e-3).abs() < 1e-15, "the limit is met in the first cycle: {first}");
+            for _ in 0..1600 {
+                step(&p, &mut x, &demand, EffortLimits::NONE, &Sensors::default());
+            }
+            assert_eq!(x.position.integral.to_bits(), first.to_bits());
+            let beyond = Sensors { motor_position: sign * 1.001 * far, ..Sensors::default() };
+            for _ in 0..1600 {
+                step(&p, &mut x, &demand, EffortLimits::NONE, &beyond);
+            }
+            assert!(sign * x.position.integral < sign * first, "against it it does");
+        }
+    }
+}

@@ -12,6 +12,7 @@
 //!
 //! An ideal encoder gives the velocity, too; one that errs does so while only zero, turns or commutation do.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use super::edge::{Edge, Timing};
 use super::latency::Past;
 use super::noise::Noise;
 use super::signals::{Evaluation, Signals};
@@ -108,6 +109,8 @@ pub struct Reading {
     pub velocity: Option<f64>,
     /// What the drive adds to the position for its commutation, if anything (rad or m).
     pub to_rotor: Option<f64>,
+    /// Its last edge, where edges are timed and there has been one.
+    pub edge: Option<Edge>,
     /// Whether the encoder has found that its signals cannot be trusted; it stays.
     pub error: bool,
 }
@@ -169,6 +172,7 @@ struct Erring {
     noise: Noise,
     past: Option<Past>,
     evaluation: Option<Evaluation>,
+    timing: Option<Timing>,
     gives_velocity: bool,
     /// What the drive adds to the position for its commutation.
     to_rotor: f64,
@@ -184,17 +188,17 @@ impl EncoderState {
     /// [`ParamError`] names the parameter that is out of its bound.
     pub fn new(encoder: Encoder, number: u32, h: f64) -> Result<Self, ParamError> {
         encoder.check()?;
-        let erring = |errors: EncoderErrors| Erring {
-            errors,
-            noise: Noise::new(errors.seed, 2 + number),
-            past: (errors.latency > 0.0).then(|| Past::new(errors.latency, h)),
-            evaluation: errors.signals.map(Evaluation::new),
-            gives_velocity: encoder.gives_velocity(),
-            to_rotor: errors.commutation - errors.zero,
-            taken: 0,
-            h,
-        };
-        Ok(Self { encoder, erring: encoder.errors.map(|errors| Box::new(erring(errors))) })
+        Ok(Self { encoder, erring: encoder.errors.map(|errors| Box::new(Erring::new(encoder, errors, number, h))) })
+    }
+
+    /// The same, which also tells when its last edge was; only an encoder with increments has edges.
+    #[must_use]
+    pub fn with_timed_edges(self, number: u32, h: f64) -> Self {
+        let encoder = self.encoder;
+        let mut erring =
+            self.erring.unwrap_or_else(|| Box::new(Erring::new(encoder, EncoderErrors::default(), number, h)));
+        erring.timing = encoder.increment.map(|_| Timing::default());
+        Self { encoder, erring: Some(erring) }
     }
 
     /// Reads `body`, on which it sits. To be called once at each tick.
@@ -215,6 +219,20 @@ impl EncoderState {
 }
 
 impl Erring {
+    fn new(encoder: Encoder, errors: EncoderErrors, number: u32, h: f64) -> Self {
+        Self {
+            errors,
+            noise: Noise::new(errors.seed, 2 + number),
+            past: (errors.latency > 0.0).then(|| Past::new(errors.latency, h)),
+            evaluation: errors.signals.map(Evaluation::new),
+            timing: None,
+            gives_velocity: encoder.gives_velocity(),
+            to_rotor: errors.commutation - errors.zero,
+            taken: 0,
+            h,
+        }
+    }
+
     /// Not inlined into the tick, whose registers it would take.
     #[inline(never)]
     fn read(&mut self, body: BodyState, increment: Option<f64>) -> Reading {
@@ -234,8 +252,13 @@ impl Erring {
         if errors.noise > 0.0 {
             position += errors.noise * self.noise.value(self.taken);
         }
+        let mut edge = None;
         if let Some(step) = increment {
-            position = turn::whole(position / step) * step;
+            let count = turn::whole(position / step);
+            if let Some(timing) = &mut self.timing {
+                edge = timing.read(position, count, step, self.h);
+            }
+            position = count * step;
         }
         if let Some(range) = errors.range
             && !(0.0..range).contains(&position)
@@ -247,6 +270,7 @@ impl Erring {
             position,
             velocity: self.gives_velocity.then_some(body.velocity),
             to_rotor: (self.to_rotor != 0.0).then_some(self.to_rotor),
+            edge,
             error: self.evaluation.as_ref().is_some_and(Evaluation::alarm),
         }
     }

@@ -14,7 +14,10 @@ use servobench_config::quantities::{
 };
 use servobench_config::{choices, not_negative, positive};
 use servobench_drive::current::operating_point::{self, Strategy};
-use servobench_drive::{self as drive, BlockParameter, EffortFeedforward, current, feedforward, velocity};
+use servobench_drive::measurement::{Method, mt, observer};
+use servobench_drive::{
+    self as drive, BlockParameter, EffortFeedforward, current, derivative, feedforward, position, velocity,
+};
 
 choices! {
     /// Which encoder closes the position loop.
@@ -141,11 +144,31 @@ table! {
         max_speed: f64 = BlockParameter::MAX_SPEED,
         /// default: 1.
         reference_weight: f64 = BlockParameter::REFERENCE_WEIGHT,
+        /// How the velocity of the motor is measured; by default an encoder without increments and errors gives it, of any other the
+        /// drive takes differences.
+        measurement: Method = OneOf,
+        /// (with "mt"); default: 100 ns.
+        timer: f64 = mt::Parameter::TIMER,
+        /// The observer (with "observer").
+        observer: Observer = (),
+        /// default: none.
+        derivative_time: f64 = derivative::Parameter::VELOCITY_TIME,
+        /// default: a tenth of `derivative_time`.
+        derivative_filter_time: f64 = derivative::Parameter::VELOCITY_FILTER_TIME,
     }
 }
 
 table! {
-    /// Position loop: proportional.
+    /// An observer of position, velocity and disturbance of the motor, by the estimated inertia and the effort that the drive asks for.
+    pub(crate) struct Observer requires ["bandwidth"] {
+        bandwidth: f64 = observer::Parameter::OBSERVER_BANDWIDTH,
+        /// default: 0.
+        disturbance_compensation: f64 = observer::Parameter::COMPENSATION,
+    }
+}
+
+table! {
+    /// Position loop: proportional, with integral and derivative where their times are given.
     pub(crate) struct Position {
         /// Task rate; it divides the rate of the velocity loop.
         rate: Rate = "4 kHz",
@@ -153,6 +176,12 @@ table! {
         bandwidth: f64 = positive(Plain(&BANDWIDTH), "20 Hz"),
         /// Proportional gain K_v instead of the bandwidth.
         gain: f64 = positive(Plain(&POSITION_GAIN), "160 1/s"),
+        /// default: none.
+        integral_time: f64 = position::Parameter::INTEGRAL_TIME,
+        /// default: none.
+        derivative_time: f64 = derivative::Parameter::POSITION_TIME,
+        /// default: a tenth of `derivative_time`.
+        derivative_filter_time: f64 = derivative::Parameter::POSITION_FILTER_TIME,
     }
 }
 

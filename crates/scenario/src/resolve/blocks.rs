@@ -2,8 +2,9 @@
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
+use crate::resolve::estimate::Belief;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Alternative, one_of, supervision, torque_filter};
+use crate::resolve::{Alternative, measurement, one_of, supervision, torque_filter};
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::cogging::{self, Harmonic};
 use servobench_drive::current::dead_time;
@@ -13,6 +14,7 @@ use servobench_drive::{Blocks, schedule};
 /// What the blocks need to know.
 pub(super) struct Known<'a> {
     pub(super) motor: Option<&'a Motor>,
+    pub(super) belief: Option<&'a Belief>,
     /// Rate of the velocity loop.
     pub(super) rate: Option<Rate>,
     /// How long an effort of the velocity loop takes to act (s).
@@ -42,6 +44,8 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         Some(current) => current.measured_dc_link.optional()?.copied().unwrap_or(false),
         None => false,
     };
+    let measurement = measurement::resolve(drive, known, report);
+    let (acceleration, position) = (measurement::acceleration(drive, report), measurement::position(drive, report));
     Ok(Blocks {
         filters: filters?,
         cogging: cogging?,
@@ -52,6 +56,9 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         reference_weight: reference_weight?,
         supervision: supervision?,
         measures_dc_link,
+        measurement: measurement?,
+        acceleration: acceleration?,
+        position: position?,
     })
 }
 

@@ -78,7 +78,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     };
     let base_rate = known.base_rate?;
     let lag = velocity_rate.map_or(0.0, |rate| lag(rate, base_rate, &stage));
-    let known_here = blocks::Known { motor: known.motor, rate: velocity_rate, lag, has_bus: file.bus.span().is_some() };
+    let has_bus = file.bus.span().is_some();
+    let known_here = blocks::Known { motor: known.motor, belief: belief_of, rate: velocity_rate, lag, has_bus };
     let blocks = blocks::resolve(given, &known_here, report);
     let parts = Parts {
         base_rate,

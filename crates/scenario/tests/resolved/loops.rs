@@ -166,7 +166,20 @@ fn blocks_of_the_firmware_are_those_of_the_file() {
         drive = { continuous_current = \"5 Arms\", peak_time = \"2 s\" }\n";
     let scenario = scenario(&format!("{SCREW}\n{given}"));
     let (params, (_, dc_link, current)) = (params(&scenario), motor(&scenario));
-    let Blocks { filters, cogging, motor_load, drive_load, schedule, max_speed, reference_weight, .. } = &params.blocks;
+    let Blocks {
+        filters,
+        cogging,
+        motor_load,
+        drive_load,
+        schedule,
+        max_speed,
+        reference_weight,
+        measurement,
+        acceleration,
+        position,
+        supervision,
+        measures_dc_link,
+    } = &params.blocks;
     let (zero_frequency, zero_damping, pole_frequency, pole_damping) = (400.0, 0.1, 500.0, 0.7);
     let exact = [
         filter::Filter::LowPass { frequency: 700.0 },
@@ -174,6 +187,8 @@ fn blocks_of_the_firmware_are_those_of_the_file() {
     ];
     assert_eq!(*filters, filter::Params::new(&exact, params.velocity_rate()).unwrap());
     assert!(same(*max_speed, 3000.0 * TAU / 60.0) && same(*reference_weight, 0.7));
+    assert_eq!((*measurement, *acceleration, *position), (None, None, None));
+    assert_eq!((*supervision, *measures_dc_link), (None, false));
     assert_eq!(*schedule, Some(schedule::Params { from: 1.0, to: 2.0, position: 1.0, velocity: 0.5 }));
     let cogging = cogging.unwrap();
     assert!(same(cogging.effort(0.3, 0.0), -0.02 * (12.0_f64 * 0.3 + TAU / 12.0).sin()));
@@ -221,4 +236,35 @@ fn faults_and_their_supervision_are_those_of_the_file() {
     for (found, expected) in numbers(&found).into_iter().zip(numbers(&expected)) {
         assert!(same(found, expected), "{found} {expected}");
     }
+}
+
+/// Oracle: by hand, from the file to the firmware.
+#[test]
+fn how_the_velocity_is_measured_is_as_the_file_says() {
+    use servobench_drive::measurement::{Params as Method, mt, observer};
+    use servobench_drive::{derivative, position};
+    let with = |keys: &str| params(&scenario(&format!("{SCREW}\n{keys}"))).clone();
+    let found = with("[drive.velocity]\nmeasurement = \"difference\"\n");
+    assert_eq!(found.blocks.measurement, Some(Method::Difference));
+    let found = with("[drive.velocity]\nmeasurement = \"mt\"\n");
+    let Some(Method::Mt(mt::Params { timer, step })) = found.blocks.measurement else { panic!("{found:?}") };
+    assert!(same(timer, 100e-9) && same(step, TAU / 1_048_576.0));
+    let found = with(
+        "[drive.velocity]\nmeasurement = \"observer\"\nobserver = { bandwidth = \"200 Hz\", disturbance_compensation = 0.3 }\n",
+    );
+    let Some(Method::Observer(observer)) = found.blocks.measurement else { panic!("{found:?}") };
+    let inertia = observer.inertia;
+    let exact = observer::Params::new(200.0 * TAU, found.period(found.velocity_every), inertia, 0.3).unwrap();
+    assert_eq!(observer, exact);
+    // The velocity loop's gain is the same inertia times its bandwidth.
+    assert!((found.velocity.k_p / inertia / TAU - 60.0).abs() < 1e-9, "{found:?}");
+    let found = with(
+        "[drive.velocity]\nderivative_time = \"0.4 ms\"\n\
+        [drive.position]\nintegral_time = \"70 ms\"\nderivative_time = \"3 ms\"\nderivative_filter_time = \"1 ms\"\n",
+    );
+    let acceleration = found.blocks.acceleration.unwrap();
+    assert!(same(acceleration.time, 0.4e-3) && same(acceleration.filter_time, 0.04e-3));
+    let position::Params { integral_time, derivative } = found.blocks.position.unwrap();
+    assert!(same(integral_time.unwrap(), 70e-3));
+    assert_eq!(derivative, Some(derivative::Params { time: 3e-3, filter_time: 1e-3 }));
 }

@@ -2,3 +2,4 @@
 mod axis;
 mod current;
 mod encoder;
+mod velocity;

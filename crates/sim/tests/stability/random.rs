@@ -3,7 +3,8 @@ use crate::files::scenario;
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::current::{Gains, Tuning};
 use servobench_drive::filter::{self, Filter};
-use servobench_drive::{Stage, delay};
+use servobench_drive::measurement::{self, observer};
+use servobench_drive::{Stage, delay, derivative, position};
 use servobench_plant::{Body, Chain, Encoder, Friction, Link};
 use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
 use servobench_testkit::Random;
@@ -132,6 +133,7 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     }
     drive.estimate.transmission = transmission * off;
     blocks(random, &mut drive.params);
+    parts(random, &mut drive.params, (inertia, omega));
     scenario
 }
 
@@ -158,6 +160,34 @@ fn blocks(random: &mut Random, params: &mut servobench_drive::Params) {
     }
     if params.velocity.integral_time.is_some() && random.unit() < 0.3 {
         params.blocks.reference_weight = random.unit();
+    }
+}
+
+/// How the velocity is measured, and integral and derivative parts of the outer loops, of some loops with this `inertia` at the motor
+/// and this bandwidth (rad/s) of the velocity loop.
+fn parts(random: &mut Random, params: &mut servobench_drive::Params, (inertia, omega): (f64, f64)) {
+    let period = params.velocity_rate().period();
+    let inertia = inertia * random.logarithmic(0.6, 1.6);
+    let compensation = if random.unit() < 0.5 { random.unit() } else { 0.0 };
+    let observer = observer::Params::new(random.logarithmic(1.0, 8.0) * omega, period, inertia, compensation).unwrap();
+    params.blocks.measurement = match random.one_of(&[0, 0, 0, 1, 2, 2]) {
+        0 => None,
+        1 => Some(measurement::Params::Difference),
+        _ => Some(measurement::Params::Observer(observer)),
+    };
+    let derivative = |time: f64, random: &mut Random| derivative::Params {
+        time,
+        filter_time: if random.unit() < 0.3 { 0.0 } else { time * random.logarithmic(0.1, 1.0) },
+    };
+    if random.unit() < 0.25 {
+        params.blocks.acceleration = Some(derivative(random.logarithmic(0.03, 0.3) / omega, random));
+    }
+    if random.unit() < 0.25 && params.position_gain > 0.0 {
+        params.blocks.position = Some(position::Params {
+            integral_time: (random.unit() < 0.6).then(|| random.logarithmic(3.0, 20.0) / params.position_gain),
+            derivative: (random.unit() < 0.6)
+                .then(|| derivative(random.logarithmic(0.03, 0.3) / params.position_gain, random)),
+        });
     }
 }
 

@@ -1,7 +1,7 @@
 //! Loops whose poles are known in closed form.
 use crate::axes::{MOTOR, TAU, Tuning, body, chain, ideal, report, servo};
 use servobench_drive::current;
-use servobench_drive::{self as drive, filter, velocity};
+use servobench_drive::{self as drive, derivative, filter, measurement, position, velocity};
 use servobench_stability::{GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
 
 /// Boundaries are bisected to 1e-6 of the gain.
@@ -196,4 +196,110 @@ fn bandwidths_are_by_what_the_axis_has() {
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
     }
     assert_eq!(report.warnings, []);
+}
+
+/// By Routh in s = (z − 1)/(z + 1): whether w³ + A·w² + B·w + C, w = z − 1, has all roots within the unit circle.
+fn is_within(a: f64, b: f64, c: f64) -> bool {
+    let [s3, s2, s1, s0] = [8.0 - 4.0 * a + 2.0 * b - c, 4.0 * a - 4.0 * b + 3.0 * c, 2.0 * b - 3.0 * c, c];
+    [s3, s2, s1, s0].iter().all(|coefficient| *coefficient > 0.0) && s2 * s1 > s3 * s0
+}
+
+/// Factor from 1 to `end` at which `holds` changes, by bisection.
+fn change(end: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut same, mut other) = (1.0, end);
+    assert!(holds(same) && !holds(other));
+    for _ in 0..60 {
+        let middle = f64::midpoint(same, other);
+        *(if holds(middle) { &mut same } else { &mut other }) = middle;
+    }
+    same
+}
+
+/// A double integrator under position and velocity, a = K·h/m and b = K_v·h, with these parts of the position loop.
+fn held(a: f64, b: f64, parts: impl Fn(f64) -> position::Params) -> Loop {
+    let (mass, h) = (4.1, 1.0 / 12e3);
+    let rest = ideal(12_000, 1, a * mass / h, chain(vec![body(mass, 0.0)], &[]));
+    let blocks = drive::Blocks { position: Some(parts(h)), ..drive::Blocks::default() };
+    Loop { closes_position: true, drive: drive::Params { position_gain: b / h, blocks, ..rest.drive }, ..rest }
+}
+
+/// Oracle: with c = h/T_i the loop is w³ + (a + a·b/2)·w² + (a·b + a·b·c/2)·w + a·b·c, stable from
+/// a = 8c/((4 − 2b + b·c)·(2 − 2c) + 4c) to 2.
+#[test]
+fn an_integral_of_the_position_needs_velocity_gain() {
+    for (a, b, c) in [(0.7, 0.4, 0.05), (0.31, 0.13, 0.021)] {
+        let of = |h| position::Params { integral_time: Some(h / c), derivative: None };
+        let report = report(&held(a, b, of));
+        let boundaries =
+            report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap().boundaries.unwrap();
+        let least = 8.0 * c / ((4.0 - 2.0 * b + b * c) * (2.0 - 2.0 * c) + 4.0 * c);
+        assert!((boundaries.below.unwrap().factor * a / least - 1.0).abs() < BISECTED, "{boundaries:?} {least}");
+        assert!((boundaries.above.unwrap().factor * a / 2.0 - 1.0).abs() < BISECTED, "{boundaries:?}");
+        let position = report.loops.iter().find(|found| found.name == LoopName::Position).unwrap().boundaries.unwrap();
+        let by_routh = change(50.0, |f| is_within(a + a * f * b / 2.0, a * f * b * (1.0 + c / 2.0), a * f * b * c));
+        assert!((position.above.unwrap().factor / by_routh - 1.0).abs() < BISECTED, "{position:?} {by_routh}");
+    }
+}
+
+/// Oracle: with d = T_d/h and no filter the loop is w³ + (1 + a + a·b·(1 + d)/2)·w² + (a + a·b/2 + a·b·(1 + d))·w + a·b.
+#[test]
+fn a_derivative_of_the_position_moves_the_boundary() {
+    for (a, b, d) in [(0.7, 0.4, 1.3), (0.31, 0.13, 4.7)] {
+        let of = |h| position::Params {
+            integral_time: None,
+            derivative: Some(derivative::Params { time: d * h, filter_time: 0.0 }),
+        };
+        let report = report(&held(a, b, of));
+        let found = report.loops.iter().find(|found| found.name == LoopName::Position).unwrap().boundaries.unwrap();
+        let by_routh = change(200.0, |f| {
+            let ab = a * b * f;
+            is_within(1.0 + a + ab * (1.0 + d) / 2.0, a + ab / 2.0 + ab * (1.0 + d), ab)
+        });
+        assert!((found.above.unwrap().factor / by_routh - 1.0).abs() < BISECTED, "{found:?} {by_routh}");
+    }
+}
+
+/// Oracle: with d = T_d/h and no filter (w + a)·(1 + w) + a·d·w: −1 is reached at a = 2/(1 + 2d); with the filter, f = h/(T_f + h) in
+/// its place, (w + a)·(w + f) + a·d·f·w: at a·(2 − f + 2·d·f) = 2·(2 − f).
+#[test]
+fn a_measured_acceleration_moves_the_boundary() {
+    let (mass, h) = (4.1, 1.0 / 20e3);
+    for (d, filter) in [(0.7, 0.0), (2.9, 0.0), (1.7, 1.31)] {
+        let f = 1.0 / (1.0 + filter);
+        let exact = 2.0 * (2.0 - f) / (2.0 - f + 2.0 * d * f);
+        let rest = ideal(20_000, 1, 0.6 * exact * mass / h, chain(vec![body(mass, 0.0)], &[]));
+        let acceleration = Some(derivative::Params { time: d * h, filter_time: filter * h });
+        let blocks = drive::Blocks { acceleration, ..drive::Blocks::default() };
+        let model = Loop { drive: drive::Params { blocks, ..rest.drive }, ..rest };
+        let boundary = above(&model, LoopName::Velocity) * h / mass;
+        assert!((boundary / exact - 1.0).abs() < BISECTED, "{d} {filter}: {boundary} {exact}");
+    }
+}
+
+/// Oracle: separation. With the right inertia the error of the observer knows nothing of the control: the loop has the poles of an exact
+/// velocity, 1 − a, and those of the observer, with and without compensation of the disturbance. With a wrong inertia it has not.
+#[test]
+fn an_observer_with_the_right_inertia_leaves_the_boundary() {
+    let (mass, h) = (4.1, 2.0 / 20e3);
+    for (share, compensation, is_moved) in [(1.0, 0.0, false), (1.0, 0.83, false), (1.9, 0.0, true), (0.6, 0.83, true)]
+    {
+        let rest = ideal(20_000, 2, 0.6 * mass / h, chain(vec![body(mass, 0.0)], &[]));
+        let observer = measurement::observer::Params::new(911.0, h, share * mass, compensation).unwrap();
+        let measurement = Some(measurement::Params::Observer(observer));
+        let blocks = drive::Blocks { measurement, ..drive::Blocks::default() };
+        let model = Loop {
+            velocity_signal: VelocitySignal::Differences,
+            drive: drive::Params { blocks, ..rest.drive },
+            ..rest
+        };
+        let report = report(&model);
+        assert!(report.is_stable());
+        let boundary = report.loops[0].boundaries.unwrap().above.unwrap().gain * h / mass;
+        assert_eq!((boundary / 2.0 - 1.0).abs() > BISECTED, is_moved, "{share} {compensation}: {boundary}");
+        if !is_moved {
+            // The slowest pole is that of the observer, three of them at once: as exact as the cube root of a rounding.
+            let pole = report.largest.unwrap();
+            assert!((pole.growth / -911.0 - 1.0).abs() < 1e-3, "{pole:?}");
+        }
+    }
 }
