@@ -202,7 +202,10 @@ impl Synchronous {
     /// the DC link.
     #[inline(always)]
     pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) -> f64 {
-        let returned = -self.motor.params().stored_energy(self.state.current) / h;
+        let (params, current) = (self.motor.params(), self.state.current);
+        let effects = self.effects.as_ref();
+        let energy = effects.map_or_else(|| params.stored_energy(current), |real| real.stored_energy(params, current));
+        let returned = -energy / h;
         let power = pmsm::Power { electrical: returned, stored: returned, ..Default::default() };
         let mut output = pmsm::Output { torque: 0.0, power };
         if self.effects.is_some() || self.inverter.is_some() {

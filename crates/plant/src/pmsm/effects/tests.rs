@@ -102,6 +102,7 @@ fn all() -> Effects {
         iron: Some(IronLoss { speed: 157.0, hysteresis: 31.0, eddy: 47.0 }),
         phase_resistance: Some([1.0, 0.97, 1.08]),
         temperature: Some(WARMING),
+        flux_map: None,
     }
 }
 
