@@ -1,7 +1,7 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
 use crate::file::Encoder;
-use crate::file::motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
+use crate::file::motor_effects::{Cogging, FluxHarmonic, FluxMap, IronLoss, Saturation, Temperature, Thermal};
 use crate::list::Many;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -75,6 +75,10 @@ table! {
         temperature: Temperature = (),
         /// How the losses warm them; without it the temperature stays.
         thermal: Thermal = (),
+        /// Saturation of the iron, by one figure of the data sheet.
+        saturation: Saturation = (),
+        /// Saturation of the iron, by a table of flux linkages.
+        flux_map: FluxMap = (),
         /// Encoder on the motor; default: ideal.
         encoder: Encoder = (),
     }

@@ -295,3 +295,40 @@ fn what_is_wrong_with_a_table_is_told() {
         assert!(!error.way_out().is_empty(), "{error}");
     }
 }
+
+/// The tables that scenarios and tests have of that motor: as it is, without saturation, and with iron that saturates at half of the current.
+/// `SERVOBENCH_WRITE_DOCS=1` writes them.
+#[test]
+fn the_tables_that_are_shipped_are_the_published_motor() {
+    let i_d = [-20.0, -17.0, -14.0, -12.0, -10.0, -8.0, -6.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0, 8.0];
+    let i_q = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 14.0, 17.0, 20.0, 24.0];
+    let magnets = published_flux(Dq::default()).d;
+    let at_half = |i: Dq| {
+        let psi = published_flux(Dq { d: 2.0 * i.d, q: 2.0 * i.q });
+        Dq { d: f64::midpoint(psi.d, magnets), q: psi.q / 2.0 }
+    };
+    let linear = |i: Dq| {
+        let small = published_flux(Dq { d: 1e-3, q: 1e-3 });
+        Dq { d: magnets + (small.d - magnets) / 1e-3 * i.d, q: small.q / 1e-3 * i.q }
+    };
+    let all: [(&str, &dyn Fn(Dq) -> Dq); 3] = [
+        ("scenarios/hardware/saturation-table.csv", &published_flux),
+        ("tests/scenarios/saturation-doubled.csv", &at_half),
+        ("tests/scenarios/saturation-off.csv", &linear),
+    ];
+    for (file, flux) in all {
+        use std::fmt::Write;
+        let mut text = "i_d [Apk],i_q [Apk],psi_d [mV s],psi_q [mV s]\n".to_owned();
+        for d in i_d {
+            for q in i_q {
+                let psi = flux(Dq { d, q });
+                writeln!(text, "{d},{q},{:.3},{:.3}", psi.d * 1e3, psi.q * 1e3).unwrap();
+            }
+        }
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file);
+        if std::env::var_os("SERVOBENCH_WRITE_DOCS").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), text, "{file}");
+    }
+}
