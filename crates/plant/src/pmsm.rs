@@ -38,7 +38,7 @@ pub use cogging::{Cogging, CoggingParameter};
 pub use effects::{Effects, RealMotor, Travel};
 pub use envelope::{Bounds, MostEffort};
 pub use flux_harmonics::{FluxHarmonic, FluxHarmonicParameter};
-pub use flux_map::{FluxData, FluxMap, FluxMapError, Saturation, SaturationParameter};
+pub use flux_map::{FluxData, FluxMap, FluxMapError, FluxPart, Saturation, SaturationParameter};
 pub use iron::{IronLoss, IronLossParameter};
 use maps::{Forms, Maps};
 pub use phases::PhaseParameter;

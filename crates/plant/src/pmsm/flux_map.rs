@@ -13,7 +13,7 @@ mod build;
 mod curve;
 mod table;
 
-pub use build::{FluxData, FluxMapError};
+pub use build::{FluxData, FluxMapError, FluxPart};
 use curve::Curve;
 pub use curve::{Saturation, SaturationParameter};
 use servobench_base::{Dq, ParamError};

@@ -6,15 +6,15 @@
 //! ψ(I_j) = ψ_k + h·Σ a_jn·K_n                 K_j = u_j − e_j − R_j·Ĩ_j − ω·J·ψ(I_j)           j = 1, 2
 //! ψ_{k+1} = ψ_k + h/2·(K_1 + K_2)             Ĩ_j = I_j + λ·K_j,  λ such that h/2·Σ Ĩ_j·K_j = W(ψ_{k+1}) − W(ψ_k)
 //! ```
-//! A Gauss method keeps the energy of constant inductances to the rounding. Where they change, it errs by the fifth power of h,
-//! which λ takes back: a discrete gradient (Gonzalez, *Journal of Nonlinear Science* 6, 1996) on top of a collocation, of fourth order as
-//! this (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, 2nd ed., ch. II.1 and V.5). Torque, losses and input are all of Ĩ, so that no
-//! power is lost in a tick however long it is. e is that of the magnets' harmonics and of what their temperature changes; the rest of their
-//! flux linkage is in the map.
+//! A Gauss method keeps the energy of constant inductances to the rounding. Where they change, it errs by the fifth power of h, which λ
+//! takes back: a discrete gradient (Gonzalez, *Journal of Nonlinear Science* 6, 1996) on top of a collocation, of fourth order as this
+//! (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, 2nd ed., ch. II.1 and V.5). Torque, losses and input are all of Ĩ, so
+//! that no power is lost in a tick however long it is. e is that of the magnets' harmonics and of what their temperature changes; the rest
+//! of their flux linkage is in the map.
 //!
-//! A part of a tick is so short that the current decays by a quarter, that the rotor turns by a quarter, that a harmonic
-//! turns by half a radian, and that the inductances change by [`LARGEST_CHANGE`] of themselves at most. Over a line of a table, where its inductances
-//! jump, a part is of second order.
+//! A part of a tick is so short that the current decays by a quarter, that the rotor turns by a quarter, that a harmonic turns by half a
+//! radian, and that the inductances change by [`LARGEST_CHANGE`] of themselves at most. Over a line of a table, where its inductances jump,
+//! a part is of second order.
 use super::flux_harmonics::{Flux, FluxHarmonic};
 use super::flux_map::{CONVERGED, FluxMap, FluxPoint, Inductance, MOST_STEPS};
 use super::phases::{Entries, PhaseMatrix};

@@ -260,8 +260,8 @@ fn what_is_out_of_its_bound_is_refused_by_name() {
     assert!(stage(&all()).is_ok());
 }
 
-/// Oracle: the motor without saturation, for currents at which it has none; and a run that must differ, at those at which it has. On a bridge
-/// that switches, from edge to edge, with what its devices take; what the field has stored comes back over the run.
+/// Oracle: the motor without saturation, for currents at which it has none; and a run that must differ, at those at which it has. On a
+/// bridge that switches, from edge to edge, with what its devices take; what the field has stored comes back over the run.
 #[test]
 fn a_map_is_followed_on_every_inverter() {
     let none =

@@ -5,19 +5,19 @@
 //! around a cell   Γ = ∮ψ·di = Δi_d·Δi_q·(mean L_qd − mean L_dq)    a magnetic circuit without loss has none
 //! W' at the nodes: least squares of what the edges say             the flux linkages at the nodes stay those of the table
 //! ```
-//! The table is refused where Γ says that the two cross inductances differ by more than [`MOST_CURL`] of √(L_d·L_q), the mean inductances over
-//! the table: currents that go round the cell would take energy out of nothing. It is refused where the matrix of the incremental
+//! The table is refused where Γ says that the two cross inductances differ by more than [`MOST_CURL`] of √(L_d·L_q), the mean inductances
+//! over the table: currents that go round the cell would take energy out of nothing. It is refused where the matrix of the incremental
 //! inductances is not positive definite, looked at in five by five points of each cell: more current would make less flux.
 //!
-//! Outside of the table a frame of cells lies around it, up to half as wide as the table. In it the inductances of an edge go on, at least the smallest one of that
-//! edge, while the cross-saturation fades; behind it the flux of each axis is linear in its own current. So all currents have a flux, which grows with them.
+//! Outside of the table a frame of cells lies around it, up to half as wide as the table. In it the inductances of an edge go on, at least
+//! the smallest one of that edge, while the cross-saturation fades; behind it the flux of each axis is linear in its own current. So all
+//! currents have a flux, which grows with them.
 mod error;
 mod grid;
 
 use super::table::{Axis, FluxTable};
 use crate::pmsm::flux_map::Inductance;
-pub use error::FluxMapError;
-pub(crate) use error::Which;
+pub use error::{FluxMapError, FluxPart};
 use grid::Grid;
 use servobench_base::Dq;
 

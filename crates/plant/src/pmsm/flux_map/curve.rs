@@ -5,12 +5,12 @@
 //! W' = A·(s·m²/2 + (1 − s)·(√(1 + g·m²) − 1)/g)
 //! ψ_d = A·x·φ(m)      ψ_q = A·κ·i_q·φ(m)      φ = s + (1 − s)/√(1 + g·m²)
 //! ```
-//! One main flux of all ampere-turns saturates, in both axes by the same factor φ; the part s never does. W' is convex for all currents. φ is a smooth
-//! form of Fröhlich's magnetisation curve (assumed; it has 1 + |m| where this has √(1 + m²)); one factor for both axes is the classical one of
-//! salient machines: de Jong, *IEE Proceedings B* 129, 1982.
+//! One main flux of all ampere-turns saturates, in both axes by the same factor φ; the part s never does. W' is convex for all currents. φ
+//! is a smooth form of Fröhlich's magnetisation curve (assumed; it has 1 + |m| where this has √(1 + m²)); one factor for both axes is the
+//! classical one of salient machines: de Jong, *IEE Proceedings B* 129, 1982.
 //!
-//! A, κ, i_m and g follow from what a data sheet has: ψ and both inductances without current, and φ(i_d = 0, i_q = I)/φ(0, 0) = k, the part of
-//! the torque per ampere, and of L_q, that is left at the current I.
+//! A, κ, i_m and g follow from what a data sheet has: ψ and both inductances without current, and φ(i_d = 0, i_q = I)/φ(0, 0) = k, the part
+//! of the torque per ampere, and of L_q, that is left at the current I.
 //!
 //! ```text
 //! ψ = A·i_m·φ(i_m)      L_d = A·(φ(i_m) + i_m·φ'(i_m))      L_q = A·κ·φ(i_m)

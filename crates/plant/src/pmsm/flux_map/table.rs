@@ -1,12 +1,12 @@
-//! A co-energy that is interpolated in a rectangular grid: bicubic in each cell, with its value, both its derivatives (the flux linkages) and
-//! the mixed one (the cross inductance) at every node.
+//! A co-energy that is interpolated in a rectangular grid: bicubic in each cell, with its value, both its derivatives (the flux linkages)
+//! and the mixed one (the cross inductance) at every node.
 //!
 //! ```text
 //! W'(t, u) = Σ c_ab·t^a·u^b      a, b = 0 … 3      t, u from 0 to 1 in a cell
 //! ```
 //! Flux linkages are continuous and those of the table at its nodes; the inductances are continuous within a cell. Beyond the outermost
-//! nodes, ψ_d goes on with a constant L_dd and ψ_q with a constant L_qq, each by itself; the builder sees to it that ψ_d is constant along the outermost lines
-//! of i_d, and ψ_q along those of i_q. Bicubic Hermite interpolation: Press et al., *Numerical Recipes*, 3rd ed., §3.6.
+//! nodes, ψ_d goes on with a constant L_dd and ψ_q with a constant L_qq, each by itself; the builder sees to it that ψ_d is constant along
+//! the outermost lines of i_d, and ψ_q along those of i_q. Bicubic Hermite interpolation: Press et al., *Numerical Recipes*, 3rd ed., §3.6.
 use super::{FluxPoint, Inductance};
 use servobench_base::Dq;
 
@@ -113,8 +113,8 @@ impl FluxTable {
         FluxPoint { flux, inductance }
     }
 
-    /// ∫ s·Δiᵀ·L(i₀ + s·Δi)·Δi ds from 0 to 1, from line to line of the grid: between them a polynomial of the fifth power, so that the rule
-    /// is exact.
+    /// ∫ s·Δiᵀ·L(i₀ + s·Δi)·Δi ds from 0 to 1, from line to line of the grid: between them a polynomial of the fifth power, so that the
+    /// rule is exact.
     pub(super) fn beyond(&self, before: Dq, after: Dq) -> f64 {
         let change = Dq { d: after.d - before.d, q: after.q - before.q };
         let mut cell = [self.d.cell(before.d), self.q.cell(before.q)];

@@ -1,10 +1,9 @@
-use super::build::Which;
 use super::*;
 use proptest::prelude::*;
 
-/// Magnet-assisted synchronous reluctance motor of 5.5 kW (Baldor ECS101M0H7EF4), fitted to its measured flux linkages: Lelli, Hinkkanen and
-/// Giulii Capponi, "A saturation model based on a simplified equivalent magnetic circuit for permanent magnet machines", 2024, with
-/// the parameters of motulator's example of that motor. Currents by flux linkages, of an energy by themselves.
+/// Magnet-assisted synchronous reluctance motor of 5.5 kW (Baldor ECS101M0H7EF4), fitted to its measured flux linkages: Lelli, Hinkkanen
+/// and Giulii Capponi, "A saturation model based on a simplified equivalent magnetic circuit for permanent magnet machines", 2024, with the
+/// parameters of motulator's example of that motor. Currents by flux linkages, of an energy by themselves.
 pub(in crate::pmsm) fn published_current(psi: Dq) -> Dq {
     let (d, q) = (psi.d.abs(), psi.q.abs());
     let own_d = 3.96 + 28.46 * d.powi(4) + 41.52 / 3.0 * d * q.powi(3);
@@ -54,7 +53,8 @@ fn curve(current: f64, share: f64, residual: f64) -> FluxMap {
     FluxMap::curve(&Saturation { current, share, residual }, SERVO.0, SERVO.1).unwrap()
 }
 
-/// The published motor is what its paper says: 0.477 V·s without current, 1.5·p·(ψ_d·i_q − ψ_q·i_d) of its rated torque at its rated current.
+/// The published motor is what its paper says: 0.477 V·s without current, 1.5·p·(ψ_d·i_q − ψ_q·i_d) of its rated torque at its rated
+/// current.
 #[test]
 fn the_published_motor_is_the_published_one() {
     let psi = published_flux(Dq::default());
@@ -268,15 +268,18 @@ fn what_is_wrong_with_a_table_is_told() {
     };
     assert!(FluxMap::table(&good()).is_ok());
     let few = found(|data| data.i_d.truncate(2));
-    assert_eq!(few, E::Count { which: Which::CurrentD, count: 2 });
-    assert_eq!(found(|data| data.psi_q.truncate(9)), E::Size { which: Which::FluxQ, count: 9, expected: 56 });
-    assert!(matches!(found(|data| data.psi_d[3] = f64::NAN), E::NotFinite { which: Which::FluxD, .. }));
-    assert_eq!(found(|data| data.i_q[3] = 4.0), E::Order { which: Which::CurrentQ, before: 8.0, after: 4.0 });
+    assert_eq!(few, E::Count { which: FluxPart::CurrentD, count: 2 });
+    assert_eq!(found(|data| data.psi_q.truncate(9)), E::Size { which: FluxPart::FluxQ, count: 9, expected: 56 });
+    assert!(matches!(found(|data| data.psi_d[3] = f64::NAN), E::NotFinite { which: FluxPart::FluxD, .. }));
+    assert_eq!(found(|data| data.i_q[3] = 4.0), E::Order { which: FluxPart::CurrentQ, before: 8.0, after: 4.0 });
     let above = |data: &mut FluxData| data.i_d.iter_mut().for_each(|i| *i += 21.0);
-    assert_eq!(found(above), E::WithoutZero { which: Which::CurrentD, range: [1.0, 29.0] });
+    assert_eq!(found(above), E::WithoutZero { which: FluxPart::CurrentD, range: [1.0, 29.0] });
     assert!(matches!(found(|data| data.psi_q[7] = 0.1), E::NoMirror { current: -16.0, .. }));
     let falls = found(|data| data.psi_d.iter_mut().for_each(|psi| *psi = -*psi));
-    assert!(matches!(falls, E::Falls { which: Which::FluxD, from: [-20.0, -24.0], to: [-16.0, -24.0], .. }), "{falls}");
+    assert!(
+        matches!(falls, E::Falls { which: FluxPart::FluxD, from: [-20.0, -24.0], to: [-16.0, -24.0], .. }),
+        "{falls}"
+    );
     // Each grows with its own current, but the cross inductances are 0.3 and 0.1 of the others.
     let curl = sampled(line(-3.0, 3.0, 4), line(-3.0, 3.0, 4), |i| Dq { d: i.d + 0.3 * i.q, q: i.q + 0.1 * i.d });
     let curl = FluxMap::table(&curl);
@@ -296,8 +299,8 @@ fn what_is_wrong_with_a_table_is_told() {
     }
 }
 
-/// The tables that scenarios and tests have of that motor: as it is, without saturation, and with iron that saturates at half of the current.
-/// `SERVOBENCH_WRITE_DOCS=1` writes them.
+/// The tables that scenarios and tests have of that motor: as it is, without saturation, and with iron that saturates at half of the
+/// current. `SERVOBENCH_WRITE_DOCS=1` writes them.
 #[test]
 fn the_tables_that_are_shipped_are_the_published_motor() {
     let i_d = [-20.0, -17.0, -14.0, -12.0, -10.0, -8.0, -6.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0, 8.0];

@@ -4,7 +4,7 @@ use core::fmt;
 
 /// A part of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Which {
+pub enum FluxPart {
     /// Currents of the d axis.
     CurrentD,
     /// Currents of the q axis.
@@ -15,7 +15,7 @@ pub enum Which {
     FluxQ,
 }
 
-impl fmt::Display for Which {
+impl fmt::Display for FluxPart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::CurrentD => "i_d",
@@ -32,16 +32,16 @@ pub enum FluxMapError {
     /// An axis is too short or too long.
     #[error("`{which}` must have from {} to {} values, got {count}", FluxData::FEWEST, FluxData::MOST)]
     Count {
-        /// Which axis.
-        which: Which,
+        /// FluxPart axis.
+        which: FluxPart,
         /// How many values it has.
         count: usize,
     },
     /// A flux linkage is not given for all currents.
     #[error("`{which}` must have a value at each of the {expected} pairs of currents, got {count}")]
     Size {
-        /// Which one.
-        which: Which,
+        /// FluxPart one.
+        which: FluxPart,
         /// How many it has.
         count: usize,
         /// How many there are to be.
@@ -51,15 +51,15 @@ pub enum FluxMapError {
     #[error("`{which}` must be finite, got {value}")]
     NotFinite {
         /// Where.
-        which: Which,
+        which: FluxPart,
         /// What it is.
         value: f64,
     },
     /// An axis does not increase.
     #[error("`{which}` must increase, got {after} A after {before} A")]
     Order {
-        /// Which axis.
-        which: Which,
+        /// FluxPart axis.
+        which: FluxPart,
         /// A value.
         before: f64,
         /// The next one.
@@ -68,8 +68,8 @@ pub enum FluxMapError {
     /// The currents at rest are outside.
     #[error("`{which}` must reach from 0 A or below to 0 A or above, got {} A to {} A", .range[0], .range[1])]
     WithoutZero {
-        /// Which axis.
-        which: Which,
+        /// FluxPart axis.
+        which: FluxPart,
         /// Its ends.
         range: [f64; 2],
     },
@@ -87,8 +87,8 @@ pub enum FluxMapError {
     #[error("`{which}` must grow with its own current, but from ({}, {}) A to ({}, {}) A it goes from {} to {} V s",
         .from[0], .from[1], .to[0], .to[1], .flux[0], .flux[1])]
     Falls {
-        /// Which one.
-        which: Which,
+        /// FluxPart one.
+        which: FluxPart,
         /// i_d and i_q.
         from: [f64; 2],
         /// i_d and i_q.

@@ -1,5 +1,5 @@
 //! Nodes of a table, each with the co-energy and its derivatives.
-use super::{Coefficients, FluxData, FluxMapError, MOST_CURL, Which};
+use super::{Coefficients, FluxData, FluxMapError, FluxPart, MOST_CURL};
 use servobench_base::Dq;
 
 /// Fluxes at i_q = 0 of a table that is mirrored there, as a part of the largest one.
@@ -74,15 +74,15 @@ impl Grid {
     }
 
     /// ψ_d along the d axis, with ψ_q along the q axis.
-    fn lines(&self) -> impl Iterator<Item = (Which, Vec<usize>)> {
+    fn lines(&self) -> impl Iterator<Item = (FluxPart, Vec<usize>)> {
         let (rows, columns) = (self.i_d.len(), self.i_q.len());
-        let along_d = (0..columns).map(move |k| (Which::FluxD, (0..rows).map(|j| j * columns + k).collect()));
-        let along_q = (0..rows).map(move |j| (Which::FluxQ, (0..columns).map(|k| j * columns + k).collect()));
+        let along_d = (0..columns).map(move |k| (FluxPart::FluxD, (0..rows).map(|j| j * columns + k).collect()));
+        let along_q = (0..rows).map(move |j| (FluxPart::FluxQ, (0..columns).map(|k| j * columns + k).collect()));
         along_d.chain(along_q)
     }
 
-    fn own_flux(&self, which: Which, at: usize) -> f64 {
-        if which == Which::FluxD { self.nodes[at].flux.d } else { self.nodes[at].flux.q }
+    fn own_flux(&self, which: FluxPart, at: usize) -> f64 {
+        if which == FluxPart::FluxD { self.nodes[at].flux.d } else { self.nodes[at].flux.q }
     }
 
     fn currents(&self, at: usize) -> [f64; 2] {
@@ -118,7 +118,7 @@ impl Grid {
     fn edges(&self) -> Vec<Edge> {
         let mut edges = Vec::new();
         for (which, line) in self.lines() {
-            let axis = if which == Which::FluxD { &self.i_d } else { &self.i_q };
+            let axis = if which == FluxPart::FluxD { &self.i_d } else { &self.i_q };
             let flux = |n: usize| self.own_flux(which, line[n]);
             for (n, ends) in line.windows(2).enumerate() {
                 let width = axis[n + 1] - axis[n];
@@ -293,29 +293,29 @@ fn slope(x: &[f64], n: usize, y: impl Fn(usize) -> f64) -> f64 {
 }
 
 fn check(data: &FluxData) -> Result<(), FluxMapError> {
-    for (which, axis) in [(Which::CurrentD, &data.i_d), (Which::CurrentQ, &data.i_q)] {
+    for (which, axis) in [(FluxPart::CurrentD, &data.i_d), (FluxPart::CurrentQ, &data.i_q)] {
         if !(FluxData::FEWEST..=FluxData::MOST).contains(&axis.len()) {
             return Err(FluxMapError::Count { which, count: axis.len() });
         }
     }
     let expected = data.i_d.len() * data.i_q.len();
-    for (which, flux) in [(Which::FluxD, &data.psi_d), (Which::FluxQ, &data.psi_q)] {
+    for (which, flux) in [(FluxPart::FluxD, &data.psi_d), (FluxPart::FluxQ, &data.psi_q)] {
         if flux.len() != expected {
             return Err(FluxMapError::Size { which, count: flux.len(), expected });
         }
     }
     let all = [
-        (Which::CurrentD, &data.i_d),
-        (Which::CurrentQ, &data.i_q),
-        (Which::FluxD, &data.psi_d),
-        (Which::FluxQ, &data.psi_q),
+        (FluxPart::CurrentD, &data.i_d),
+        (FluxPart::CurrentQ, &data.i_q),
+        (FluxPart::FluxD, &data.psi_d),
+        (FluxPart::FluxQ, &data.psi_q),
     ];
     for (which, values) in all {
         if let Some(value) = values.iter().copied().find(|value| !value.is_finite()) {
             return Err(FluxMapError::NotFinite { which, value });
         }
     }
-    for (which, axis) in [(Which::CurrentD, &data.i_d), (Which::CurrentQ, &data.i_q)] {
+    for (which, axis) in [(FluxPart::CurrentD, &data.i_d), (FluxPart::CurrentQ, &data.i_q)] {
         if let Some(pair) = axis.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(FluxMapError::Order { which, before: pair[0], after: pair[1] });
         }
