@@ -5,7 +5,8 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_base::{Dq, PowerCommand};
 use servobench_plant::pmsm::{
-    Cogging, Effects, FluxHarmonic, IronLoss, Params, Temperature, Temperatures, ThermalNetwork,
+    Cogging, Effects, FluxData, FluxHarmonic, FluxMap, IronLoss, Params, Saturation, Temperature, Temperatures,
+    ThermalNetwork,
 };
 use servobench_plant::{BodyState, PowerStage};
 
@@ -81,4 +82,24 @@ fn f_thermal_model(bencher: Bencher<'_, '_>) {
         network: Some(network),
     });
     ticks(bencher, &Effects { temperature, ..Effects::default() });
+}
+
+#[divan::bench]
+fn g_saturation(bencher: Bencher<'_, '_>) {
+    let saturation = Saturation { current: 20.0, share: 0.8, residual: 0.1 };
+    let flux_map = FluxMap::curve(&saturation, MOTOR.flux_linkage, MOTOR.inductance).ok();
+    ticks(bencher, &Effects { flux_map, ..Effects::default() });
+}
+
+/// The same flux linkages by a table.
+#[divan::bench]
+fn h_flux_map(bencher: Bencher<'_, '_>) {
+    let saturation = Saturation { current: 20.0, share: 0.8, residual: 0.1 };
+    let Ok(curve) = FluxMap::curve(&saturation, MOTOR.flux_linkage, MOTOR.inductance) else { return };
+    let i_d: Vec<f64> = (-10..=5).map(|n| 2.0 * f64::from(n)).collect();
+    let i_q: Vec<f64> = (0..=15).map(|n| 2.0 * f64::from(n)).collect();
+    let all: Vec<Dq> = i_d.iter().flat_map(|d| i_q.iter().map(|q| curve.flux(Dq { d: *d, q: *q }))).collect();
+    let (psi_d, psi_q) = all.iter().map(|psi| (psi.d, psi.q)).unzip();
+    let flux_map = FluxMap::table(&FluxData { i_d, i_q, psi_d, psi_q }).ok();
+    ticks(bencher, &Effects { flux_map, ..Effects::default() });
 }

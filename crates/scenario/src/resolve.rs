@@ -66,7 +66,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         .zip(motor)
         .zip(mechanics)
         .and_then(|((axis, motor), fmu)| axis::resolve(axis, motor, fmu, sources, report));
-    let source = motor.and_then(|motor| motor::resolve(motor, report));
+    let source = motor.and_then(|motor| motor::resolve(motor, sources, report));
     let known = drive::Known { base_rate, axis: moved.as_ref(), motor: source.as_ref() };
     let actuator = drive::resolve(file, &known, report);
     report.counts = bus::counts(file, actuator.as_ref(), report);

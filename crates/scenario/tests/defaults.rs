@@ -124,6 +124,9 @@ per_rev = 36
 amplitude = "25 mNm"
 [[motor.flux_harmonic]]
 order = 6
+[motor.saturation]
+current = "20 Arms"
+share = 0.9
 [motor.iron_loss]
 speed = "3000 rpm"
 [motor.temperature]

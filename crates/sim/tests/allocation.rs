@@ -38,6 +38,7 @@ fn ticks_allocate_nothing() {
         "vibration-snap.toml",
         "hardware/cogging.toml",
         "hardware/flux-harmonics.toml",
+        "hardware/saturation-table.toml",
         "hardware/warming-up.toml",
     ] {
         let scenario = scenario_without(0, file);

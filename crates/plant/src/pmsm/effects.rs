@@ -1,9 +1,13 @@
 //! What a real motor does beside the equations of [`pmsm`](super): each effect is switched on by itself.
 use super::phases::{self, PhaseMatrix};
+use super::saturated::Saturated;
 use super::temperature::ThermalSteps;
 use super::varying::Varying;
-use super::{Cogging, FluxHarmonic, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron};
-use servobench_base::ParamError;
+use super::winding::{Span, Sums, Winding};
+use super::{
+    Cogging, FluxHarmonic, FluxMap, Input, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron,
+};
+use servobench_base::{Dq, ParamError};
 
 /// The effects of a motor. None is switched on by default.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,6 +22,8 @@ pub struct Effects {
     pub phase_resistance: Option<[f64; 3]>,
     /// Temperature of winding and magnets.
     pub temperature: Option<Temperature>,
+    /// Flux linkage by the currents, where the iron saturates: in place of inductances and flux linkage.
+    pub flux_map: Option<FluxMap>,
 }
 
 impl Effects {
@@ -45,7 +51,7 @@ impl Effects {
 
     /// Whether the equations change with the angle or the time.
     fn vary(&self) -> bool {
-        !self.flux_harmonics.is_empty() || self.phase_resistance.is_some() || self.warms_up()
+        !self.flux_harmonics.is_empty() || self.phase_resistance.is_some() || self.warms_up() || self.flux_map.is_some()
     }
 
     /// Whether there is nothing to do in a tick.
@@ -129,10 +135,29 @@ impl RealMotor {
         self.warming.is_some()
     }
 
+    /// Whether its inductances depend on the currents.
+    #[must_use]
+    pub const fn saturates(&self) -> bool {
+        self.effects.flux_map.is_some()
+    }
+
     /// The winding of the motor that is `params` at this tick, behind `series` (Ω); `None` where its equations are those of the ideal one.
-    pub(crate) fn winding<'a>(&'a self, params: &'a Params, series: f64) -> Option<Varying<'a>> {
+    pub(crate) fn winding<'a>(&'a self, params: &'a Params, series: f64) -> Option<RealWinding<'a>> {
         let (harmonics, phases) = (&*self.effects.flux_harmonics, &self.phases);
-        self.effects.vary().then_some(Varying { params, harmonics, phases, series })
+        if let Some(map) = &self.effects.flux_map {
+            let magnets = self.params.flux_linkage;
+            return Some(RealWinding::Saturated(Saturated { params, map, magnets, harmonics, phases, series }));
+        }
+        self.effects.vary().then_some(RealWinding::Varying(Varying { params, harmonics, phases, series }))
+    }
+
+    /// Energy in the field at `current` (J), for the motor that is `params` at this tick.
+    #[must_use]
+    pub fn stored_energy(&self, params: &Params, current: Dq) -> f64 {
+        self.effects
+            .flux_map
+            .as_ref()
+            .map_or_else(|| params.stored_energy(current), |map| map.stored(Dq::default(), current))
     }
 
     /// What a winding of another kind has of the same.
@@ -146,7 +171,7 @@ impl RealMotor {
         let mut output = winding;
         let Travel { position, speed } = travel;
         let cogging: f64 = self.effects.cogging.iter().map(|one| one.mean_effort(position, speed * self.h)).sum();
-        let flux = || iron::relative_flux(p, self.params.flux_linkage, x);
+        let flux = || iron::relative_flux(p, self.params.flux_linkage, self.effects.flux_map.as_ref(), x);
         let drag = self.effects.iron.map_or(0.0, |iron| iron.drag(speed, flux()));
         output.torque += cogging - drag;
         output.power.iron = drag * speed;
@@ -156,6 +181,41 @@ impl RealMotor {
             *now = steps.after(*now, output.power.copper, output.power.iron);
         }
         output
+    }
+}
+
+/// A winding whose equations are not those of the ideal one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum RealWinding<'a> {
+    /// Its inductances are constant.
+    Varying(Varying<'a>),
+    /// They depend on the currents.
+    Saturated(Saturated<'a>),
+}
+
+impl RealWinding<'_> {
+    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
+    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
+        match self {
+            Self::Varying(varying) => varying.step(x, u, h),
+            Self::Saturated(saturated) => saturated.step(x, u, h),
+        }
+    }
+}
+
+impl Winding for RealWinding<'_> {
+    fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq {
+        match self {
+            Self::Varying(varying) => varying.advance::<POWER>(i, over, sums),
+            Self::Saturated(saturated) => saturated.advance::<POWER>(i, over, sums),
+        }
+    }
+
+    fn stored(&self, before: Dq, after: Dq) -> f64 {
+        match self {
+            Self::Varying(varying) => varying.stored(before, after),
+            Self::Saturated(saturated) => saturated.stored(before, after),
+        }
     }
 }
 

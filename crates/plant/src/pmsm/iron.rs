@@ -10,8 +10,8 @@
 //!
 //! s takes the hysteresis torque through zero: below a hundredth of v_n it falls instead of holding the rotor, since the iron has then
 //! not gone through a whole loop (assumed: no data sheet says how much of one). What holds a rotor at rest is friction.
-use super::{Params, State};
-use servobench_base::ParamError;
+use super::{FluxMap, Params, State};
+use servobench_base::{Dq, ParamError};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{POWER, VELOCITY};
 use servobench_config::{not_negative, positive};
@@ -62,9 +62,14 @@ impl IronLoss {
 }
 
 /// Square of the flux linkage of stator and magnets over that of the magnets as the data sheet has it, ψ (V·s).
-pub(super) fn relative_flux(p: &Params, psi: f64, [before, after]: [State; 2]) -> f64 {
+pub(super) fn relative_flux(p: &Params, psi: f64, map: Option<&FluxMap>, [before, after]: [State; 2]) -> f64 {
     let [d, q] = [before.current.d + after.current.d, before.current.q + after.current.q].map(|sum| sum / 2.0);
-    let (along, across) = ((p.flux_linkage + p.inductance.d * d) / psi, p.inductance.q * q / psi);
+    let (along, across) = if let Some(map) = map {
+        let flux = map.flux(Dq { d, q });
+        ((p.flux_linkage - psi + flux.d) / psi, flux.q / psi)
+    } else {
+        ((p.flux_linkage + p.inductance.d * d) / psi, p.inductance.q * q / psi)
+    };
     along * along + across * across
 }
 

@@ -9,7 +9,7 @@
 //! ```
 //! 3/2·iᵀ·R·i is the sum of the losses of the three phases. The second harmonic is a current of negative sequence, and a ripple of the
 //! torque with twice the electrical frequency. Source: Clarke's and Park's transformations (Krause, 3rd ed., ch. 3) of a diagonal matrix.
-use servobench_base::{ParamError, Rotation};
+use servobench_base::{Dq, ParamError, Rotation};
 use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::RATIO;
@@ -38,6 +38,13 @@ pub(super) struct Entries {
     pub(super) dd: f64,
     pub(super) dq: f64,
     pub(super) qq: f64,
+}
+
+impl Entries {
+    /// The matrix times `i`.
+    pub(super) fn times(&self, i: Dq) -> Dq {
+        Dq { d: self.dd * i.d + self.dq * i.q, q: self.dq * i.d + self.qq * i.q }
+    }
 }
 
 /// # Errors
@@ -69,7 +76,7 @@ impl PhaseMatrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_base::{Dq, ElectricalAngle};
+    use servobench_base::ElectricalAngle;
 
     /// Oracle: the losses of the three phases one by one, and voltages of the phases less their mean, for currents without a star point.
     #[test]

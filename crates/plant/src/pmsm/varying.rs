@@ -20,18 +20,18 @@ use super::{Input, Output, Params, State};
 use servobench_base::{AlphaBeta, Dq, Rotation};
 
 /// Largest turn of a harmonic in a part of a tick (rad).
-const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
+pub(super) const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
 /// Largest turn of the rotor, and largest decay of a current.
-const LARGEST_PART: f64 = 0.25;
+pub(super) const LARGEST_PART: f64 = 0.25;
 /// A tick has no more parts than this: a rotor so fast turns through a thousand radians in a tick.
-const MOST_PARTS: f64 = 4096.0;
+pub(super) const MOST_PARTS: f64 = 4096.0;
 
 /// √3/6.
 const OFF_THE_MIDDLE: f64 = 0.288_675_134_594_812_9;
 /// Instants of the stages in a part.
-const STAGES: [f64; 2] = [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE];
+pub(super) const STAGES: [f64; 2] = [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE];
 /// a_jn.
-const WEIGHTS: [[f64; 2]; 2] = [[0.25, 0.25 - OFF_THE_MIDDLE], [0.25 + OFF_THE_MIDDLE, 0.25]];
+pub(super) const WEIGHTS: [[f64; 2]; 2] = [[0.25, 0.25 - OFF_THE_MIDDLE], [0.25 + OFF_THE_MIDDLE, 0.25]];
 
 /// A motor whose equations change with the angle.
 #[derive(Debug, Clone, Copy)]
@@ -144,7 +144,7 @@ impl Varying<'_> {
 }
 
 /// Gauss's elimination with the largest pivot of each column.
-fn solved(mut system: [[f64; 5]; 4]) -> [f64; 4] {
+pub(super) fn solved(mut system: [[f64; 5]; 4]) -> [f64; 4] {
     for column in 0..4 {
         let mut largest = column;
         for row in column + 1..4 {

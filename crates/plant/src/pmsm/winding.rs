@@ -48,6 +48,14 @@ impl Sums {
         Output { torque, power }
     }
 
+    pub(super) fn add(&mut self, more: &Self) {
+        self.torque += more.torque;
+        self.copper += more.copper;
+        self.square += more.square;
+        self.work += more.work;
+        self.other += more.other;
+    }
+
     pub(crate) const NAN: Self =
         Self { torque: f64::NAN, copper: f64::NAN, square: f64::NAN, work: f64::NAN, other: f64::NAN };
 }

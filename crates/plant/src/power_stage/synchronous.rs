@@ -4,7 +4,7 @@ mod real;
 
 use crate::mechanics::BodyState;
 use crate::sensor::CurrentSensorState;
-use crate::wiring::{Cable, Wiring};
+use crate::wiring::{Cable, Wiring, WiringParameter};
 use crate::{inverter, pmsm};
 use real::RealInverter;
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError};
@@ -99,8 +99,15 @@ impl Synchronous {
     /// Behind a cable that is like this.
     ///
     /// # Errors
-    /// [`ParamError`] names the parameter of it that is out of its bound.
+    /// [`ParamError`] names the parameter of it that is out of its bound, or a phase that is lost by a motor that saturates.
     pub(super) fn put_behind(&mut self, wiring: Wiring) -> Result<(), ParamError> {
+        if let (Some((_, at)), true) = (wiring.open, self.effects.as_ref().is_some_and(|real| real.saturates())) {
+            return Err(ParamError {
+                name: WiringParameter::OPEN_AT.name,
+                value: at,
+                bound: "that of a motor that does not saturate",
+            });
+        }
         self.cable = if wiring.is_right() { None } else { Some(Box::new(Cable::new(wiring)?)) };
         Ok(())
     }
@@ -226,7 +233,10 @@ impl Synchronous {
     /// the DC link.
     #[inline(always)]
     pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) -> f64 {
-        let returned = -self.motor.params().stored_energy(self.state.current) / h;
+        let (params, current) = (self.motor.params(), self.state.current);
+        let effects = self.effects.as_ref();
+        let energy = effects.map_or_else(|| params.stored_energy(current), |real| real.stored_energy(params, current));
+        let returned = -energy / h;
         let power = pmsm::Power { electrical: returned, stored: returned, ..Default::default() };
         let mut output = pmsm::Output { torque: 0.0, power };
         if self.effects.is_some() || self.inverter.is_some() {

@@ -1,7 +1,9 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
 use crate::file::Encoder;
-use crate::file::motor_effects::{Cogging, Connection, FluxHarmonic, IronLoss, Temperature, Thermal};
+use crate::file::motor_effects::{
+    Cogging, Connection, FluxHarmonic, FluxMap, IronLoss, Saturation, Temperature, Thermal,
+};
 use crate::list::Many;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -75,6 +77,10 @@ table! {
         temperature: Temperature = (),
         /// How the losses warm them; without it the temperature stays.
         thermal: Thermal = (),
+        /// Saturation of the iron, by one figure of the data sheet.
+        saturation: Saturation = (),
+        /// Saturation of the iron, by a table of flux linkages.
+        flux_map: FluxMap = (),
         /// How it is connected to the inverter; default: as it should be.
         connection: Connection = (),
         /// Encoder on the motor; default: ideal.

@@ -2,7 +2,8 @@
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_plant::pmsm::{
-    CoggingParameter, FluxHarmonic as Harmonic, FluxHarmonicParameter, IronLossParameter, TemperatureParameter,
+    CoggingParameter, FluxHarmonic as Harmonic, FluxHarmonicParameter, IronLossParameter, SaturationParameter,
+    TemperatureParameter,
 };
 use servobench_plant::{Phase, Swap, WiringParameter};
 
@@ -82,5 +83,26 @@ table! {
         to_ambient: f64 = TemperatureParameter::TO_AMBIENT,
         winding_capacity: f64 = TemperatureParameter::WINDING_CAPACITY,
         housing_capacity: f64 = TemperatureParameter::HOUSING_CAPACITY,
+    }
+}
+
+table! {
+    /// Saturation of the iron by one figure of a data sheet: inductances and flux linkage are those of the motor without current, and
+    /// all of them fall with the ampere-turns, of magnets and winding together.
+    pub(crate) struct Saturation requires ["current", "share"] {
+        current: f64 = SaturationParameter::CURRENT,
+        share: f64 = SaturationParameter::SHARE,
+        /// default: 0.1.
+        residual: f64 = SaturationParameter::RESIDUAL,
+    }
+}
+
+table! {
+    /// Flux linkages by the currents, in place of inductances and flux linkage, which stay what the drive believes.
+    pub(crate) struct FluxMap requires ["file"] {
+        /// A CSV file, relative to this one, with the heading `i_d [Apk],i_q [Apk],psi_d [mV s],psi_q [mV s]`: any units, and a row for
+        /// each pair of currents, from 3 to 65 of either axis with 0 among them. A table that begins at i_q = 0 is mirrored. psi_d without
+        /// current is the flux linkage of the magnets.
+        file: String = (),
     }
 }

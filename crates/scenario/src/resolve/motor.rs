@@ -7,7 +7,7 @@ use servobench_plant::{Encoder, IdealSource, SourceOutput, Wiring, pmsm};
 use crate::file;
 use crate::file::MotorKind;
 use crate::resolve::{Alternative, motor_effects, need, one_of, refuse, sensors};
-use crate::source::Span;
+use crate::source::{Sources, Span};
 use std::f64::consts::PI;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
@@ -31,7 +31,7 @@ pub(super) enum Motor {
 
 type Keys<'a> = [(&'a str, Option<Span>)];
 
-pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor> {
+pub(super) fn resolve(motor: &file::Motor, sources: &Sources, report: &mut Report) -> Option<Motor> {
     let kind = need(&motor.kind, "motor", "kind", motor.span, report)?;
     let electrical: &Keys<'_> = &[
         ("pole_pairs", motor.pole_pairs.span()),
@@ -51,6 +51,8 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
         ("phase_resistance", motor.phase_resistance.span()),
         ("temperature", motor.temperature.span()),
         ("thermal", motor.thermal.span()),
+        ("saturation", motor.saturation.span()),
+        ("flux_map", motor.flux_map.span()),
         ("connection", motor.connection.span()),
     ];
     let ideal: &Keys<'_> = &[("gain", motor.gain.span()), ("limit", motor.limit.span())];
@@ -58,7 +60,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
     match kind {
         MotorKind::Pmsm => {
             refuse(ideal, "belongs to an ideal source, this is a synchronous motor", "", report);
-            pmsm(motor, encoder, report)
+            pmsm(motor, encoder, sources, report)
         }
         MotorKind::IdealSource => {
             refuse(electrical, "belongs to a synchronous motor, this is an ideal source", "", report);
@@ -75,7 +77,7 @@ pub(super) fn resolve(motor: &file::Motor, report: &mut Report) -> Option<Motor>
     }
 }
 
-fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> Option<Motor> {
+fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, sources: &Sources, report: &mut Report) -> Option<Motor> {
     let header = motor.span;
     let electrical_ratio = electrical_ratio(motor, report);
     let resistance = need(&motor.resistance, "motor", "resistance", header, report);
@@ -88,7 +90,7 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, report: &mut Report) -> O
         resistance: resistance?,
         flux_linkage: flux_linkage?,
     };
-    let effects = Box::new(motor_effects::resolve(motor, &params, report).ok()?);
+    let effects = Box::new(motor_effects::resolve(motor, &params, sources, report).ok()?);
     let encoder = sensors::with_commutation(encoder?, &motor.encoder, params.electrical_ratio).ok()?;
     let wiring = wiring(motor, report).ok()?;
     Some(Motor::Pmsm { motor: params, effects, wiring, encoder, max_current: max_current? })
@@ -98,6 +100,12 @@ fn wiring(motor: &file::Motor, report: &mut Report) -> Result<Wiring, Reported> 
     let Some(given) = motor.connection.optional()? else { return Ok(Wiring::default()) };
     if let (Some(span), None) = (given.open_at.span(), given.open.span()) {
         report.error(span, "`open_at` is when a phase is lost, and none is", "give `open`, or leave it out");
+        return Err(Reported);
+    }
+    let saturates = motor.saturation.span().is_some() || motor.flux_map.span().is_some();
+    if let (Some(span), true) = (given.open.span(), saturates) {
+        let help = "leave out one of `connection.open`, `saturation` and `flux_map`";
+        report.error(span, "a motor that saturates is not simulated with a lost phase", help);
         return Err(Reported);
     }
     let at = given.open_at.optional()?.copied().unwrap_or(0.0);

@@ -2,22 +2,34 @@
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
+use crate::flux_table::read_flux_table;
 use crate::list::Many;
+use crate::models::read_beside;
 use crate::resolve::{Alternative, one_of};
-use crate::source::At;
+use crate::source::{At, Sources};
 use servobench_base::Coordinate;
-use servobench_plant::pmsm::{self, COPPER, Effects, Temperature, Temperatures, ThermalNetwork};
+use servobench_base::Dq;
+use servobench_files::FileRole;
+use servobench_plant::pmsm::{
+    self, COPPER, Effects, FluxData, FluxMap, Saturation, Temperature, Temperatures, ThermalNetwork,
+};
 use std::f64::consts::TAU;
 
 /// The effects of `motor`, whose own parameters are `params`.
 ///
 /// # Errors
 /// [`Reported`] when a key is wrong.
-pub(super) fn resolve(motor: &file::Motor, params: &pmsm::Params, report: &mut Report) -> Result<Effects, Reported> {
+pub(super) fn resolve(
+    motor: &file::Motor,
+    params: &pmsm::Params,
+    sources: &Sources,
+    report: &mut Report,
+) -> Result<Effects, Reported> {
     let cogging = each(&motor.cogging, |one| cogging(one, params.electrical_ratio, report));
     let flux_harmonics = each(&motor.flux_harmonic, |one| flux_harmonic(&one.value));
     let phase_resistance = phase_resistance(motor, report);
     let temperature = temperature(motor, report);
+    let flux_map = flux_map(motor, params, sources, report);
     let iron = motor.iron_loss.optional()?.map(iron_loss).transpose()?;
     Ok(Effects {
         cogging: cogging?,
@@ -25,6 +37,7 @@ pub(super) fn resolve(motor: &file::Motor, params: &pmsm::Params, report: &mut R
         iron,
         phase_resistance: phase_resistance?,
         temperature: temperature?,
+        flux_map: flux_map?,
     })
 }
 
@@ -131,4 +144,75 @@ fn network(given: &file::Thermal) -> Result<ThermalNetwork, Reported> {
         winding_capacity: the(&given.winding_capacity)?,
         housing_capacity: the(&given.housing_capacity)?,
     })
+}
+
+/// Magnets that the data sheet and the map have so different are worth a word.
+const MAGNETS_DIFFER: f64 = 0.1;
+
+fn flux_map(
+    motor: &file::Motor,
+    params: &pmsm::Params,
+    sources: &Sources,
+    report: &mut Report,
+) -> Result<Option<FluxMap>, Reported> {
+    match one_of(&[("saturation", motor.saturation.span()), ("flux_map", motor.flux_map.span())], report) {
+        Alternative::None => Ok(None),
+        Alternative::Contradiction => Err(Reported),
+        Alternative::Use(0) => saturation(motor, params, report).map(Some),
+        Alternative::Use(_) => table(motor, params, sources, report).map(Some),
+    }
+}
+
+fn saturation(motor: &file::Motor, params: &pmsm::Params, report: &mut Report) -> Result<FluxMap, Reported> {
+    let given = motor.saturation.given().ok_or(Reported)?;
+    let saturation = Saturation {
+        current: the(&given.current)?,
+        share: the(&given.share)?,
+        residual: or(&given.residual, Saturation::RESIDUAL)?,
+    };
+    FluxMap::curve(&saturation, params.flux_linkage, params.inductance).map_err(|error| {
+        let span = given.share.span().or(motor.saturation.span()).unwrap_or(motor.span);
+        report.error(span, format!("the {} must be {}, got {}", error.name, error.bound, error.value), "");
+        Reported
+    })
+}
+
+fn table(
+    motor: &file::Motor,
+    params: &pmsm::Params,
+    sources: &Sources,
+    report: &mut Report,
+) -> Result<FluxMap, Reported> {
+    let file = motor.flux_map.given().and_then(|given| given.file.at()).ok_or(Reported)?;
+    let place = sources.place(file.span.source).ok_or(Reported)?;
+    let (path, text) = read_beside(&file.value, FileRole::Table, place, &mut report.files).map_err(|refused| {
+        report.error(file.span, refused.message, refused.help);
+        Reported
+    })?;
+    report.note_table(&file.value, &text);
+    let data = read_flux_table(&text).map_err(|error| {
+        report.error(file.span, format!("{}:{error}", path.display()), "");
+        Reported
+    })?;
+    let map = FluxMap::table(&data).map_err(|error| {
+        report.error(file.span, format!("{}: {error}", path.display()), error.way_out());
+        Reported
+    })?;
+    doubtful(motor, params, &data, &map, report);
+    Ok(map)
+}
+
+/// Warnings of a table that may be that of another motor, or too small.
+fn doubtful(motor: &file::Motor, params: &pmsm::Params, data: &FluxData, map: &FluxMap, report: &mut Report) {
+    let Some(span) = motor.flux_map.span() else { return };
+    let (of_map, own) = (map.flux(Dq::default()).d, params.flux_linkage);
+    if (of_map - own).abs() > MAGNETS_DIFFER * own {
+        let message = format!("without current the map has a flux linkage of {of_map} V s, the motor {own} V s");
+        report.warning(span, message, "the drive believes the motor's: is the map that of this motor?");
+    }
+    let furthest = data.i_q.iter().fold(0.0, |most: f64, i| most.max(i.abs()));
+    if let Some(most) = motor.max_current.given().filter(|most| **most > furthest * (1.0 + 1e-9)) {
+        let message = format!("the map ends at i_q = {furthest} Apk, `max_current` is {most} Apk");
+        report.warning(span, message, "behind the map the flux goes on with its last inductances");
+    }
 }

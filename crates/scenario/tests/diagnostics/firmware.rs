@@ -77,4 +77,6 @@ fn a_phase_is_lost_at_a_time_only_if_it_is_lost() {
     assert_eq!(connection("swapped = \"ab\"\nopen = \"c\"\nopen_at = \"0.3 s\""), [""; 0]);
     says(&connection("open_at = \"0.3 s\""), &["`open_at` is when a phase is lost", "give `open`"]);
     says(&connection("swapped = \"aa\""), &["aa"]);
+    let saturated = connection("open = \"c\"\n[motor.saturation]\ncurrent = \"30 Apk\"\nshare = 0.7");
+    says(&saturated, &["a motor that saturates is not simulated with a lost phase", "leave out one of"]);
 }

@@ -1,5 +1,6 @@
 //! Fuzz targets: whatever is in a file, it is a scenario in which every number makes sense, or a list of mistakes with
 //! places in their files. `docs/testing.md` says how to run more of them.
+mod flux;
 mod points;
 mod quantities;
 mod ranges;
@@ -12,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every scenario that we ship, and nothing at all.
-const SCENARIOS: [&str; 19] = [
+const SCENARIOS: [&str; 20] = [
     "",
     include_str!("../../../../scenarios/demo/jerk.toml"),
     include_str!("../../../../scenarios/demo/snap.toml"),
@@ -32,6 +33,7 @@ const SCENARIOS: [&str; 19] = [
     include_str!("../../../../scenarios/vibration-jerk.toml"),
     include_str!("../../../../scenarios/vibration-snap.toml"),
     include_str!("../../../../tests/scenarios/must-fail.toml"),
+    include_str!("../../../../scenarios/hardware/saturation.toml"),
 ];
 
 /// What mistakes are made of: the punctuation of TOML, keys, names, units, and numbers at every end of the scale.
@@ -40,7 +42,7 @@ const WORDS: &[&str] = &[
     "\"", "\"\"\"", "'", "'''", "[", "[[", "]", "]]", "{", "}", "=", " = ", ",", ".", "#", "\n", "\r\n", "\t", "\\",
     "\\u0000", "\u{0}", "\u{feff}", "\u{1f600}", "µ", "²", "³", "⁻", "·", "°", "/", "*", "^", "(", ")", "%",
     "a.b.c.d", "[a]\n", "[[program]]\n", "[[disturbance]]\n", "[drive]\n", "[drive.velocity]\n", "[drive.estimate]\n",
-    "[axis]\n", "[axis.load]\n", "[axis.mjcf]\n", "[motor]\n", "[run]\n", "[setpoint]\n", "[limits]\n", "[record]\n",
+    "[axis]\n", "[axis.load]\n", "[axis.mjcf]\n", "[motor]\n", "[motor.saturation]\n", "[motor.flux_map]\n", "share = 0.9\n", "[run]\n", "[setpoint]\n", "[limits]\n", "[record]\n",
     "[measure]\n", "[initial]\n", "kind = \"prescribed\"\n", "kind = \"pmsm\"\n", "kind = \"ideal-source\"\n",
     "lead = \"10 mm\"\n", "gear_ratio = 5\n", "motion = \"rotary\"\n", "model = \"emps\"\n", "model = \"lambrechts\"\n",
     "move_by = \"-1 mm\"\n", "wait = \"1 s\"\n", "order = 2\n", "order = 4\n", "duration = \"2 s\"\n",

@@ -1,6 +1,9 @@
 //! Effects of a real motor, as the file has them.
 use super::*;
-use servobench_plant::pmsm::{Cogging, Effects, FluxHarmonic, IronLoss, Temperature, Temperatures, ThermalNetwork};
+use servobench_base::Dq;
+use servobench_plant::pmsm::{
+    Cogging, Effects, FluxHarmonic, FluxMap, IronLoss, Saturation, Temperature, Temperatures, ThermalNetwork,
+};
 
 const TURNING: &str = r#"
 [run]
@@ -86,6 +89,7 @@ housing_capacity = "1.6 kJ/K"
             start: Temperatures { winding: 80.0, housing: 40.0 },
             network: Some(network),
         }),
+        flux_map: None,
     };
     assert_eq!(found, expected);
 }
@@ -138,4 +142,64 @@ fn what_is_wrong_is_told_with_the_way_out() {
     let source =
         TURNING.replace("model = \"wittenstein-premo-1f\"", "kind = \"ideal-source\"\nphase_resistance = [1, 1, 1]");
     assert!(mistake(&source).contains("belongs to a synchronous motor"));
+}
+
+/// Oracle: by hand. The motor has 3.485 mH and 60.6 mV·s.
+#[test]
+fn saturation_is_a_curve_of_what_the_data_sheet_gives() {
+    let found = effects("[motor.saturation]\ncurrent = \"20 Arms\"\nshare = \"85 %\"").flux_map.unwrap();
+    let Actuator::Pmsm { motor, .. } = scenario(&format!("{TURNING}{DRIVE}")).actuator else { panic!("a motor") };
+    let saturation = Saturation { current: 20.0 * 2.0_f64.sqrt(), share: 0.85, residual: 0.1 };
+    assert_eq!(found, FluxMap::curve(&saturation, motor.flux_linkage, motor.inductance).unwrap());
+    for (motor, expected) in [
+        ("[motor.saturation]\ncurrent = \"20 Arms\"", "missing `share` in `motor.saturation`"),
+        ("[motor.saturation]\ncurrent = \"20 Arms\"\nshare = 0.2", "`share` must be from 0.3 to 1"),
+        ("[motor.saturation]\ncurrent = \"20 A\"\nshare = 0.9", "write `Arms` or `Apk`"),
+        (
+            "[motor.saturation]\ncurrent = \"1 Arms\"\nshare = 0.5\nresidual = 0.4",
+            "the share of the effort per ampere must be within what these magnets and inductances allow",
+        ),
+        ("flux_map = { file = \"map.csv\" }\n[motor.saturation]\ncurrent = \"20 Arms\"\nshare = 0.9", "`saturation`"),
+    ] {
+        let said = mistake(&format!("{TURNING}{motor}\n{DRIVE}"));
+        assert!(said.contains(expected), "{motor}:\n{said}");
+    }
+}
+
+/// The table is read beside the scenario, checked, and told apart from what may be another motor's.
+#[test]
+fn a_flux_map_is_read_from_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{TURNING}flux_map = {{ file = \"map.csv\" }}\n{DRIVE}");
+    let table = |flux: f64, cross: f64| {
+        let mut rows = vec!["i_d [Apk],i_q [Apk],psi_d [mV s],psi_q [mV s]".to_owned()];
+        for d in [-20.0, -8.0, 0.0, 9.0] {
+            for q in [-30.0, 0.0, 5.0, 30.0] {
+                rows.push(format!("{d},{q},{},{}", flux + 3.485 * d + cross * q, 3.485 * q));
+            }
+        }
+        rows.join("\n")
+    };
+    let loaded = |table: &str| {
+        std::fs::write(folder.path().join("map.csv"), table).unwrap();
+        parse("test.toml", &text, Some(folder.path()))
+    };
+    let found = loaded(&table(60.6, 0.0)).unwrap();
+    let Actuator::Pmsm { effects, .. } = found.scenario.actuator else { panic!("a motor") };
+    let flux = effects.flux_map.unwrap().flux(Dq { d: -3.0, q: 7.0 });
+    assert!((flux.d - 50.145e-3).abs() < 1e-15 && (flux.q - 24.395e-3).abs() < 1e-15, "{flux:?}");
+    assert!(found.scenario.made_of.iter().any(|file| file.path.ends_with("map.csv")), "{:?}", found.scenario.made_of);
+    let warned = loaded(&table(71.0, 0.0)).unwrap().warnings;
+    assert!(warned.iter().any(|one| one.message.contains("without current the map has")), "{warned:?}");
+    for (table, expected) in [
+        (table(60.6, 1.0), "map.csv: the table would make energy: between i_d = -20 and -8 A, i_q = -30 and 0 A"),
+        (table(60.6, 0.0).replace("-8,5,", "-8,4,"), "map.csv:17:1: there is no row for i_d = -20 A and i_q = 4 A"),
+        (table(60.6, 0.0).replace("mV s", "mV"), "map.csv:1:21: `psi_d` cannot be in `mV`"),
+    ] {
+        let said = loaded(&table).unwrap_err().to_string();
+        assert!(said.contains(expected), "{expected}:\n{said}");
+    }
+    std::fs::remove_file(folder.path().join("map.csv")).unwrap();
+    let said = parse("test.toml", &text, Some(folder.path())).unwrap_err().to_string();
+    assert!(said.contains("cannot read"), "{said}");
 }

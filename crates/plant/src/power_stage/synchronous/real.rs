@@ -295,6 +295,14 @@ mod tests {
     /// Everything that a motor may have.
     fn every_effect() -> pmsm::Effects {
         pmsm::Effects {
+            flux_map: Some(
+                pmsm::FluxMap::curve(
+                    &pmsm::Saturation { current: 31.0, share: 0.8, residual: 0.1 },
+                    MOTOR.flux_linkage,
+                    MOTOR.inductance,
+                )
+                .unwrap(),
+            ),
             cogging: vec![pmsm::Cogging { ratio: 36.0, amplitude: 0.02, phase: 0.3 }],
             flux_harmonics: vec![pmsm::FluxHarmonic { order: 6, d: 0.013, q: -0.021, phase: 0.2 }],
             iron: Some(pmsm::IronLoss { speed: 314.0, hysteresis: 6.0, eddy: 11.0 }),

@@ -1,0 +1,352 @@
+use super::super::flux_map::tests::published;
+use super::super::{Power, Saturation, step_with_power};
+use super::*;
+use proptest::prelude::*;
+use servobench_base::ElectricalAngle;
+
+/// The motor of [`published`], with the inductances that its example controls it by.
+const RELUCTANCE: Params =
+    Params { electrical_ratio: 2.0, resistance: 0.63, inductance: Dq { d: 18e-3, q: 110e-3 }, flux_linkage: 0.477 };
+const SERVO: Params = Params {
+    electrical_ratio: 4.0,
+    resistance: 1.615,
+    inductance: Dq { d: 3.485e-3, q: 4.1e-3 },
+    flux_linkage: 0.0606,
+};
+const HARMONICS: [FluxHarmonic; 1] = [FluxHarmonic { order: 6, d: 0.021, q: -0.033, phase: 0.4 }];
+const FACTORS: [f64; 3] = [1.05, 0.93, 1.21];
+const EQUAL: PhaseMatrix = PhaseMatrix::EQUAL;
+
+fn curve(p: &Params, current: f64, share: f64) -> FluxMap {
+    FluxMap::curve(&Saturation { current, share, residual: 0.1 }, p.flux_linkage, p.inductance).unwrap()
+}
+
+fn plain<'a>(params: &'a Params, map: &'a FluxMap) -> Saturated<'a> {
+    Saturated { params, map, magnets: params.flux_linkage, harmonics: &[], phases: &EQUAL, series: 0.0 }
+}
+
+/// A run at constant speed and voltage.
+#[derive(Clone, Copy)]
+struct Run {
+    voltage: AlphaBeta,
+    begin: Dq,
+    omega: f64,
+    end: f64,
+}
+
+/// Current at the end, mean torque, copper loss and electrical power of a run from ticks of `end`/`n`.
+fn run(motor: &Saturated<'_>, of: &Run, n: u32) -> [f64; 5] {
+    let (h, mut x) = (of.end / f64::from(n), State { current: of.begin });
+    let mut means = [0.0; 3];
+    for k in 0..n {
+        let rotor = ElectricalAngle(0.7 + of.omega * h * f64::from(k)).rotation();
+        let output = motor.step(&mut x, &Input { voltage: of.voltage, rotor, omega_e: of.omega }, h);
+        for (mean, one) in means.iter_mut().zip([output.torque, output.power.copper, output.power.electrical]) {
+            *mean += one / f64::from(n);
+        }
+    }
+    [x.current.d, x.current.q, means[0], means[1], means[2]]
+}
+
+/// Oracle: the flux linkages in the stator frame with three phases one by one, by Runge and Kutta's method of order 4; currents by Newton's
+/// method at every stage; the torque is what the energy leaves.
+fn runge_kutta(motor: &Saturated<'_>, factors: [f64; 3], of: &Run, steps: u32) -> [f64; 5] {
+    let p = motor.params;
+    let own = |theta: f64| {
+        let sum = |of: fn(&FluxHarmonic, f64) -> f64| -> f64 {
+            motor.harmonics.iter().map(|one| of(one, f64::from(one.order) * theta + one.phase)).sum()
+        };
+        let d = p.flux_linkage * (1.0 + sum(|one, x| one.d * x.cos())) - motor.magnets;
+        Dq { d, q: p.flux_linkage * sum(|one, x| one.q * x.sin()) }
+    };
+    let near = core::cell::Cell::new(of.begin);
+    let current = |t: f64, flux: [f64; 2]| {
+        let theta = 0.7 + of.omega * t;
+        let own = own(theta);
+        let linked = AlphaBeta { alpha: flux[0], beta: flux[1] }.to_dq(ElectricalAngle(theta).rotation());
+        let i = motor.map.current(Dq { d: linked.d - own.d, q: linked.q - own.q }, near.get()).unwrap();
+        near.set(i);
+        i
+    };
+    let slope = |t: f64, y: [f64; 4]| {
+        let i = current(t, [y[0], y[1]]).to_alpha_beta(ElectricalAngle(0.7 + of.omega * t).rotation());
+        let half = 3.0_f64.sqrt() / 2.0 * i.beta;
+        let phases = [i.alpha, -i.alpha / 2.0 + half, -i.alpha / 2.0 - half];
+        let drops: [f64; 3] = core::array::from_fn(|k| p.resistance * factors[k] * phases[k]);
+        let star = (drops[0] + drops[1] + drops[2]) / 3.0;
+        let copper: f64 = drops.iter().zip(phases).map(|(u, i)| u * i).sum();
+        [
+            of.voltage.alpha - (drops[0] - star),
+            of.voltage.beta - (drops[1] - drops[2]) / 3.0_f64.sqrt(),
+            copper / of.end,
+            1.5 * (of.voltage.alpha * i.alpha + of.voltage.beta * i.beta) / of.end,
+        ]
+    };
+    let (begin, own) = (motor.map.flux(of.begin), own(0.7));
+    let linked = Dq { d: begin.d + own.d, q: begin.q + own.q }.to_alpha_beta(ElectricalAngle(0.7).rotation());
+    let mut y = [linked.alpha, linked.beta, 0.0, 0.0];
+    let h = of.end / f64::from(steps);
+    for k in 0..steps {
+        let t = f64::from(k) * h;
+        let ahead = |by: f64, k: [f64; 4]| core::array::from_fn(|n| y[n] + by * k[n]);
+        let k1 = slope(t, y);
+        let k2 = slope(t + h / 2.0, ahead(h / 2.0, k1));
+        let k3 = slope(t + h / 2.0, ahead(h / 2.0, k2));
+        let k4 = slope(t + h, ahead(h, k3));
+        y = core::array::from_fn(|n| y[n] + h / 6.0 * (k1[n] + 2.0 * (k2[n] + k3[n]) + k4[n]));
+    }
+    let i = current(of.end, [y[0], y[1]]);
+    let stored = motor.map.stored(of.begin, i) / of.end;
+    [i.d, i.q, (y[3] - y[2] - stored) * p.electrical_ratio / of.omega, y[2], y[3]]
+}
+
+const NAMES: [&str; 5] = ["i_d", "i_q", "torque", "copper", "electrical"];
+
+/// A curve, alone and with harmonics and unequal phases and warm magnets: the errors fall by 16 when the tick is halved.
+#[test]
+fn a_tick_is_of_fourth_order_at_constant_speed() {
+    let map = curve(&SERVO, 20.0, 0.7);
+    let of =
+        Run { voltage: AlphaBeta { alpha: -60.0, beta: 41.0 }, begin: Dq { d: -3.0, q: 9.0 }, omega: 431.0, end: 4e-3 };
+    let phases = PhaseMatrix::of(FACTORS);
+    let warm = Params { flux_linkage: 0.93 * SERVO.flux_linkage, ..SERVO };
+    let all =
+        Saturated { params: &warm, map: &map, magnets: 0.0606, harmonics: &HARMONICS, phases: &phases, series: 0.0 };
+    for (motor, factors) in [(plain(&SERVO, &map), [1.0; 3]), (all, FACTORS)] {
+        let oracle = runge_kutta(&motor, factors, &of, 40_000);
+        let [coarse, fine] = [128, 256].map(|n| run(&motor, &of, n));
+        for (at, name) in NAMES.into_iter().enumerate() {
+            let [coarse, fine] = [coarse, fine].map(|found| (found[at] - oracle[at]).abs());
+            let order = (coarse / fine).log2();
+            println!("{name}: {fine:e} of {}, order {order}", oracle[at]);
+            assert!(fine < 1e-6 * oracle[at].abs().max(1.0), "{name}: off by {fine}");
+            // Near 4; a value whose error happens to change its sign may fall faster.
+            assert!(order > 3.7, "{name}: observed order {order}, {coarse} {fine}");
+        }
+    }
+}
+
+/// The published motor by its table, over whose lines the inductances jump: of second order at least, and what counts, small.
+#[test]
+fn a_table_is_followed_over_its_lines() {
+    let map = published(14, 12);
+    let of = Run {
+        voltage: AlphaBeta { alpha: -110.0, beta: 71.0 },
+        begin: Dq { d: -3.0, q: 5.0 },
+        omega: 220.0,
+        end: 4e-3,
+    };
+    let motor = plain(&RELUCTANCE, &map);
+    let oracle = runge_kutta(&motor, [1.0; 3], &of, 80_000);
+    // 4, 8 and 16 kHz.
+    let errors = [16, 32, 64].map(|n| {
+        let found = run(&motor, &of, n);
+        let off: [f64; 5] = core::array::from_fn(|at| (found[at] - oracle[at]).abs());
+        off
+    });
+    println!("{oracle:?}\n{errors:?}");
+    for (at, name) in NAMES.into_iter().enumerate() {
+        // Of 20 A, and of the 20 N·m that two of them make with 0.9 V·s.
+        assert!(
+            errors[2][at] < 1e-6 * oracle[at].abs().max(20.0),
+            "{name}: off by {} of {}",
+            errors[2][at],
+            oracle[at]
+        );
+        assert!(errors[2][at] < errors[0][at] / 4.0, "{name}: {errors:?}");
+    }
+}
+
+/// Oracle: the motor that is solved exactly, at constant inductances, by a curve and by a table.
+#[test]
+fn without_saturation_it_is_the_motor_that_is_solved_exactly() {
+    let linear = |p: &Params| {
+        let (l, psi) = (p.inductance, p.flux_linkage);
+        let flux = |i: Dq| Dq { d: psi + l.d * i.d, q: l.q * i.q };
+        let data = super::super::flux_map::tests::sampled(vec![-30.0, 0.0, 10.0], vec![0.0, 9.0, 20.0], flux);
+        FluxMap::table(&data).unwrap()
+    };
+    let stiff = Params { inductance: Dq { d: 1e-6, q: 2e-6 }, ..SERVO };
+    for (p, h) in [(SERVO, 1.0 / 16e3), (RELUCTANCE, 1.0 / 8e3), (stiff, 20e-6)] {
+        for (map, turn) in
+            [(curve(&p, 20.0, 1.0), 0.02), (linear(&p), -0.14), (linear(&p), 0.4), (linear(&p), 6.1), (linear(&p), 0.0)]
+        {
+            let rotor = ElectricalAngle(0.7).rotation();
+            let omega_e = turn / h;
+            let voltage = Dq { d: -7.0, q: 11.0 + omega_e * p.flux_linkage }.to_alpha_beta(rotor);
+            let input = Input { voltage, rotor, omega_e };
+            let (mut x, mut y) = (State { current: Dq { d: -1.3, q: 2.4 } }, State { current: Dq { d: -1.3, q: 2.4 } });
+            let ours = plain(&p, &map).step(&mut x, &input, h);
+            let exact = step_with_power(&p, &mut y, input, h);
+            let through = 1.0 / (p.resistance + p.inductance.d / h);
+            let scale = 3.0 + (20.0 + (omega_e * p.flux_linkage).abs()) * through;
+            let off = (x.current.d - y.current.d).abs().max((x.current.q - y.current.q).abs());
+            // (1/4)⁴/720 of a transient for each part of the tick, of which there are 24 at most that it lives through.
+            assert!(off < 2e-5 * scale, "{p:?} {turn}: off by {off} of {scale}");
+            let most = 1.5 * p.electrical_ratio * (p.flux_linkage + (p.inductance.q - p.inductance.d) * scale) * scale;
+            assert!((ours.torque - exact.torque).abs() < 2e-5 * most, "{turn}: {} {}", ours.torque, exact.torque);
+        }
+    }
+}
+
+/// Oracle: the same in hundredths of a tick. What one tick of 16 kHz leaves out of the larger of the current and the rated one, in currents
+/// up to twice the rated ones and with all the voltage that links of 540 and 320 V give: 7e-8 RMS, 6e-7 at most. The bounds have twice of
+/// that; an engineer sees 1e-5.
+#[test]
+fn what_a_tick_leaves_out_is_below_what_an_engineer_sees() {
+    let h = 1.0 / 16e3;
+    let (table, curve) = (published(14, 12), curve(&SERVO, 20.0, 0.7));
+    for (p, map, rated, most) in [(RELUCTANCE, &table, 12.4, 311.0), (SERVO, &curve, 10.0, 184.0)] {
+        let (motor, mut worst, mut sum) = (plain(&p, map), 0.0_f64, 0.0);
+        for n in 0..400 {
+            let at = |step: f64| 2.0 * (f64::from(n) * step).fract() - 1.0;
+            let begin = Dq { d: -rated + 0.9 * rated * at(0.618), q: 1.7 * rated * at(0.7549) };
+            let omega = 900.0 * at(0.3819);
+            let (sin, cos) = (3.2 * at(0.5698)).sin_cos();
+            let voltage = AlphaBeta { alpha: most * cos, beta: most * sin };
+            let rotor = ElectricalAngle(0.7).rotation();
+            let over = Span { voltage, drop: AlphaBeta::default(), rotor, omega, time: h };
+            let found = motor.advance::<true>(begin, &over, &mut Sums::default());
+            let fine = (0..100).fold(begin, |i, k| {
+                let over = Span { rotor: rotor.ahead(omega * h * f64::from(k) / 100.0), time: h / 100.0, ..over };
+                motor.advance::<true>(i, &over, &mut Sums::default())
+            });
+            let error = (found.d - fine.d).hypot(found.q - fine.q) / fine.magnitude().max(rated);
+            worst = worst.max(error);
+            sum += error * error;
+        }
+        let mean = (sum / 400.0_f64).sqrt();
+        println!("of a tick: {mean:e} RMS, {worst:e} at most");
+        assert!(worst < 1e-6 && mean < 2e-7, "{mean} {worst}");
+    }
+}
+
+proptest! {
+    /// Oracle: the first law, whatever saturates, however fast, however long the time; in series, too, where what is in series takes its
+    /// part.
+    #[test]
+    fn no_power_is_lost(
+        resistance in 0.05..20.0_f64,
+        (share, residual) in (0.45..1.0_f64, 0.05..0.5_f64),
+        (order, harmonic) in (1..24_u32, -0.2..0.2_f64),
+        turn in -2.5..2.5_f64,
+        (i_d, i_q, u_d, u_q) in (-30.0..30.0_f64, -30.0..30.0_f64, -300.0..300.0_f64, -300.0..300.0_f64),
+        factors in [0.5..2.0_f64, 0.5..2.0_f64, 0.5..2.0_f64],
+        (warm, series) in (0.7..1.2_f64, 0.0..3.0_f64),
+        is_a_table in any::<bool>(),
+        logarithm in -7.0..-3.5_f64,
+    ) {
+        static MAP: std::sync::OnceLock<FluxMap> = std::sync::OnceLock::new();
+        let h = 10.0_f64.powf(logarithm);
+        let cold = if is_a_table { RELUCTANCE } else { SERVO };
+        let p = Params { resistance, flux_linkage: warm * cold.flux_linkage, ..cold };
+        let saturation = Saturation { current: 20.0, share, residual };
+        let curve = FluxMap::curve(&saturation, cold.flux_linkage, cold.inductance);
+        prop_assume!(curve.is_ok());
+        let curve = curve.unwrap();
+        let map = if is_a_table { MAP.get_or_init(|| published(9, 7)) } else { &curve };
+        let harmonics = [FluxHarmonic { order, d: harmonic, q: 0.3 - harmonic, phase: harmonic * 9.0 }];
+        let phases = PhaseMatrix::of(factors);
+        let motor = Saturated { params: &p, map, magnets: cold.flux_linkage, harmonics: &harmonics, phases: &phases, series };
+        let rotor = ElectricalAngle(-1.1).rotation();
+        let omega = turn / h.max(1e-4);
+        let voltage = Dq { d: u_d, q: u_q + omega * p.flux_linkage }.to_alpha_beta(rotor);
+        let (before, mut sums) = (Dq { d: i_d, q: i_q }, Sums::default());
+        let over = Span { voltage, drop: AlphaBeta::default(), rotor, omega, time: h };
+        let after = motor.advance::<true>(before, &over, &mut sums);
+        let Power { electrical, copper, stored, air_gap, .. } =
+            sums.output(motor.stored(before, after), p.electrical_ratio, omega, h).power;
+        let in_series = 1.5 * series * sums.square / h;
+        let terms = [electrical, copper, in_series, stored, air_gap];
+        let largest = terms.into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        // What is stored is the difference of two currents, which have a rounding each.
+        let rounding = 4e-16 * 1.5 * map.flux(before).magnitude().max(map.flux(after).magnitude())
+            * before.magnitude().max(after.magnitude()) / h;
+        prop_assert!((electrical - copper - in_series - stored - air_gap).abs() < 1e-12 * largest + rounding,
+            "{terms:?}, {} of {largest}, {rounding}", electrical - copper - in_series - stored - air_gap);
+        prop_assert!(copper >= 0.0);
+    }
+}
+
+/// Oracle: a motor whose own resistance is the sum.
+#[test]
+fn what_is_in_series_adds_to_the_resistance() {
+    let map = curve(&SERVO, 20.0, 0.7);
+    let more = Params { resistance: SERVO.resistance + 0.25, ..SERVO };
+    let over = Span {
+        voltage: AlphaBeta { alpha: 31.0, beta: -12.0 },
+        drop: AlphaBeta::default(),
+        rotor: ElectricalAngle(0.7).rotation(),
+        omega: 310.0,
+        time: 41e-6,
+    };
+    let i = Dq { d: -3.0, q: 8.0 };
+    let (mut first, mut second) = (Sums::default(), Sums::default());
+    let after = Saturated { series: 0.25, ..plain(&SERVO, &map) }.advance::<true>(i, &over, &mut first);
+    let expected = plain(&more, &map).advance::<true>(i, &over, &mut second);
+    assert!((after.d - expected.d).abs() + (after.q - expected.q).abs() < 1e-14 * 20.0);
+    assert!((first.copper / second.copper - 1.615 / 1.865).abs() < 1e-12);
+}
+
+/// Under constant acceleration, with the mean speed of each tick, against a finer tick.
+#[test]
+fn a_tick_in_which_the_speed_changes_is_of_second_order() {
+    let map = curve(&SERVO, 20.0, 0.7);
+    let (omega, acceleration) = (300.0, 4e5);
+    let end = |n: u32| {
+        let (h, mut x) = (2e-3 / f64::from(n), State::default());
+        for k in 0..n {
+            let t = f64::from(k) * h;
+            let rotor = ElectricalAngle(omega * t + acceleration * t * t / 2.0).rotation();
+            let omega_e = omega + acceleration * (t + h / 2.0);
+            plain(&SERVO, &map).step(
+                &mut x,
+                &Input { voltage: AlphaBeta { alpha: -60.0, beta: 41.0 }, rotor, omega_e },
+                h,
+            );
+        }
+        x.current.q
+    };
+    let exact = end(4096);
+    let order = ((end(32) - exact) / (end(64) - exact)).log2();
+    assert!((order - 2.0).abs() < 0.15, "observed order {order}");
+}
+
+/// No time is nothing; nothing on a motor at rest stays nothing; a speed, a voltage or a current that is no number gives none and comes to
+/// an end.
+#[test]
+fn nothing_in_is_nothing_out() {
+    let map = published(9, 7);
+    let motor = plain(&RELUCTANCE, &map);
+    let rest = Span {
+        voltage: AlphaBeta::default(),
+        drop: AlphaBeta::default(),
+        rotor: Rotation::default(),
+        omega: 0.0,
+        time: 1e-4,
+    };
+    let mut sums = Sums::default();
+    let after = motor.advance::<true>(Dq::default(), &rest, &mut sums);
+    // The table is straight to the rounding only.
+    assert!(after.magnitude() < 1e-15 && sums.work == 0.0, "{after:?} {sums:?}");
+    let i = Dq { d: -2.0, q: 3.0 };
+    let mut sums = Sums::default();
+    let none = Span { time: 0.0, omega: 300.0, voltage: AlphaBeta { alpha: 100.0, beta: 3.0 }, ..rest };
+    assert_eq!((motor.advance::<true>(i, &none, &mut sums), sums), (i, Sums::default()));
+    for over in [
+        Span { omega: f64::NAN, ..rest },
+        Span { omega: f64::INFINITY, ..rest },
+        Span { voltage: AlphaBeta { alpha: f64::NAN, beta: 0.0 }, ..rest },
+        Span { voltage: AlphaBeta { alpha: f64::INFINITY, beta: 0.0 }, ..rest },
+    ] {
+        let mut sums = Sums::default();
+        let after = motor.advance::<true>(i, &over, &mut sums);
+        assert!(after.d.is_nan() && sums.torque.is_nan(), "{over:?}: {after:?} {sums:?}");
+    }
+    let after = motor.advance::<true>(Dq { d: f64::NAN, q: 0.0 }, &rest, &mut Sums::default());
+    assert!(after.d.is_nan());
+    // A voltage beyond all reason keeps its numbers.
+    let huge = Span { voltage: AlphaBeta { alpha: 1e9, beta: -1e8 }, omega: 300.0, ..rest };
+    let after = motor.advance::<true>(i, &huge, &mut Sums::default());
+    assert!(after.d.is_finite() && after.q.is_finite(), "{after:?}");
+}
