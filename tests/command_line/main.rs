@@ -11,11 +11,7 @@ mod fmu_trust;
 #[cfg(target_os = "linux")]
 mod foreign_text;
 mod getting_started;
-mod hardware_faults;
-mod hardware_firmware;
-mod hardware_inverter;
-mod hardware_motor;
-mod hardware_sensors;
+mod hardware;
 #[cfg(unix)]
 mod hostile;
 #[cfg(unix)]

@@ -115,6 +115,9 @@ amplitude = "25 mNm"
 order = 6
 d = 0.01
 q = -0.02
+[motor.saturation]
+current = "18.8 Apk"
+share = 0.891
 [motor.iron_loss]
 speed = "3000 rpm"
 hysteresis = "6 W"
@@ -160,8 +163,9 @@ fn the_energy_of_a_run_closes_with_every_effect() {
     assert!(left.abs() < 1e-9 * throughput, "{left} J");
     // What the coupling adds is of second order in the tick.
     assert!((left + air_gap - shaft).abs() < 1e-6 * throughput, "{} J of {throughput} J", air_gap - shaft);
+    let [_, _, _, electrical, copper, iron, stored, air_gap, _] = all;
     for k in 0..recording.len() {
-        let [electrical, copper, iron, stored, air_gap] = [3, 4, 5, 6, 7].map(|part| all[part][k]);
+        let [electrical, copper, iron, stored, air_gap] = [electrical, copper, iron, stored, air_gap].map(|all| all[k]);
         let largest = [copper, iron, stored, air_gap].iter().fold(electrical.abs(), |most, one| most.max(one.abs()));
         assert!((electrical - copper - iron - stored - air_gap).abs() <= 1e-12 * largest, "row {k}");
     }

@@ -1,5 +1,5 @@
 //! `scenarios/hardware`: each effect of a sensor is within its limits, and out of them where it is off or twice as large.
-use crate::{code, said, servobench};
+use super::passes_but_not_with;
 
 /// A file, what switches its effect off, and what doubles it.
 const EFFECTS: [(&str, &[&str], &[&str]); 10] = [
@@ -30,13 +30,6 @@ const EFFECTS: [(&str, &[&str], &[&str]); 10] = [
 #[test]
 fn each_effect_of_a_sensor_is_what_its_limits_say() {
     for (name, off, doubled) in EFFECTS {
-        let file = format!("scenarios/hardware/{name}.toml");
-        for (keys, expected) in [(&[][..], 0), (off, 4), (doubled, 4)] {
-            let work = tempfile::tempdir().unwrap();
-            let mut arguments = vec!["run", &file, "--keep", "none", "--out", work.path().to_str().unwrap()];
-            arguments.extend(keys.iter().flat_map(|key| ["--set", key]));
-            let output = servobench(&arguments);
-            assert_eq!(code(&output), expected, "{name} with {keys:?}: {}", said(&output));
-        }
+        passes_but_not_with(name, &[off, doubled]);
     }
 }

@@ -1,18 +1,6 @@
 //! Each effect of the inverter has a scenario whose limits hold it from both sides: as it is they pass, without the effect and with twice of
 //! it they fail.
-use crate::{code, said, servobench};
-
-/// Exit code and words of a run of `scenarios/hardware/<name>.toml` with `set`.
-fn run(name: &str, set: Option<&str>) -> (i32, String) {
-    let out = tempfile::tempdir().unwrap();
-    let (file, out) = (format!("scenarios/hardware/{name}.toml"), out.path().join("out"));
-    let mut arguments = vec!["run", file.as_str(), "--keep", "none", "--out", out.to_str().unwrap()];
-    if let Some(set) = set {
-        arguments.extend(["--set", set]);
-    }
-    let output = servobench(&arguments);
-    (code(&output), said(&output))
-}
+use super::{passes_but_not_with, run};
 
 #[test]
 fn each_effect_is_told_from_none_and_from_twice_as_much() {
@@ -23,10 +11,7 @@ fn each_effect_is_told_from_none_and_from_twice_as_much() {
         ("dc-link-sag", "drive.link.sag.depth=0.0", "drive.link.sag.depth=0.3"),
         ("brake-resistor", "drive.link.brake.on=2 kV", "drive.link.brake.resistance=280 Ohm"),
     ] {
-        for (set, expected) in [(None, 0), (Some(off), 4), (Some(doubled), 4)] {
-            let (code, said) = run(name, set);
-            assert_eq!(code, expected, "{name} {set:?}\n{said}");
-        }
+        passes_but_not_with(name, &[&[off], &[doubled]]);
     }
 }
 
@@ -43,7 +28,7 @@ fn what_does_not_go_together_is_refused() {
         ),
         ("brake-resistor", "drive.link.brake.off=300 V", "`off` of 300 V must be between the voltage of the link"),
     ] {
-        let (code, said) = run(name, Some(set));
+        let (code, said, _) = run(&format!("hardware/{name}"), &[set]);
         let in_a_line = said.split_whitespace().collect::<Vec<_>>().join(" ");
         let plain = in_a_line.replace(" │ ", " ");
         assert_eq!(code, 2, "{said}");

@@ -1,6 +1,6 @@
 //! `scenarios/hardware/faults`: each fault of the hardware is found, told by its code and reacted to; without it, or without what looks
 //! for it, the scenario fails.
-use crate::{code, said, servobench};
+use super::run;
 
 /// A file, its code, what takes the fault away, and what looks for it, where that has a key.
 const FAULTS: [(&str, &str, &str, &str); 7] = [
@@ -23,19 +23,10 @@ const FAULTS: [(&str, &str, &str, &str); 7] = [
     ("dc-link-sag", "3220h", "drive.link.sag.depth=0", "drive.supervision.undervoltage='50 V'"),
 ];
 
-fn run(file: &str, keys: &[&str]) -> (i32, String, String) {
-    let out = tempfile::tempdir().unwrap();
-    let mut arguments = vec!["run", file, "--keep", "none", "--out", out.path().to_str().unwrap()];
-    arguments.extend(keys.iter().flat_map(|key| ["--set", key]));
-    let output = servobench(&arguments);
-    let results = std::fs::read_to_string(out.path().join("results.json")).unwrap_or_default();
-    (code(&output), said(&output), results)
-}
-
 #[test]
 fn each_fault_is_told_by_its_code() {
     for (name, code, without, unseen) in FAULTS {
-        let file = format!("scenarios/hardware/faults/{name}.toml");
+        let file = format!("hardware/faults/{name}");
         let (status, said, results) = run(&file, &[]);
         assert_eq!(status, 0, "{name}: {said}");
         assert!(results.contains(code), "{name}: {results}");
@@ -50,7 +41,7 @@ fn each_fault_is_told_by_its_code() {
 #[test]
 fn a_healthy_axis_has_no_fault() {
     for (name, _, without, _) in FAULTS {
-        let file = format!("scenarios/hardware/faults/{name}.toml");
+        let file = format!("hardware/faults/{name}");
         let (_, said, _) = run(&file, &[without, "expect=[]"]);
         assert!(!said.contains("drive has the fault") && !said.contains("no_fault"), "{name} with {without}: {said}");
     }
@@ -62,7 +53,7 @@ fn the_supervision_leaves_other_scenarios_as_they_are() {
     let supervision = "drive.supervision={ overspeed = '6500 rpm', commutation = { speed = '200 rpm', current = '4 Arms' }, \
         stall = { speed = '5 rpm', time = '0.2 s' }, phase_loss = { current = '1 Arms', time = '10 ms' } }";
     for name in ["hardware/i2t-fault", "plc/coasting", "plc/limit-switch", "plc/pv-position-profile", "plc/homing"] {
-        let (status, said, _) = run(&format!("scenarios/{name}.toml"), &["engine='exact'", supervision]);
+        let (status, said, _) = run(name, &[supervision]);
         assert_eq!(status, 0, "{name}: {said}");
     }
 }
@@ -71,9 +62,9 @@ fn the_supervision_leaves_other_scenarios_as_they_are() {
 #[test]
 fn a_collapsed_link_and_a_lost_track_are_events() {
     let sag = ["drive.link.sag.duration='0.5 s'", "drive.link.sag.depth=1", "limits={}"];
-    let (_, said, _) = run("scenarios/hardware/dc-link-sag.toml", &sag);
+    let (_, said, _) = run("hardware/dc-link-sag", &sag);
     assert!(said.contains("the DC link has less than half"), "{said}");
     let lost = ["motor.encoder.lost_track='cosine'", "motor.encoder.lost_at='0.01 s'", "limits={}"];
-    let (_, said, _) = run("scenarios/hardware/sincos-amplitude.toml", &lost);
+    let (_, said, _) = run("hardware/sincos-amplitude", &lost);
     assert!(said.contains("the motor encoder has an error"), "{said}");
 }

@@ -1,5 +1,5 @@
 //! Effects of a real motor: each ready scenario keeps its limits as it is, and misses them without its effect and with twice of it.
-use crate::{code, said, servobench};
+use super::passes_but_not_with;
 
 /// Scenario, and the keys that switch its effect off and that double it.
 const SCENARIOS: [(&str, &[&str], &[&str]); 8] = [
@@ -39,23 +39,9 @@ const SCENARIOS: [(&str, &[&str], &[&str]); 8] = [
     ),
 ];
 
-fn run(scenario: &str, overrides: &[&str]) -> (i32, String) {
-    let work = tempfile::tempdir().unwrap();
-    let file = format!("scenarios/hardware/{scenario}.toml");
-    let mut arguments = vec!["run", &file, "--engine", "exact", "--out", work.path().to_str().unwrap()];
-    arguments.extend(overrides.iter().flat_map(|one| ["--set", one]));
-    let output = servobench(&arguments);
-    (code(&output), said(&output))
-}
-
 #[test]
 fn each_scenario_passes_as_it_is_and_fails_without_its_effect_and_with_twice_of_it() {
     for (scenario, off, doubled) in SCENARIOS {
-        let (code, said) = run(scenario, &[]);
-        assert_eq!(code, 0, "{scenario}:\n{said}");
-        for (overrides, how) in [(off, "without"), (doubled, "with twice")] {
-            let (code, said) = run(scenario, overrides);
-            assert_eq!(code, 4, "{scenario} {how} its effect:\n{said}");
-        }
+        passes_but_not_with(scenario, &[off, doubled]);
     }
 }
