@@ -252,6 +252,19 @@ mod tests {
         }
     }
 
+    /// Oracle: by hand, −cos(2·(θ − φ)) with φ = 0 for the phase a, 120° for b, 240° for c.
+    #[test]
+    fn a_swapped_motor_has_torque_of_either_sign() {
+        for (swap, phi) in [(Swap::Bc, 0.0), (Swap::Ca, 120.0_f64.to_radians()), (Swap::Ab, 240.0_f64.to_radians())] {
+            let cable = Cable::new(Wiring { swapped: Some(swap), open: None }).unwrap();
+            for theta in [0.0, 0.37, 1.9, -2.6, 4.4] {
+                let rotor = ElectricalAngle(theta).rotation();
+                let found = cable.across(Dq { d: 0.0, q: 3.3 }.to_alpha_beta(rotor)).to_dq(rotor).q;
+                assert!((found + 3.3 * (2.0 * (theta - phi)).cos()).abs() < 1e-13, "{swap:?}, {theta}: {found}");
+            }
+        }
+    }
+
     #[test]
     fn what_is_out_of_its_bound_is_named() {
         let wrong = Wiring { swapped: None, open: Some((Phase::A, -1.0)) };

@@ -42,7 +42,8 @@ impl State {
 
     /// How the axis stops: by the option codes, but for what leaves no loop to brake by.
     pub(super) fn reactions(&mut self, p: &Params, measured: &Measured) -> PowerParams {
-        self.cannot_brake |= !measured.is_valid() || measured.finding.is_some_and(Finding::leaves_no_brake);
+        let finding = measured.finding.filter(|_| self.power.state().is_drive_function_enabled());
+        self.cannot_brake |= !measured.is_valid() || finding.is_some_and(Finding::leaves_no_brake);
         self.has_lost_load |= measured.load_encoder_error;
         if self.cannot_brake {
             PowerParams { fault_reaction: FaultReactionOption::Disable, ..p.power }
