@@ -203,3 +203,16 @@ fn a_constant_load_is_met_by_the_observer_or_by_the_integral() {
         assert!((error / exact - left).abs() < 1e-6, "{velocity} {position}: {} {left}", error / exact);
     }
 }
+
+/// What is the same anyway leaves every bit: differences of an encoder that gives no velocity.
+#[test]
+fn differences_by_choice_are_those_without_it() {
+    let velocity = |more: &str| format!("{FAST}{more}");
+    let [without, with] = ["", ", measurement = \"difference\""]
+        .map(|more| held("counts_per_rev = 5003", &velocity(more), HELD, 3.719, 1.0, 0.2));
+    for name in ["motor.position", "effort.reference", "velocity.reference"] {
+        let bits = |recording| channel(recording, name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&without) == bits(&with), "{name}");
+    }
+    assert!(without.channel("measured.motor.velocity").is_none(), "no channel without the key");
+}
