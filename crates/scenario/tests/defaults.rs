@@ -131,8 +131,6 @@ share = 0.9
 speed = "3000 rpm"
 [motor.temperature]
 winding = "80 degC"
-[motor.connection]
-open = "a"
 [drive]
 model = "servo-16khz"
 "#;
@@ -152,6 +150,8 @@ inductance = "36 mH"
 flux_linkage = "0.5 V s"
 inertia = "0.005 kg m2"
 max_current = "9 Apk"
+[motor.connection]
+open = "a"
 [drive]
 dc_link = "540 V"
 gain_schedule = { from = "1 rad/s", to = "2 rad/s" }

@@ -164,10 +164,15 @@ fn the_energy_of_a_run_closes_with_every_effect() {
     // What the coupling adds is of second order in the tick.
     assert!((left + air_gap - shaft).abs() < 1e-6 * throughput, "{} J of {throughput} J", air_gap - shaft);
     let [_, _, _, electrical, copper, iron, stored, air_gap, _] = all;
+    let current = channel(&recording, "current.q");
     for k in 0..recording.len() {
         let [electrical, copper, iron, stored, air_gap] = [electrical, copper, iron, stored, air_gap].map(|all| all[k]);
         let largest = [copper, iron, stored, air_gap].iter().fold(electrical.abs(), |most, one| most.max(one.abs()));
-        assert!((electrical - copper - iron - stored - air_gap).abs() <= 1e-12 * largest, "row {k}");
+        // A motor that saturates has its energy by its flux linkage, which is not zero at no current: a rounding of i·ψ/h, from edge to
+        // edge, where the current ripples by up to a quarter of an ampere.
+        let rounding = 4.0 * f64::EPSILON * 0.0606 / h * (0.25 + current[k].abs());
+        let left = electrical - copper - iron - stored - air_gap;
+        assert!(left.abs() <= 1e-12 * largest + rounding, "row {k}: {left} W of {largest} W");
     }
 }
 
