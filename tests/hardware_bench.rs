@@ -18,6 +18,7 @@ const IRON: &str = "motor.iron_loss={ speed = \"3000 rpm\", hysteresis = \"6 W\"
 const HARMONICS: &str = "motor.flux_harmonic=[{ order = 6, d = 0.01, q = -0.02 }]";
 const PHASES: &str = "motor.phase_resistance=[1, 1, 1.1]";
 const THERMAL: &str = "motor.thermal={ ambient = \"30 degC\", to_housing = \"0.6 K/W\", to_ambient = \"1.1 K/W\", winding_capacity = \"60 J/K\", housing_capacity = \"900 J/K\" }";
+const SATURATION: &str = "motor.saturation={ current = \"18.8 Apk\", share = 0.891 }";
 const DEAD_TIME: &str = "drive.inverter.dead_time=2 us";
 const CARRIER: &str = "drive.inverter.carrier=16 kHz";
 const DROPS: [&str; 2] = ["drive.inverter.device_drop=1 V", "drive.inverter.on_resistance=30 mOhm"];
@@ -58,7 +59,8 @@ const ROWS: &[Row] = &[
     ("motor: flux harmonics", &[HARMONICS]),
     ("motor: unequal phases", &[PHASES]),
     ("motor: thermal model", &[THERMAL]),
-    ("motor: all of these", &[COGGING, IRON, HARMONICS, PHASES, THERMAL]),
+    ("motor: saturation", &[SATURATION]),
+    ("motor: all of these", &[COGGING, IRON, HARMONICS, PHASES, THERMAL, SATURATION]),
     ("inverter: dead time", &[CARRIER, DEAD_TIME]),
     ("inverter: devices", &DROPS),
     ("inverter: DC link", &[LINK]),
@@ -79,6 +81,11 @@ const ROWS: &[Row] = &[
             "drive.filter=[{ kind = \"notch\", frequency = \"300 Hz\" }, { kind = \"low-pass\", order = 2, frequency = \"900 Hz\" }]",
         ],
     ),
+    ("firmware: velocity by M/T", &["drive.velocity.measurement=mt"]),
+    (
+        "firmware: velocity by an observer",
+        &["drive.velocity.measurement=observer", "drive.velocity.observer.bandwidth=200 Hz"],
+    ),
     ("firmware: MTPA, field weakening", &["drive.current.strategy=mtpa", "drive.current.field_weakening=true"]),
 ];
 
@@ -86,7 +93,7 @@ const ROWS: &[Row] = &[
 fn sums() -> Vec<(&'static str, Vec<&'static str>)> {
     let sensors: Vec<&str> =
         [&CURRENT_ERRORS[..], &[CURRENT_NOISE], &SIGNALS, &DISC, &[ENCODER_NOISE, LATENCY], &ZERO, &LOAD].concat();
-    let motor = [COGGING, IRON, HARMONICS, PHASES, THERMAL];
+    let motor = [COGGING, IRON, HARMONICS, PHASES, THERMAL, SATURATION];
     let inverter = [CARRIER, SWITCHING, DEAD_TIME, DROPS[0], DROPS[1], LINK];
     let everything = [&sensors[..], &motor, &inverter].concat();
     vec![("all sensor effects", sensors), ("everything", everything)]
