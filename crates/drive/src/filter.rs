@@ -100,7 +100,8 @@ pub struct State {
     pub memory: [[f64; 2]; MOST],
 }
 
-/// Half of a filter, 1 + 2·ζ·s/ω + s²/ω² or a part of it, times (z + 1)² and in falling powers of z.
+/// Half of a filter in falling powers of z: 1 + 2·ζ·s/ω + s²/ω² times (z + 1)², or 1 + s/ω times z + 1. A filter of the first order has no second
+/// z + 1 above and below: there it would be a state that never fades.
 struct Polynomial {
     coefficients: [f64; 3],
     /// Its phase per angular frequency at standstill (s).
@@ -109,12 +110,18 @@ struct Polynomial {
 
 impl Polynomial {
     const ONE: Self = Self { coefficients: [1.0, 2.0, 1.0], lead: 0.0 };
+    const ONE_OF_FIRST_ORDER: Self = Self { coefficients: [1.0, 1.0, 0.0], lead: 0.0 };
 
-    /// `linear` is 2·ζ, `square` whether there is s².
-    fn new(frequency: f64, linear: f64, square: bool, h: f64) -> Self {
+    /// `linear` is 2·ζ.
+    fn new(frequency: f64, linear: f64, h: f64) -> Self {
         let c = 1.0 / libm::tan(PI * frequency * h);
-        let (once, twice) = (linear * c, if square { c * c } else { 0.0 });
+        let (once, twice) = (linear * c, c * c);
         Self { coefficients: [twice + once + 1.0, 2.0 - 2.0 * twice, twice - once + 1.0], lead: once * h / 2.0 }
+    }
+
+    fn of_first_order(frequency: f64, h: f64) -> Self {
+        let c = 1.0 / libm::tan(PI * frequency * h);
+        Self { coefficients: [c + 1.0, 1.0 - c, 0.0], lead: c * h / 2.0 }
     }
 }
 
@@ -131,18 +138,18 @@ impl Filter {
         let (zeros, poles) = match *self {
             Self::LowPass { frequency } => {
                 below_half(Parameter::FREQUENCY, frequency)?;
-                (Polynomial::ONE, Polynomial::new(frequency, 1.0, false, h))
+                (Polynomial::ONE_OF_FIRST_ORDER, Polynomial::of_first_order(frequency, h))
             }
             Self::SecondOrder { frequency, damping } => {
                 below_half(Parameter::FREQUENCY, frequency)?;
                 Parameter::DAMPING.check(damping)?;
-                (Polynomial::ONE, Polynomial::new(frequency, 2.0 * damping, true, h))
+                (Polynomial::ONE, Polynomial::new(frequency, 2.0 * damping, h))
             }
             Self::Notch { frequency, zero_damping, pole_damping } => {
                 below_half(Parameter::FREQUENCY, frequency)?;
                 Parameter::ZERO_DAMPING.check(zero_damping)?;
                 Parameter::POLE_DAMPING.check(pole_damping)?;
-                let of = |damping: f64| Polynomial::new(frequency, 2.0 * damping, true, h);
+                let of = |damping: f64| Polynomial::new(frequency, 2.0 * damping, h);
                 (of(zero_damping), of(pole_damping))
             }
             Self::BiQuad { zero_frequency, zero_damping, pole_frequency, pole_damping } => {
@@ -150,7 +157,7 @@ impl Filter {
                 Parameter::ZERO_DAMPING.check(zero_damping)?;
                 below_half(Parameter::POLE_FREQUENCY, pole_frequency)?;
                 Parameter::POLE_DAMPING.check(pole_damping)?;
-                let of = |frequency, damping: f64| Polynomial::new(frequency, 2.0 * damping, true, h);
+                let of = |frequency, damping: f64| Polynomial::new(frequency, 2.0 * damping, h);
                 (of(zero_frequency, zero_damping), of(pole_frequency, pole_damping))
             }
         };
@@ -309,6 +316,23 @@ mod tests {
         let slow = Filter::Notch { frequency: 11.3, zero_damping: 0.1, pole_damping: 0.7 };
         let delay = Params::new(&[slow], rate).unwrap().delay();
         assert!((delay / (1.2 / (TAU * 11.3)) - 1.0).abs() < 1e-5, "{delay}");
+    }
+
+    /// No pole of a filter is on the circle, not even one that its zeros hide: what it holds of a past fades, rounding included.
+    #[test]
+    fn what_a_filter_holds_fades() {
+        for (filter, hertz) in FILTERS.iter().flat_map(|filter| RATES.map(|hertz| (filter, hertz))) {
+            let p = Params::new(&[*filter], Rate::new(hertz).unwrap()).unwrap();
+            let mut x = State::default();
+            for k in 0..1_001 {
+                step(&p, &mut x, if k % 2 == 0 { 1.7 } else { -1.3 });
+            }
+            for _ in 0..8 * hertz {
+                step(&p, &mut x, 0.0);
+            }
+            let left = x.memory[0].map(f64::abs);
+            assert!(left.iter().all(|held| *held < 1e-20), "{filter:?} at {hertz} Hz holds {left:?}");
+        }
     }
 
     #[test]

@@ -153,7 +153,7 @@ signals! {
     PowerIron "power.iron" Watt PowerStage WithIronLoss |now| now.power.iron;
         "loss in the iron, mean over the tick that ends; where the motor has one";
     PowerStored "power.stored" Watt PowerStage WithCurrents |now| now.power.stored;
-        "power into the field of the inductances, and with cogging of the magnets, mean over the tick that ends";
+        "power into the field of the inductances, mean over the tick that ends";
     PowerAirGap "power.air_gap" Watt PowerStage WithCurrents |now| now.power.air_gap;
         "torque or force times the velocity that the motor's equations used, mean over the tick that ends";
     PowerShaft "power.shaft" Watt PowerStage WithEffort |now| now.shaft_power;

@@ -8,6 +8,7 @@ fn each_effect_is_told_from_none_and_from_twice_as_much() {
         ("dead-time", "drive.inverter.dead_time=0 s", "drive.inverter.dead_time=4 us"),
         ("device-drop", "drive.inverter.device_drop=0 V", "drive.inverter.device_drop=2.4 V"),
         ("switching", "drive.inverter.modulation=averaged", "drive.inverter.carrier=8 kHz"),
+        ("overmodulation", "drive.inverter.modulation=averaged", "drive.dc_link=310 V"),
         ("dc-link-sag", "drive.link.sag.depth=0.0", "drive.link.sag.depth=0.3"),
         ("brake-resistor", "drive.link.brake.on=2 kV", "drive.link.brake.resistance=280 Ohm"),
     ] {

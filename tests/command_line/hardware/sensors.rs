@@ -2,7 +2,7 @@
 use super::passes_but_not_with;
 
 /// A file, what switches its effect off, and what doubles it.
-const EFFECTS: [(&str, &[&str], &[&str]); 10] = [
+const EFFECTS: [(&str, &[&str], &[&str]); 13] = [
     (
         "current-offset",
         &["drive.current.sensor.offset_a=\"0 A\"", "drive.current.sensor.offset_b=\"0 A\""],
@@ -15,6 +15,9 @@ const EFFECTS: [(&str, &[&str], &[&str]); 10] = [
     ),
     ("current-noise", &["drive.current.sensor.noise=\"0 A\""], &["drive.current.sensor.noise=\"0.2 A\""]),
     ("current-delay", &["drive.current.sensor.delay=0"], &["drive.current.sensor.delay=2"]),
+    ("current-quantisation", &["drive.current.sensor.bits=16"], &["drive.current.sensor.bits=7"]),
+    ("encoder-increments", &["motor.encoder.counts_per_rev=1048576"], &["motor.encoder.counts_per_rev=8192"]),
+    ("sincos-phase", &["motor.encoder.phase_error=\"0 deg\""], &["motor.encoder.phase_error=\"6 deg\""]),
     ("sincos-amplitude", &["motor.encoder.amplitude_error=0"], &["motor.encoder.amplitude_error=0.1"]),
     ("encoder-eccentricity", &["motor.encoder.eccentricity=\"0 um\""], &["motor.encoder.eccentricity=\"40 um\""]),
     ("encoder-noise", &["motor.encoder.noise=\"0 deg\""], &["motor.encoder.noise=\"0.002 deg\""]),

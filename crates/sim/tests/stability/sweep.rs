@@ -65,6 +65,13 @@ impl Case {
         way.into_iter().filter(is_on_the_way).chain(sides).map(|at| (at, self.agrees(at))).collect()
     }
 
+    /// The largest pole that the analysis has where runs do not agree.
+    fn print_poles(&self, found: &[(f64, Result<bool, NotTold>)], of: impl Fn(&Result<bool, NotTold>) -> bool) {
+        for (at, _) in found.iter().filter(|(_, agrees)| of(agrees)) {
+            println!("    by {at}: {:?}", report(&scaled(&self.scenario, self.name, *at), Depth::Verdict).largest);
+        }
+    }
+
     /// The smallest of `SHARES` at which runs on both sides still do as the analysis says, and whether they contradict it nearer
     /// than that.
     fn confirmed(&self) -> (f64, bool) {
@@ -119,12 +126,11 @@ fn boundaries_are_where_runs_change_from_decay_to_growth() {
         let found = case.along_the_way();
         if found.iter().any(|(_, agrees)| matches!(agrees, Ok(false))) {
             println!("loop {drawn}: {name:?} at {factor}: {found:?}\n{:?}", case.scenario);
+            case.print_poles(&found, |agrees| matches!(agrees, Ok(false)));
             misses.push(drawn);
         } else if found.iter().any(|(_, agrees)| agrees.is_err()) {
             println!("loop {drawn}: {name:?} at {factor}: no run of 4 800 000 ticks tells: {found:?}");
-            for (at, _) in found.iter().filter(|(_, agrees)| agrees.is_err()) {
-                println!("    by {at}: {:?}", report(&scaled(&case.scenario, name, *at), Depth::Verdict).largest);
-            }
+            case.print_poles(&found, Result::is_err);
             undecided += 1;
             continue;
         }
