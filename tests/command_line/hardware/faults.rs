@@ -3,7 +3,7 @@
 use super::run;
 
 /// A file, its code, what takes the fault away, and what looks for it, where that has a key.
-const FAULTS: [(&str, &str, &str, &str); 7] = [
+const FAULTS: [(&str, &str, &str, &str); 8] = [
     ("swapped-phases", "7122h", "motor.connection={}", "drive.supervision.commutation.speed='3000 rpm'"),
     (
         "commutation-offset-90",
@@ -20,6 +20,12 @@ const FAULTS: [(&str, &str, &str, &str); 7] = [
     ("lost-track", "7305h", "motor.encoder.lost_at='5 s'", ""),
     ("lost-load-track", "7306h", "drive.load_encoder.lost_at='5 s'", ""),
     ("lost-phase", "3321h", "motor.connection.open_at='5 s'", "drive.supervision.phase_loss.time='1 s'"),
+    (
+        "dc-link-overvoltage",
+        "3210h",
+        "drive.link.brake={ resistance='47 Ohm', on='390 V', off='375 V' }",
+        "drive.supervision.overvoltage='900 V'",
+    ),
     ("dc-link-sag", "3220h", "drive.link.sag.depth=0", "drive.supervision.undervoltage='50 V'"),
 ];
 
