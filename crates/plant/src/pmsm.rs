@@ -24,6 +24,7 @@ mod effects;
 mod envelope;
 mod flux_harmonics;
 mod flux_map;
+mod gauss;
 mod iron;
 mod maps;
 mod open_phase;

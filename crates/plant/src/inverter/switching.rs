@@ -32,7 +32,6 @@ pub(crate) enum Meshing {
 /// What does not change in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Switching {
-    electrical_ratio: f64,
     equations: Equations,
     meshing: Meshing,
     /// Half a period of the carrier (s).
@@ -120,7 +119,6 @@ impl Switching {
             Meshing::Ticks(ticks) => 0.5 * h * f64::from(ticks),
         };
         Ok(Self {
-            electrical_ratio: motor.electrical_ratio,
             equations: Equations::new(motor, p.on_resistance),
             meshing,
             half,
@@ -201,21 +199,10 @@ impl Switching {
         let Way { i, sums, fluxes, .. } = way;
         *current = i;
         let stored = if POWER { winding.stored(before, i) } else { 0.0 };
-        self.output::<POWER>(stored, &sums, fluxes, u, duties.shortened)
-    }
-
-    #[inline(always)]
-    fn output<const POWER: bool>(
-        &self,
-        stored: f64,
-        sums: &Sums,
-        fluxes: [f64; 2],
-        u: &Input,
-        shortened: bool,
-    ) -> Tick {
         let per = 1.0 / self.h;
-        let pmsm::Output { torque, power } = sums.output(stored, self.electrical_ratio, u.omega_e, self.h);
+        let pmsm::Output { torque, power } = sums.output(stored, winding.electrical_ratio(), u.omega_e, self.h);
         let voltage = AlphaBeta { alpha: fluxes[0] * per, beta: fluxes[1] * per };
+        let shortened = duties.shortened;
         if !POWER {
             return Tick { torque, voltage, shortened, ..Tick::default() };
         }

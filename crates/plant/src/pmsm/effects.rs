@@ -4,9 +4,7 @@ use super::saturated::Saturated;
 use super::temperature::ThermalSteps;
 use super::varying::Varying;
 use super::winding::{Span, Sums, Winding};
-use super::{
-    Cogging, FluxHarmonic, FluxMap, Input, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron,
-};
+use super::{Cogging, FluxHarmonic, FluxMap, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron};
 use servobench_base::{Dq, ParamError};
 
 /// The effects of a motor. None is switched on by default.
@@ -193,21 +191,18 @@ pub(crate) enum RealWinding<'a> {
     Saturated(Saturated<'a>),
 }
 
-impl RealWinding<'_> {
-    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
-    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
-        match self {
-            Self::Varying(varying) => varying.step(x, u, h),
-            Self::Saturated(saturated) => saturated.step(x, u, h),
-        }
-    }
-}
-
 impl Winding for RealWinding<'_> {
     fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq {
         match self {
             Self::Varying(varying) => varying.advance::<POWER>(i, over, sums),
             Self::Saturated(saturated) => saturated.advance::<POWER>(i, over, sums),
+        }
+    }
+
+    fn electrical_ratio(&self) -> f64 {
+        match self {
+            Self::Varying(varying) => varying.electrical_ratio(),
+            Self::Saturated(saturated) => saturated.electrical_ratio(),
         }
     }
 

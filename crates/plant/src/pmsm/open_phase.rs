@@ -14,21 +14,13 @@
 //! solved by the Gauss method of two stages, which keeps quadratic invariants: the energies close to the rounding, as in `varying`. Its
 //! parts are as long as there. Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 4; Hairer, Lubich and Wanner, *Geometric
 //! Numerical Integration*, 2nd ed., ch. IV.2.
+use super::Params;
 use super::effects::RealMotor;
 use super::flux_harmonics::{Flux, FluxHarmonic};
+use super::gauss::{self, OFF_THE_MIDDLE, STAGES};
 use super::phases::{Entries, PhaseMatrix};
-use super::winding::{Span, Sums, Winding};
-use super::{Input, Output, Params, State};
+use super::winding::{Span, Sums, Winding, stored};
 use servobench_base::{AlphaBeta, Dq, Rotation};
-
-/// Largest turn of a harmonic in a part of a tick (rad).
-const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
-/// Largest turn of the rotor, and largest decay of the current.
-const LARGEST_PART: f64 = 0.25;
-/// A tick has no more parts than this.
-const MOST_PARTS: f64 = 4096.0;
-/// √3/6.
-const OFF_THE_MIDDLE: f64 = 0.288_675_134_594_812_9;
 
 /// A winding whose current stands along a line in the stator.
 #[derive(Debug, Clone, Copy)]
@@ -68,9 +60,12 @@ impl Winding for OpenPhase<'_> {
         Dq { d: s * n.d, q: s * n.q }
     }
 
+    fn electrical_ratio(&self) -> f64 {
+        self.params.electrical_ratio
+    }
+
     fn stored(&self, before: Dq, after: Dq) -> f64 {
-        let l = self.params.inductance;
-        0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
+        stored(self.params.inductance, before, after)
     }
 }
 
@@ -81,14 +76,6 @@ impl<'a> OpenPhase<'a> {
         Self { params, harmonics, phases, series, line }
     }
 
-    /// Advances the current by a tick of `h` (s) and returns mean torque and powers.
-    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
-        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
-        let (before, mut sums) = (x.current, Sums::default());
-        x.current = self.advance::<true>(before, &over, &mut sums);
-        sums.output(self.stored(before, x.current), self.params.electrical_ratio, u.omega_e, h)
-    }
-
     /// n in the frame of a rotor at `rotor`, and the inductance along it.
     fn along(&self, rotor: Rotation) -> (Dq, f64) {
         let (n, l) = (self.line.to_dq(rotor), self.params.inductance);
@@ -97,13 +84,8 @@ impl<'a> OpenPhase<'a> {
 
     fn parts(&self, turn: f64, h: f64) -> u32 {
         let Params { resistance, inductance, .. } = self.params;
-        let order = self.harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
         let decay = h * (resistance * self.phases.largest() + self.series) / inductance.d.min(inductance.q);
-        let of_harmonics = f64::from(order) * turn.abs() / LARGEST_TURN_OF_A_HARMONIC;
-        let parts = of_harmonics.max(decay.max(turn.abs()) / LARGEST_PART).clamp(1.0, MOST_PARTS);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 4096")]
-        let whole = libm::ceil(parts) as u32;
-        whole.max(1)
+        gauss::parts(decay, turn, self.harmonics, 0.0)
     }
 
     fn stage(&self, over: &Span, rotor: Rotation) -> Stage {
@@ -123,8 +105,7 @@ impl<'a> OpenPhase<'a> {
 
     fn part(&self, w: f64, over: &Span, rotor: Rotation, h: f64, sums: &mut Sums) -> f64 {
         let omega = over.omega;
-        let stages =
-            [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE].map(|at| self.stage(over, rotor.ahead(omega * h * at)));
+        let stages = STAGES.map(|at| self.stage(over, rotor.ahead(omega * h * at)));
         // dw/dt = b − a·w.
         let [a, b] = [
             stages.each_ref().map(|one| (one.resistance + self.series + omega * one.reluctance) / one.inductance),

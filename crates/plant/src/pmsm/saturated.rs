@@ -17,11 +17,11 @@
 //! a part is of second order.
 use super::flux_harmonics::{Flux, FluxHarmonic};
 use super::flux_map::{CONVERGED, FluxMap, FluxPoint, Inductance, MOST_STEPS};
+use super::gauss::{self, MOST_PARTS, STAGES, WEIGHTS, solved};
 use super::phases::{Entries, PhaseMatrix};
-use super::varying::{LARGEST_PART, LARGEST_TURN_OF_A_HARMONIC, MOST_PARTS, STAGES, WEIGHTS, solved};
 use super::winding::{Span, Sums, Winding};
-use super::{Input, Output, Params, State, moved};
-use servobench_base::{AlphaBeta, Dq, Rotation};
+use super::{Params, moved};
+use servobench_base::{Dq, Rotation};
 
 /// Largest change of an inductance in a part of a tick, as a part of it.
 const LARGEST_CHANGE: f64 = 0.25;
@@ -76,27 +76,20 @@ impl Winding for Saturated<'_> {
         }
     }
 
+    fn electrical_ratio(&self) -> f64 {
+        self.params.electrical_ratio
+    }
+
     fn stored(&self, before: Dq, after: Dq) -> f64 {
         self.map.stored(before, after)
     }
 }
 
 impl Saturated<'_> {
-    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
-    pub(super) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
-        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
-        let (before, mut sums) = (x.current, Sums::default());
-        x.current = self.advance::<true>(before, &over, &mut sums);
-        sums.output(self.stored(before, x.current), self.params.electrical_ratio, u.omega_e, h)
-    }
-
     fn parts(&self, i: Dq, over: &Span) -> u32 {
         let Span { omega, time, .. } = *over;
         let here = self.map.at(i);
         let inductance = here.inductance;
-        let turn = (omega * time).abs();
-        let order = self.harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
-        let of_harmonics = f64::from(order) * turn / LARGEST_TURN_OF_A_HARMONIC;
         let resistance = self.params.resistance * self.phases.largest() + self.series;
         let decay = time * resistance / inductance.smallest();
         let stage = self.stage(over, over.rotor);
@@ -104,10 +97,7 @@ impl Saturated<'_> {
         let change = inductance.solved(Dq { d: time * d, q: time * q });
         let there = self.map.at(moved(i, change)).inductance;
         let of_saturation = (inductance.difference(&there) / LARGEST_CHANGE).min(MOST_FOR_CHANGE);
-        let parts = of_harmonics.max(decay.max(turn) / LARGEST_PART).max(of_saturation).clamp(1.0, MOST_PARTS);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 4096")]
-        let whole = libm::ceil(parts) as u32;
-        whole.max(1)
+        gauss::parts(decay, omega * time, self.harmonics, of_saturation)
     }
 
     /// The current at the end; `None` when a part is too long for Newton's method.

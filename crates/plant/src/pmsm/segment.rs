@@ -9,7 +9,7 @@
 //! is taken in the stator frame, so that the power of any voltage that is held there follows from it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::Params;
-use super::winding::{Span, Sums, Winding};
+use super::winding::{Span, Sums, Winding, stored};
 use core::array::from_fn;
 use servobench_base::Dq;
 
@@ -32,6 +32,7 @@ const WEIGHTS: [f64; 4] =
 /// The motor's equations, per second, with what is in series with its resistance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Equations {
+    electrical_ratio: f64,
     /// R/L.
     decay: Dq,
     /// 1/L.
@@ -55,6 +56,7 @@ impl Equations {
         let (l, r) = (motor.inductance, motor.resistance + series);
         let cross = Dq { d: l.q / l.d, q: l.d / l.q };
         Self {
+            electrical_ratio: motor.electrical_ratio,
             decay: Dq { d: r / l.d, q: r / l.q },
             per_volt: Dq { d: 1.0 / l.d, q: 1.0 / l.q },
             cross,
@@ -160,10 +162,13 @@ impl Winding for Equations {
     }
 
     #[inline(always)]
+    fn electrical_ratio(&self) -> f64 {
+        self.electrical_ratio
+    }
+
+    #[inline(always)]
     fn stored(&self, before: Dq, after: Dq) -> f64 {
-        // Δ(i²) = Δi·(i + i + Δi), which keeps the digits of Δi.
-        let l = self.inductance;
-        0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
+        stored(self.inductance, before, after)
     }
 }
 

@@ -13,25 +13,12 @@
 //!
 //! The time is divided so that a harmonic turns by at most half a radian and the current decays by at most a quarter in a part: what
 //! a part leaves out is below (1/2)⁵/4320 of a harmonic and (1/4)⁵/720 of a transient.
+use super::Params;
 use super::flux_harmonics::{Flux, FluxHarmonic};
+use super::gauss::{self, STAGES, WEIGHTS, solved};
 use super::phases::{Entries, PhaseMatrix};
-use super::winding::{Span, Sums, Winding};
-use super::{Input, Output, Params, State};
-use servobench_base::{AlphaBeta, Dq, Rotation};
-
-/// Largest turn of a harmonic in a part of a tick (rad).
-pub(super) const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
-/// Largest turn of the rotor, and largest decay of a current.
-pub(super) const LARGEST_PART: f64 = 0.25;
-/// A tick has no more parts than this: a rotor so fast turns through a thousand radians in a tick.
-pub(super) const MOST_PARTS: f64 = 4096.0;
-
-/// √3/6.
-const OFF_THE_MIDDLE: f64 = 0.288_675_134_594_812_9;
-/// Instants of the stages in a part.
-pub(super) const STAGES: [f64; 2] = [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE];
-/// a_jn.
-pub(super) const WEIGHTS: [[f64; 2]; 2] = [[0.25, 0.25 - OFF_THE_MIDDLE], [0.25 + OFF_THE_MIDDLE, 0.25]];
+use super::winding::{Span, Sums, Winding, stored};
+use servobench_base::{Dq, Rotation};
 
 /// A motor whose equations change with the angle.
 #[derive(Debug, Clone, Copy)]
@@ -65,30 +52,20 @@ impl Winding for Varying<'_> {
         (0..parts).fold(i, |i, k| self.part(i, over, rotor.ahead(omega * part * f64::from(k)), part, sums))
     }
 
+    fn electrical_ratio(&self) -> f64 {
+        self.params.electrical_ratio
+    }
+
     fn stored(&self, before: Dq, after: Dq) -> f64 {
-        let l = self.params.inductance;
-        0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
+        stored(self.params.inductance, before, after)
     }
 }
 
 impl Varying<'_> {
-    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
-    pub(crate) fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
-        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
-        let (before, mut sums) = (x.current, Sums::default());
-        x.current = self.advance::<true>(before, &over, &mut sums);
-        sums.output(self.stored(before, x.current), self.params.electrical_ratio, u.omega_e, h)
-    }
-
     fn parts(&self, turn: f64, h: f64) -> u32 {
         let Params { resistance, inductance, .. } = self.params;
-        let order = self.harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
         let decay = h * (resistance * self.phases.largest() + self.series) / inductance.d.min(inductance.q);
-        let of_harmonics = f64::from(order) * turn.abs() / LARGEST_TURN_OF_A_HARMONIC;
-        let parts = of_harmonics.max(decay.max(turn.abs()) / LARGEST_PART).clamp(1.0, MOST_PARTS);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 4096")]
-        let whole = libm::ceil(parts) as u32;
-        whole.max(1)
+        gauss::parts(decay, turn, self.harmonics, 0.0)
     }
 
     fn stage(&self, over: &Span, rotor: Rotation) -> Stage {
@@ -141,32 +118,6 @@ impl Varying<'_> {
         }
         Dq { d: i.d + change.d, q: i.q + change.q }
     }
-}
-
-/// Gauss's elimination with the largest pivot of each column.
-pub(super) fn solved(mut system: [[f64; 5]; 4]) -> [f64; 4] {
-    for column in 0..4 {
-        let mut largest = column;
-        for row in column + 1..4 {
-            if system[row][column].abs() > system[largest][column].abs() {
-                largest = row;
-            }
-        }
-        system.swap(column, largest);
-        let pivot = system[column];
-        for row in &mut system[column + 1..] {
-            let factor = row[column] / pivot[column];
-            for (entry, above) in row.iter_mut().zip(pivot).skip(column) {
-                *entry -= factor * above;
-            }
-        }
-    }
-    let mut x = [0.0; 4];
-    for row in (0..4).rev() {
-        let known: f64 = (row + 1..4).map(|n| system[row][n] * x[n]).sum();
-        x[row] = (system[row][4] - known) / system[row][row];
-    }
-    x
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What the winding of a motor goes through between two changes of its voltage, whoever makes them: a whole tick, or from edge to edge of
 //! an inverter that switches.
-use super::{Output, Power};
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use super::{Input, Output, Power, State};
 use servobench_base::{AlphaBeta, Dq, Rotation};
 
 /// Some time at constant speed on a voltage that stands in the stator frame.
@@ -65,6 +66,24 @@ pub(crate) trait Winding {
     /// The current at the end of `over`, which begins with `i` (A, peak). What happens goes to `sums`; without `POWER` the torque alone.
     fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq;
 
+    /// Electrical angle per motor coordinate.
+    fn electrical_ratio(&self) -> f64;
+
     /// Energy that the field has more with the current `after` than with `before` (J).
     fn stored(&self, before: Dq, after: Dq) -> f64;
+
+    /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
+    fn step(&self, x: &mut State, u: &Input, h: f64) -> Output {
+        let over = Span { voltage: u.voltage, drop: AlphaBeta::default(), rotor: u.rotor, omega: u.omega_e, time: h };
+        let (before, mut sums) = (x.current, Sums::default());
+        x.current = self.advance::<true>(before, &over, &mut sums);
+        sums.output(self.stored(before, x.current), self.electrical_ratio(), u.omega_e, h)
+    }
+}
+
+/// Energy (J) that the field of constant inductances `l` (H) has more with `after` than with `before`: of Δ(i²) = Δi·(i + i + Δi), which keeps
+/// the digits of Δi.
+#[inline(always)]
+pub(super) fn stored(l: Dq, before: Dq, after: Dq) -> f64 {
+    0.75 * (l.d * (after.d - before.d) * (after.d + before.d) + l.q * (after.q - before.q) * (after.q + before.q))
 }

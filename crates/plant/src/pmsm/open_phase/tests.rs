@@ -1,6 +1,6 @@
 use super::*;
 use crate::inverter::legs;
-use crate::pmsm::{Effects, FluxHarmonic};
+use crate::pmsm::{Effects, FluxHarmonic, Input, Output, State};
 use proptest::prelude::*;
 use servobench_base::ElectricalAngle;
 

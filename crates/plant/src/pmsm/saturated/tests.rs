@@ -1,8 +1,9 @@
 use super::super::flux_map::tests::published;
 use super::super::{Power, Saturation, step_with_power};
 use super::*;
+use crate::pmsm::{Input, State};
 use proptest::prelude::*;
-use servobench_base::ElectricalAngle;
+use servobench_base::{AlphaBeta, ElectricalAngle};
 
 /// The motor of [`published`], with the inductances that its example controls it by.
 const RELUCTANCE: Params =

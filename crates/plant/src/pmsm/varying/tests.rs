@@ -1,6 +1,6 @@
 use super::super::step_with_power;
 use super::*;
-use crate::pmsm::Power;
+use crate::pmsm::{Input, Output, Power, State};
 use proptest::prelude::*;
 use servobench_base::{AlphaBeta, ElectricalAngle};
 

@@ -6,7 +6,7 @@
 //! ```
 use super::{Synchronous, is_shorter};
 use crate::inverter::{self, Averaged, Bridge, Legs, LinkParams, LinkPower, LinkState, Modulation, Switching, legs};
-use crate::pmsm;
+use crate::pmsm::{self, Winding as _};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation};
 use std::sync::Arc;
 
