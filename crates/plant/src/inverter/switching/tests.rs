@@ -188,7 +188,8 @@ fn integrated(modulation: f64) -> (f64, f64) {
 
 /// RMS of the ripple's vector: (U_dc·T/L)²·f(M)/288 with f(M) = 3/2·M² − 4√3/π·M³ + (27/16 − 81√3/64π)·M⁴ and the amplitude M·U_dc/2
 /// (Holmes & Lipo, *Pulse Width Modulation for Power Converters*; Hava, Kerkman & Lipo, *IEEE Transactions on Power Electronics* 14(1), 1999:
-/// the harmonic distortion function of space-vector modulation).
+/// the harmonic distortion function of space-vector modulation). The factor 1/288: at small M the flux is a sawtooth of M·U_dc/2·T/4 twice per
+/// carrier, of mean square M²·(U_dc·T)²/192 = 3/2·M²·(U_dc·T)²/288.
 fn closed_form(m: f64) -> f64 {
     let root = 3.0_f64.sqrt();
     let f = 1.5 * m.powi(2) - 4.0 * root / PI * m.powi(3) + (27.0 / 16.0 - 81.0 * root / (64.0 * PI)) * m.powi(4);
