@@ -20,7 +20,10 @@ pub struct Question {
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
-pub const MEASURED_FROM: [Signal; 26] = [
+pub const MEASURED_FROM: [Signal; 29] = [
+    Signal::RequestPosition,
+    Signal::RequestVelocity,
+    Signal::RequestEffort,
     Signal::SetpointPosition,
     Signal::SetpointAcceleration,
     Signal::MotorPosition,

@@ -56,8 +56,14 @@ requirements! {
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
 
+/// Source and name of the signal that says which [kind](servobench_base::RequestKind) of request the task makes.
+pub const REQUEST_KIND: (&str, &str) = ("request", "kind");
+
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [Signal; 10] = [
+pub const JUDGED_BY: [Signal; 13] = [
+    Signal::RequestPosition,
+    Signal::RequestVelocity,
+    Signal::RequestEffort,
     Signal::SetpointPosition,
     Signal::SetpointAcceleration,
     Signal::MotorPosition,

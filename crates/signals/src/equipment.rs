@@ -145,6 +145,8 @@ impl Presence {
 /// Stage of the loop that writes a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writer {
+    /// The task: what moves, tables and function blocks want of the axis.
+    Task,
     /// The motion task behind a fieldbus.
     MotionTask,
     /// The fieldbus.
@@ -197,6 +199,7 @@ impl Writer {
     #[must_use]
     pub fn name(self, equipment: &Equipment) -> &'static str {
         match self {
+            Self::Task => "task",
             Self::MotionTask => "motion task",
             Self::Fieldbus => "fieldbus",
             Self::Master => "master",
@@ -224,7 +227,8 @@ impl Writer {
             Self::PositionLoop => rates.position,
             Self::VelocityLoop => rates.velocity,
             Self::CurrentLoop | Self::Commander => rates.current,
-            Self::SetPoint
+            Self::Task
+            | Self::SetPoint
             | Self::Mechanics
             | Self::Measurement
             | Self::PowerStage

@@ -1,5 +1,5 @@
 //! All that is known at one tick.
-use servobench_base::{Dq, Setpoint};
+use servobench_base::{Dq, RequestKind, Setpoint};
 use servobench_plant::BodyState;
 use servobench_plant::inverter::LinkPower;
 use servobench_plant::pmsm::{Power, Temperatures};
@@ -7,6 +7,12 @@ use servobench_plant::pmsm::{Power, Temperatures};
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Instant {
+    /// What the task wants of the load, where it wants a position or a velocity.
+    pub request: Setpoint,
+    /// The effort that it wants of the motor.
+    pub requested_effort: f64,
+    /// Which of them it wants.
+    pub request_kind: RequestKind,
     /// Set-point of the motion task, before it goes over the bus.
     pub task: Setpoint,
     /// Actual position as the master reads it.

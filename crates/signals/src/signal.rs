@@ -80,6 +80,12 @@ macro_rules! signals {
 pub(crate) const COUNT: usize = Signal::ALL.len();
 
 signals! {
+    RequestPosition "request.position" Axis(0) Task Always |now| now.request.x;
+        "position that the task wants of the load, as much later as the way to the loops takes; that of the load where it wants none";
+    RequestVelocity "request.velocity" Axis(1) Task Always |now| now.request.v;
+        "velocity that the task wants";
+    RequestEffort "request.effort" MotorEffort Task OnBus |now| now.requested_effort;
+        "torque or force that the task wants; 0 where it wants none";
     TaskPosition "task.position" Axis(0) MotionTask OnBus |now| now.task.x;
         "set-point of the motion task, before it goes over the bus";
     TaskVelocity "task.velocity" Axis(1) MotionTask OnBus |now| now.task.v;

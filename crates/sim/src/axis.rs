@@ -5,6 +5,7 @@ use crate::closed_loop::{ClosedLoop, Source, State};
 use crate::external::External;
 use crate::joint_watch::JointWatch;
 use crate::limit_watch::LimitWatch;
+use crate::request_watch::RequestWatch;
 use crate::run::Reason;
 use servobench_base::Severity;
 use servobench_plant::MechanicsError;
@@ -31,6 +32,7 @@ pub(crate) struct Axis {
     limits: LimitWatch,
     joints: JointWatch,
     alarms: AlarmWatch,
+    requests: RequestWatch,
 }
 
 /// An axis at a tick, the mechanics apart, which remember that tick themselves.
@@ -42,6 +44,7 @@ pub(crate) struct Saved {
     limits: LimitWatch,
     joints: JointWatch,
     alarms: AlarmWatch,
+    requests: RequestWatch,
     mark: Mark,
 }
 
@@ -54,17 +57,32 @@ pub(crate) struct Snapshot {
 
 impl Axis {
     /// The axis at tick 0. A row is recorded every `record_every` ticks.
-    pub(crate) fn new(closed_loop: ClosedLoop, wanted: Selection, recorder: Recorder, record_every: u32) -> Self {
+    pub(crate) fn new(closed_loop: ClosedLoop, wanted: Selection, mut recorder: Recorder, record_every: u32) -> Self {
         let (external, mut now) = (External::default(), Instant::default());
         closed_loop.sample(&external, &mut now);
         let (limits, joints, alarms) = (LimitWatch::default(), JointWatch::default(), AlarmWatch::default());
-        Self { closed_loop, external, now, wanted, recorder, record_every, ticks_to_row: 0, limits, joints, alarms }
+        let requests = RequestWatch::new(&mut recorder);
+        let ticks_to_row = 0;
+        Self {
+            closed_loop,
+            external,
+            now,
+            wanted,
+            recorder,
+            record_every,
+            ticks_to_row,
+            limits,
+            joints,
+            alarms,
+            requests,
+        }
     }
 
     /// The same axis with nothing recorded of it.
     pub(crate) fn unrecorded(self) -> Self {
-        let recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
-        Self { recorder, record_every: 1, ticks_to_row: 0, ..self }
+        let mut recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
+        let requests = RequestWatch::new(&mut recorder);
+        Self { recorder, requests, record_every: 1, ticks_to_row: 0, ..self }
     }
 
     /// Tick `k`, which is at `time` (s), but for the mechanics: the loop, then its row. What is recorded together belongs to the same
@@ -81,6 +99,7 @@ impl Axis {
         let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
         self.limits.tick(time, &now.binds, cut, &mut self.recorder);
         self.alarms.tick(time, now.alarms, &mut self.recorder);
+        self.requests.tick(time, now.request_kind, &mut self.recorder);
         self.joints.tick(time, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if self.ticks_to_row == 0 {
             self.ticks_to_row = self.record_every;
@@ -130,6 +149,7 @@ impl Axis {
             limits: self.limits.clone(),
             joints: self.joints.clone(),
             alarms: self.alarms.clone(),
+            requests: self.requests.clone(),
             mark: self.recorder.mark(time),
         })
     }
@@ -144,6 +164,7 @@ impl Axis {
         self.limits.clone_from(&saved.limits);
         self.joints.clone_from(&saved.joints);
         self.alarms.clone_from(&saved.alarms);
+        self.requests.clone_from(&saved.requests);
         self.recorder.rewind(&saved.mark);
         Ok(())
     }

@@ -5,7 +5,7 @@ use crate::external::{Controller, External};
 use crate::network::{Measurement, Network, Request};
 use crate::program::Program;
 use crate::run::Reason;
-use servobench_base::{PowerCommand, Rate, Setpoint, Tick};
+use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Tick};
 use servobench_drive::measurement::Edge;
 use servobench_drive::unwrap::Unwrap;
 use servobench_drive::velocity::Cut;
@@ -104,6 +104,15 @@ const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
     [x, v, a, j, s]
 }
 
+/// The request of `program` at its time `t` (s), where the set-point is `setpoint`: an external set-point is one to follow.
+#[inline(always)]
+fn requested(program: &mut Program, t: f64, setpoint: Setpoint, external: &External) -> (Setpoint, RequestKind) {
+    match external.setpoint {
+        Some(setpoint) => (setpoint, RequestKind::Follow),
+        None => program.request_at(t, setpoint),
+    }
+}
+
 impl ClosedLoop {
     /// Everything of tick `k` but the mechanics' way to the next one:
     ///
@@ -195,6 +204,7 @@ impl ClosedLoop {
         let Some(control) = &mut self.state.control else {
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
+                (now.request, now.request_kind) = requested(program, since, now.setpoint, external);
             }
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
@@ -237,6 +247,7 @@ impl ClosedLoop {
                 let command = drive::step(params, state, &demand, EffortLimits::NONE, &sensors);
                 let setpoint = &mut now.setpoint;
                 (setpoint.x, setpoint.v, setpoint.a, setpoint.j, setpoint.s) = (x, v, a, j, s);
+                (now.request, now.request_kind) = requested(program, since, now.setpoint, external);
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
                 command

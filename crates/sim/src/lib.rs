@@ -17,6 +17,7 @@ mod machine;
 mod multi_axis;
 mod network;
 mod program;
+mod request_watch;
 mod run;
 mod stability;
 mod stepper;

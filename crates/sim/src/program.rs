@@ -4,7 +4,7 @@ mod fine;
 
 use crate::error::{BuildError, check_length};
 use fine::Fine;
-use servobench_base::Setpoint;
+use servobench_base::{RequestKind, Setpoint};
 use servobench_cia402::interpolated::SubMode;
 use servobench_cia402::units::Object;
 use servobench_metrics::DisplayUnit;
@@ -39,6 +39,8 @@ pub struct Program {
     end: f64,
     /// Between the course and the drive.
     fine: Option<Fine>,
+    /// The course as the task wants it: where the set-point is interpolated, so much later, and otherwise the set-point itself.
+    requested: Option<Course>,
     /// In which its positions are told.
     unit: DisplayUnit,
 }
@@ -58,6 +60,9 @@ struct Now {
     start: f64,
     from: f64,
     next_start: f64,
+    /// When its plan ends (s), and the request from then on.
+    plan_end: f64,
+    then: RequestKind,
     reader: Reader,
 }
 
@@ -81,6 +86,7 @@ impl Program {
             let fine = Fine::new(interpolation, scenario.base_rate)?;
             program.end += fine.delay();
             program.fine = Some(fine);
+            program.requested = Some(program.course.clone());
             check_length(None, program.end)?;
         }
         Ok(program)
@@ -119,8 +125,10 @@ impl Program {
             check_length(Some(index), end)?;
         }
         let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
-        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, reader: Reader::default() };
-        Ok(Self { course: Course { moves, now }, end, fine: None, unit: DisplayUnit::plain("m", 0) })
+        let plan_end = f64::NEG_INFINITY;
+        let then = RequestKind::Stand;
+        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, plan_end, then, reader: Reader::default() };
+        Ok(Self { course: Course { moves, now }, end, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) })
     }
 
     /// End of the last step (s).
@@ -138,6 +146,19 @@ impl Program {
         // As numbers, so that a set-point that is not interpolated stays in registers.
         let [x, v, a, j, s] = interpolated(fine, course, t);
         Setpoint { x, v, a, j, s }
+    }
+
+    /// What the task wants at `t` (s), where the set-point is `setpoint`, and which kind of request that is. Queries must not go back
+    /// in time.
+    #[inline(always)]
+    pub(crate) fn request_at(&mut self, t: f64, setpoint: Setpoint) -> (Setpoint, RequestKind) {
+        match (&mut self.requested, &self.fine) {
+            (Some(course), Some(fine)) => {
+                let t = (t - fine.delay()).max(0.0);
+                (course.at(t), course.kind(t))
+            }
+            _ => (setpoint, self.course.kind(t)),
+        }
     }
 
     /// How long each move lasts (s).
@@ -187,6 +208,12 @@ impl Course {
         setpoint
     }
 
+    /// The kind of request at `t` (s), for which the set-point was asked last.
+    #[inline(always)]
+    fn kind(&self, t: f64) -> RequestKind {
+        if t < self.now.plan_end { RequestKind::Follow } else { self.now.then }
+    }
+
     /// Finds what holds at `t` (s).
     #[cold]
     fn look_up(&mut self, t: f64) {
@@ -194,9 +221,15 @@ impl Course {
         let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
         let Some(Planned { start, from, plan, .. }) = self.moves.get(index) else { return };
         let now = &mut self.now;
+        (now.plan_end, now.then) = match plan.end().v {
+            _ if t < *start => (f64::NEG_INFINITY, RequestKind::Stand),
+            0.0 => (start + plan.duration(), RequestKind::Rest),
+            _ => (start + plan.duration(), RequestKind::Velocity),
+        };
         now.reader.look_up(plan, t - start);
         (now.index, now.start, now.from) = (index, *start, *from);
-        now.next_start = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
+        let next = self.moves.get(index + 1).map_or(f64::INFINITY, |next| next.start);
+        now.next_start = if t < *start { *start } else { next };
     }
 }
 

@@ -1,0 +1,34 @@
+//! Notes which kind of request the task makes, when that changes.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use servobench_base::RequestKind;
+use servobench_metrics::REQUEST_KIND;
+use servobench_trace::{Recorder, SignalId};
+
+/// The kind of request that was noted last.
+#[derive(Debug, Clone)]
+pub(crate) struct RequestWatch {
+    id: SignalId,
+    noted: Option<RequestKind>,
+}
+
+impl RequestWatch {
+    /// Nothing noted yet.
+    pub(crate) fn new(recorder: &mut Recorder) -> Self {
+        let (source, name) = REQUEST_KIND;
+        Self { id: recorder.add_signal(source, name), noted: None }
+    }
+
+    /// Takes the kind of the tick at `t` (s).
+    #[inline(always)]
+    pub(crate) fn tick(&mut self, t: f64, kind: RequestKind, recorder: &mut Recorder) {
+        if self.noted != Some(kind) {
+            self.note(t, kind, recorder);
+        }
+    }
+
+    #[cold]
+    fn note(&mut self, t: f64, kind: RequestKind, recorder: &mut Recorder) {
+        self.noted = Some(kind);
+        recorder.note_value(self.id, t, kind.name());
+    }
+}
