@@ -15,6 +15,7 @@ mod modulo;
 mod obstacle;
 mod parameters;
 mod queue;
+mod request;
 mod run;
 mod shared_limits;
 mod superimposed;
@@ -31,7 +32,7 @@ use activity::{Activity, HomingWait};
 use obstacle::HomingSteps;
 use parameters::Supervision;
 use queue::Queue;
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::{ParamError, Request, Setpoint};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task, TouchProbe};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
@@ -79,6 +80,8 @@ pub struct Axis {
     queue: Queue,
     ledger: Ledger,
     error: Option<AxisError>,
+    /// What the program wants of the axis in this cycle; until it has ended, that of the one before.
+    request: Request,
     /// Bits of the drive's digital outputs.
     digital_outputs: u32,
     /// What the drive's touch probe is asked for, and how often it has been.
@@ -117,6 +120,7 @@ impl Axis {
             queue: Queue::EMPTY,
             ledger: Ledger::new(),
             error: None,
+            request: Request::Nothing,
             digital_outputs: 0,
             probe: None,
             probes: 0,
@@ -160,6 +164,7 @@ impl Axis {
             }
         };
         self.end_velocity_command();
+        self.request = self.requested();
         AxisCommand {
             power: self.power.enable,
             reset: self.reset.signal(),

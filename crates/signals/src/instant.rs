@@ -1,5 +1,5 @@
 //! All that is known at one tick.
-use servobench_base::{Dq, RequestKind, Setpoint};
+use servobench_base::{Dq, Request, RequestKind, Setpoint};
 use servobench_plant::BodyState;
 use servobench_plant::inverter::LinkPower;
 use servobench_plant::pmsm::{Power, Temperatures};
@@ -81,6 +81,22 @@ pub struct Instant {
     pub binds: PerLimit<bool>,
     /// In which share of the ticks since the last row they did.
     pub saturation: PerLimit<f64>,
+}
+
+impl Instant {
+    /// Takes the request of the task. Where it wants no position, that is where the load is.
+    #[inline]
+    pub fn ask(&mut self, request: Request) {
+        let here = self.load.position;
+        self.request_kind = request.kind();
+        (self.request, self.requested_effort) = match request {
+            Request::Nothing | Request::Stand => (Setpoint::at_rest(here), 0.0),
+            Request::Rest(x) => (Setpoint::at_rest(x), 0.0),
+            Request::Follow(setpoint) => (setpoint, 0.0),
+            Request::Velocity(v) => (Setpoint { v, ..Setpoint::at_rest(here) }, 0.0),
+            Request::Effort(effort) => (Setpoint::at_rest(here), effort),
+        };
+    }
 }
 
 /// What hardware says of itself.

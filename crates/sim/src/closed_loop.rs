@@ -2,7 +2,7 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
-use crate::network::{Measurement, Network, Request};
+use crate::network::{Measurement, Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
 use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Tick};
@@ -104,15 +104,6 @@ const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
     [x, v, a, j, s]
 }
 
-/// The request of `program` at its time `t` (s), where the set-point is `setpoint`: an external set-point is one to follow.
-#[inline(always)]
-fn requested(program: &mut Program, t: f64, setpoint: Setpoint, external: &External) -> (Setpoint, RequestKind) {
-    match external.setpoint {
-        Some(setpoint) => (setpoint, RequestKind::Follow),
-        None => program.request_at(t, setpoint),
-    }
-}
-
 impl ClosedLoop {
     /// Everything of tick `k` but the mechanics' way to the next one:
     ///
@@ -204,7 +195,10 @@ impl ClosedLoop {
         let Some(control) = &mut self.state.control else {
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
-                (now.request, now.request_kind) = requested(program, since, now.setpoint, external);
+                (now.request, now.request_kind) = match external.setpoint {
+                    Some(setpoint) => (setpoint, RequestKind::Follow),
+                    None => program.request_at(since, now.setpoint),
+                };
             }
             now.reference = now.setpoint.x;
             now.motor_reference = now.setpoint.x;
@@ -247,7 +241,10 @@ impl ClosedLoop {
                 let command = drive::step(params, state, &demand, EffortLimits::NONE, &sensors);
                 let setpoint = &mut now.setpoint;
                 (setpoint.x, setpoint.v, setpoint.a, setpoint.j, setpoint.s) = (x, v, a, j, s);
-                (now.request, now.request_kind) = requested(program, since, now.setpoint, external);
+                (now.request, now.request_kind) = match external.setpoint {
+                    Some(setpoint) => (setpoint, RequestKind::Follow),
+                    None => program.request_at(since, now.setpoint),
+                };
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
                 command
@@ -271,11 +268,12 @@ impl ClosedLoop {
                 };
                 let t = self.base_rate.time(Tick(k));
                 let program = self.state.begun.map(|_| since);
-                let request = Request { t, program, setpoint: external.setpoint };
-                let (demand, limits) = network.step(k, &request, switches.index, measure, recorder);
+                let prompt = Prompt { t, program, setpoint: external.setpoint };
+                let (demand, limits) = network.step(k, &prompt, switches.index, measure, recorder);
                 let command = drive::step(params, state, demand, limits, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
                 network.tell(now);
+                now.ask(network.request(t));
                 (now.reference, now.motor_reference) = match network.reference(t) {
                     Some((reference, motor)) => (reference.x, motor.position),
                     None => (now.load.position, now.motor.position),

@@ -14,6 +14,7 @@ mod drive_profile;
 mod plc;
 mod program_cursor;
 mod reference;
+mod requests;
 mod signals;
 mod units;
 
@@ -22,15 +23,16 @@ use drive_profile::DriveProfile;
 use plc::Plc;
 use program_cursor::ProgramCursor;
 use reference::DelayedReference;
-use servobench_base::{Countdown, Divider, Setpoint, Tick};
-use servobench_cia402::{Commands, Mode};
+use requests::Requests;
+use servobench_base::{Countdown, Divider, Request, Setpoint, Tick};
+use servobench_cia402::{Commands, Mode, PowerState};
 use servobench_drive::modes::interpolated::serial::Port;
 use servobench_drive::supervision::Finding;
 use servobench_drive::{Demand, EffortLimits, device, feedforward};
 use servobench_fieldbus::bus::{self, BusFault};
 use servobench_fieldbus::link::{self, Mailbox};
 use servobench_fieldbus::task::{self, TaskFault};
-use servobench_fieldbus::{AxisCommand, AxisFeedback, Task};
+use servobench_fieldbus::{AxisCommand, AxisFeedback, Interpolation, Task};
 use servobench_motion::interpolate::Sample;
 use servobench_plant::SwitchReading;
 use servobench_signals::Instant;
@@ -62,6 +64,7 @@ pub(crate) struct Network {
     demand: Demand,
     effort_limits: EffortLimits,
     reference: DelayedReference,
+    requests: Requests,
     /// The set-point of the motion task's last cycle.
     asked: Setpoint,
     /// Why the motion task gave up.
@@ -92,7 +95,7 @@ enum MotionTask {
 
 /// What the motion task is told at a tick.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Request {
+pub(crate) struct Prompt {
     /// The time (s).
     pub(crate) t: f64,
     /// The time of the program (s), which begins later where somebody else says when; `None` before that.
@@ -116,9 +119,20 @@ struct Step {
     command: AxisCommand,
     /// What the axis is to follow; `None` where the drive finds its own way, or none.
     setpoint: Option<Setpoint>,
+    /// What function blocks want; a program of moves is known beforehand.
+    request: Request,
 }
 
 impl MotionTask {
+    /// The time of a program of moves in its last cycle (s); `None` before the axis is powered, and of function blocks.
+    fn time(&self) -> Option<f64> {
+        match self {
+            Self::Moves(moves) => moves.time(),
+            Self::DriveProfile(profile) => profile.moves().time(),
+            Self::Plc(_) => None,
+        }
+    }
+
     fn cycle(
         &mut self,
         now: Now,
@@ -131,7 +145,7 @@ impl MotionTask {
             Now::Program(t) => t,
             Now::Follow(setpoint) => {
                 let command = AxisCommand::of(Task::Follow(sample(setpoint)));
-                return Ok(Step { command, setpoint: Some(setpoint) });
+                return Ok(Step { command, setpoint: Some(setpoint), request: Request::Follow(setpoint) });
             }
         };
         match self {
@@ -139,7 +153,7 @@ impl MotionTask {
                 let now = moves.cycle(feedback).unwrap_or(0.0);
                 let setpoint = moves.at(now);
                 let command = AxisCommand::of(Task::Follow(sample(setpoint)));
-                Ok(Step { command, setpoint: Some(setpoint) })
+                Ok(Step { command, setpoint: Some(setpoint), request: Request::Nothing })
             }
             Self::DriveProfile(way) => Ok(way.cycle(feedback)),
             Self::Plc(plc) => plc.cycle(t, feedback, origin, recorder, sample),
@@ -176,7 +190,7 @@ impl Network {
     pub(crate) fn step(
         &mut self,
         k: u64,
-        request: &Request,
+        prompt: &Prompt,
         pulse: Option<f64>,
         measure: impl FnOnce() -> Measurement,
         recorder: &mut Recorder,
@@ -186,10 +200,10 @@ impl Network {
         }
         let (params, state) = &mut self.bus;
         if let Some(cycle) = bus::step(&params.with_faults(&self.faults), state, Tick(k)) {
-            self.step_bus(&cycle, request, recorder);
+            self.step_bus(&cycle, prompt, recorder);
         }
         if self.drive_turn.is_due(self.drive_every) {
-            self.step_drive(request.t, &measure(), recorder);
+            self.step_drive(prompt.t, &measure(), recorder);
         }
         (&self.demand, self.effort_limits)
     }
@@ -218,14 +232,14 @@ impl Network {
         self.signals.of_drive(t, state, recorder);
     }
 
-    fn step_bus(&mut self, cycle: &bus::Cycle, request: &Request, recorder: &mut Recorder) {
+    fn step_bus(&mut self, cycle: &bus::Cycle, prompt: &Prompt, recorder: &mut Recorder) {
         let origin = self.origin();
         let (params, state) = &mut self.link;
         let (wire, frames) = &mut self.bus;
         let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
         let mut torn = None;
         while let Some(turn) = task::step(&self.turns.0.with_faults(&self.task_faults), &mut self.turns.1, cycle.due) {
-            let now = match (request.setpoint, request.program) {
+            let now = match (prompt.setpoint, prompt.program) {
                 _ if cycle.master_stopped => continue,
                 (Some(setpoint), _) => Now::Follow(setpoint),
                 (None, Some(t)) => Now::Program(t),
@@ -243,17 +257,15 @@ impl Network {
                 self.failure = Some(format!("the serial interface of the drive: {error}"));
             }
             match step {
-                Ok(Step { command, setpoint }) => {
+                Ok(Step { command, setpoint, request }) => {
+                    let t = turn.due.0 as f64 * self.tick;
+                    self.requests.push(t, request);
+                    if let Some(passed) = self.task.time() {
+                        self.reference.begin(t - passed);
+                        self.requests.begin(t - passed);
+                    }
                     match setpoint {
-                        Some(setpoint) => {
-                            let t = turn.due.0 as f64 * self.tick;
-                            self.reference.push(t, setpoint);
-                            if let MotionTask::Moves(moves) = &self.task
-                                && let Some(passed) = moves.time()
-                            {
-                                self.reference.begin(t - passed);
-                            }
-                        }
+                        Some(setpoint) => self.reference.push(t, setpoint),
                         None => self.reference.restart(),
                     }
                     self.asked = setpoint.unwrap_or(Setpoint::at_rest(state.feedback(params).demanded()));
@@ -281,7 +293,7 @@ impl Network {
         if let Some(arrived) = frames.to_drive(wire, cycle, commands) {
             self.frame = Some(arrived);
         }
-        self.signals.of_link(request.t, state, recorder);
+        self.signals.of_link(prompt.t, state, recorder);
     }
 
     /// The set-point that the loops follow, so long after the drive's last step, with the motor at `position`.
@@ -321,6 +333,23 @@ impl Network {
                 Some((reference, feedforward::MotorReference { position: reference.x, velocity: reference.v }))
             }
             _ => None,
+        }
+    }
+
+    /// The request of the motion task that is due at the loops at `t` (s), which does not go back: nothing while the drive does not
+    /// follow, or the link brings the axis to rest or waits for samples.
+    pub(crate) fn request(&mut self, t: f64) -> Request {
+        let request = self.requests.at(t);
+        let (drive, link) = (&self.drive.1, &self.link.1);
+        let follows = drive.power() == PowerState::OperationEnabled
+            && link.fault().is_none()
+            && !matches!(link.interpolation(), Interpolation::Wait | Interpolation::Underflow);
+        let origin = self.origin();
+        match request {
+            _ if !follows => Request::Nothing,
+            Request::Rest(x) => Request::Rest(x + origin),
+            Request::Follow(setpoint) => Request::Follow(Setpoint { x: setpoint.x + origin, ..setpoint }),
+            Request::Nothing | Request::Stand | Request::Velocity(_) | Request::Effort(_) => request,
         }
     }
 

@@ -17,6 +17,9 @@ use servobench_planner::{
 use servobench_scenario::{Bus, BusMode, Scenario, Step};
 use servobench_trace::{Ending, Move};
 
+/// The part of its largest velocity that is rounding at the end of a move.
+const ROUNDING: f64 = 1e-9;
+
 /// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
 #[derive(Debug, Clone)]
 struct Planned {
@@ -221,10 +224,12 @@ impl Course {
         let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
         let Some(Planned { start, from, plan, .. }) = self.moves.get(index) else { return };
         let now = &mut self.now;
-        (now.plan_end, now.then) = match plan.end().v {
-            _ if t < *start => (f64::NEG_INFINITY, RequestKind::Stand),
-            0.0 => (start + plan.duration(), RequestKind::Rest),
-            _ => (start + plan.duration(), RequestKind::Velocity),
+        (now.plan_end, now.then) = if t < *start {
+            (f64::NEG_INFINITY, RequestKind::Stand)
+        } else if ends_at_rest(plan) {
+            (start + plan.duration(), RequestKind::Rest)
+        } else {
+            (start + plan.duration(), RequestKind::Velocity)
         };
         now.reader.look_up(plan, t - start);
         (now.index, now.start, now.from) = (index, *start, *from);
@@ -282,13 +287,19 @@ impl Planned {
             peaks,
             limits,
             cruise: (self.start + cruise.0 + delay, cruise.1),
-            ending: match (is_aborted, plan.end().v) {
-                (true, _) => Ending::Aborted,
-                (false, v) if v != 0.0 => Ending::InMotion,
-                (false, _) => Ending::AtRest,
+            ending: match is_aborted {
+                true => Ending::Aborted,
+                false if ends_at_rest(plan) => Ending::AtRest,
+                false => Ending::InMotion,
             },
         }
     }
+}
+
+/// Whether a plan ends at rest: a sum of commanded velocities leaves its rounding.
+fn ends_at_rest(plan: &Plan) -> bool {
+    let [peak, ..] = plan.largest();
+    plan.end().v.abs() <= ROUNDING * peak
 }
 
 /// The interpolation sub-mode.

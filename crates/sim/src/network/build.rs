@@ -3,6 +3,7 @@ use super::drive_profile::DriveProfile;
 use super::plc::{self, Plc};
 use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
+use super::requests::Requests;
 use super::signals::Signals;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
@@ -133,6 +134,11 @@ impl Network {
             MotionTask::Moves(moves) => DelayedReference::of_program(period, delay, moves.program()),
             MotionTask::DriveProfile(_) | MotionTask::Plc(_) => DelayedReference::new(period, delay),
         };
+        let requests = match &task {
+            MotionTask::Moves(moves) => Requests::of_program(moves.program(), delay),
+            MotionTask::DriveProfile(profile) => Requests::of_program(profile.moves().program(), delay),
+            MotionTask::Plc(_) => Requests::of_cycles(period, delay),
+        };
         let network = Self {
             task,
             model,
@@ -151,6 +157,7 @@ impl Network {
             demand: Demand::Off,
             effort_limits: EffortLimits::NONE,
             reference,
+            requests,
             asked: Setpoint::default(),
             failure: None,
             bus_position: 0.0,

@@ -4,6 +4,7 @@
 //! a table, which any other move has become in the program. Times count from the cycle in which the axis is powered.
 use super::Step;
 use super::program_cursor::ProgramCursor;
+use servobench_base::Request;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_drive::device;
 use servobench_fieldbus::trajectory::{PointEncoding, Stream, Unsendable, points};
@@ -87,7 +88,7 @@ impl DriveProfile {
         // In profile velocity the drive knows no position: the plan says where the axis is to be. In the other modes the drive's
         // own set-point does.
         let setpoint = matches!(self.orders, Orders::Velocities { .. }).then(|| self.moves.at(now.unwrap_or(0.0)));
-        Step { command: AxisCommand::of(Task::Drive(way)), setpoint }
+        Step { command: AxisCommand::of(Task::Drive(way)), setpoint, request: Request::Nothing }
     }
 }
 

@@ -103,7 +103,7 @@ impl Plc {
         self.followed = Setpoint { x, ..commanded };
         self.executor.follow_motions(t, self.followed);
         self.note(t, recorder);
-        Ok(Step { command, setpoint })
+        Ok(Step { command, setpoint, request: self.executor.axis().request() })
     }
 
     fn note(&mut self, t: f64, recorder: &mut Recorder) {

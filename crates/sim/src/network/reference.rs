@@ -107,7 +107,7 @@ impl DelayedReference {
 }
 
 /// The quintic polynomial by the positions, velocities and accelerations at both ends.
-fn between(period: f64, from: &Setpoint, to: &Setpoint) -> Option<Interval> {
+pub(super) fn between(period: f64, from: &Setpoint, to: &Setpoint) -> Option<Interval> {
     let sample = |Setpoint { x, v, a, .. }: Setpoint| Sample { x, v, a, torque: 0.0 };
     Interval::new(Mode::Quintic, period, &[sample(*from), sample(*to)]).ok()
 }

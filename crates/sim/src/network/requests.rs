@@ -1,0 +1,163 @@
+//! The request of the motion task, as much later as the way to the loops takes.
+//!
+//! A program of moves is known beforehand and is asked at every tick. Function blocks give a request per cycle of theirs; a path
+//! between two cycles is the quintic polynomial through both, and before the second one is there the first one goes on.
+use super::reference::between;
+use crate::program::Program;
+use servobench_base::{Request, RequestKind, Setpoint};
+use servobench_motion::interpolate::Interval;
+use std::collections::VecDeque;
+
+/// Cycles of a motion task without a request after which it requests nothing any more.
+const MISSED: f64 = 3.0;
+/// For the rounding of differences of times (s).
+const ROUNDING: f64 = 5e-10;
+
+/// Requests on their way to the loops.
+#[derive(Debug, Clone)]
+pub(super) enum Requests {
+    /// Those of a program that began at some time (s), `delay` seconds later.
+    Program { program: Box<Program>, delay: f64, begun: Option<f64> },
+    /// Those of function blocks.
+    Cycles(Cycles),
+}
+
+/// A request per cycle.
+#[derive(Debug, Clone)]
+pub(super) struct Cycles {
+    /// From one cycle to the next (s).
+    period: f64,
+    /// How much later the loops are (s).
+    delay: f64,
+    /// Requests with their times (s), the oldest first.
+    kept: VecDeque<(f64, Request)>,
+    /// Between the first two of them, where both are paths.
+    interval: Option<Interval>,
+}
+
+impl Requests {
+    /// Those of `program`, which reach the loops `delay` (s) later.
+    pub(super) fn of_program(program: &Program, delay: f64) -> Self {
+        Self::Program { program: Box::new(program.clone()), delay, begun: None }
+    }
+
+    /// Those of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
+    pub(super) fn of_cycles(period: f64, delay: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
+        let room = (delay / period) as usize + 4;
+        Self::Cycles(Cycles { period, delay, kept: VecDeque::with_capacity(room), interval: None })
+    }
+
+    /// The program began at `t` (s).
+    pub(super) const fn begin(&mut self, t: f64) {
+        if let Self::Program { begun, .. } = self {
+            *begun = Some(t);
+        }
+    }
+
+    /// Takes the request of the cycle at `t` (s).
+    pub(super) fn push(&mut self, t: f64, request: Request) {
+        if let Self::Cycles(Cycles { kept, .. }) = self {
+            kept.push_back((t, request));
+        }
+    }
+
+    /// The request at `t` (s), which does not go back.
+    pub(super) fn at(&mut self, t: f64) -> Request {
+        match self {
+            Self::Program { program, delay, begun } => {
+                let Some(passed) = begun.map(|begun| t - begun - *delay) else { return Request::Nothing };
+                if passed < -ROUNDING {
+                    return Request::Stand;
+                }
+                let passed = passed.max(0.0);
+                let setpoint = program.at(passed);
+                match program.request_at(passed, setpoint) {
+                    (_, RequestKind::Nothing | RequestKind::Effort) => Request::Nothing,
+                    (_, RequestKind::Stand) => Request::Stand,
+                    (setpoint, RequestKind::Rest) => Request::Rest(setpoint.x),
+                    (setpoint, RequestKind::Follow) => Request::Follow(setpoint),
+                    (setpoint, RequestKind::Velocity) => Request::Velocity(setpoint.v),
+                }
+            }
+            Self::Cycles(cycles) => cycles.at(t),
+        }
+    }
+}
+
+impl Cycles {
+    fn at(&mut self, t: f64) -> Request {
+        let wanted = t - self.delay;
+        while self.kept.get(1).is_some_and(|(next, _)| wanted - next >= -ROUNDING) {
+            self.kept.pop_front();
+            self.interval = None;
+        }
+        let Some((begin, from)) = self.kept.front() else { return Request::Nothing };
+        let since = wanted - begin;
+        if since < -ROUNDING || since > MISSED * self.period {
+            return Request::Nothing;
+        }
+        let Request::Follow(setpoint) = from else { return *from };
+        let end = self.kept.get(1).and_then(|(end, to)| Some((end - begin, path(to)?)));
+        let Some((length, to)) = end else { return Request::Follow(setpoint.after(since.max(0.0))) };
+        let interval = match &self.interval {
+            Some(interval) => Some(interval),
+            None => between(length, setpoint, &to).map(|found| &*self.interval.insert(found)),
+        };
+        let fraction = (since / length).clamp(0.0, 1.0);
+        let at = interval.and_then(|interval| interval.at(fraction).ok());
+        Request::Follow(at.map_or(*setpoint, |command| command.setpoint))
+    }
+}
+
+/// The set-point that a path goes through at a request; `None` where it has none.
+const fn path(request: &Request) -> Option<Setpoint> {
+    match request {
+        Request::Follow(setpoint) => Some(*setpoint),
+        Request::Rest(x) => Some(Setpoint::at_rest(*x)),
+        Request::Nothing | Request::Stand | Request::Velocity(_) | Request::Effort(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: a quintic itself, which the path through two requests is, at the delayed time.
+    #[test]
+    fn a_path_between_two_cycles_is_the_quintic_through_both() {
+        let at = |t: f64| Setpoint { x: t.powi(5), v: 5.0 * t.powi(4), a: 20.0 * t.powi(3), ..Setpoint::default() };
+        let (period, delay) = (4e-3, 5.125e-3);
+        let mut requests = Requests::of_cycles(period, delay);
+        assert_eq!(requests.at(0.0), Request::Nothing);
+        for tick in 0..4_000_u32 {
+            let t = f64::from(tick) / 16e3;
+            if tick % 64 == 0 {
+                requests.push(t, Request::Follow(at(t)));
+            }
+            match requests.at(t) {
+                Request::Follow(found) => assert!((found.x - at(t - delay).x).abs() < 1e-14, "{t}: {found:?}"),
+                other => assert!(other == Request::Nothing && t < delay, "{t}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_path_holds_for_its_cycle_and_silence_is_no_request() {
+        let (period, delay) = (1e-3, 2e-3);
+        let mut requests = Requests::of_cycles(period, delay);
+        requests.push(0.0, Request::Stand);
+        requests.push(period, Request::Velocity(3.0));
+        requests.push(2.0 * period, Request::Effort(-1.0));
+        for (t, expected) in [
+            (2e-3, Request::Stand),
+            (2.9e-3, Request::Stand),
+            (3e-3, Request::Velocity(3.0)),
+            (4.5e-3, Request::Effort(-1.0)),
+            (6.9e-3, Request::Effort(-1.0)),
+            (7.1e-3, Request::Nothing),
+        ] {
+            assert_eq!(requests.at(t), expected, "{t}");
+        }
+    }
+}
