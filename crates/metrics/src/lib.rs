@@ -38,8 +38,8 @@ pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, REQUEST_KIND, Requirement, RequirementResult,
-    Rules, Standing, arrival_window, judge_requirements,
+    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Oscillation, Poles, REQUEST_KIND, Requirement,
+    RequirementResult, Rules, Standing, arrival_window, judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;
 pub use round::{round_above, round_below};

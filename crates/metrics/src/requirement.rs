@@ -13,7 +13,7 @@ mod rules;
 
 pub use arrival::arrival_window;
 pub use judge::judge_requirements;
-pub use rules::{Driven, EarlyEnd, LinearLoop, Rules};
+pub use rules::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
 
 use serde::{Deserialize, Serialize};
 use servobench_signals::Signal;
@@ -180,6 +180,7 @@ mod tests {
             transmission: 1.0,
             driven: Driven::ByLoops,
             linear_loop: LinearLoop::Stable,
+            poles: None,
             not_analysed: None,
             ended: None,
         }

@@ -37,6 +37,8 @@ pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
     let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(model, &eigenvalue));
     let is_unstable = unstable.is_some();
     let largest = unstable.or_else(|| poles.largest(model));
+    let slowest_oscillating = poles.slowest(model, |pole| pole.im != 0.0 || pole.re < 0.0, Pole::oscillates);
+    let slowest_real = poles.slowest(model, |pole| pole.im == 0.0 && pole.re > 0.0, |_| true);
     let instability = match unstable {
         Some(pole) => Some(analysis.instability(pole)?),
         None => None,
@@ -47,7 +49,7 @@ pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
             loops.push(report);
         }
     }
-    Ok(Report { instability, largest, loops, warnings: model.warnings() })
+    Ok(Report { instability, largest, slowest_oscillating, slowest_real, loops, warnings: model.warnings() })
 }
 
 /// The poles of the loops that a tick closes.
@@ -83,6 +85,20 @@ impl Poles {
     fn largest(&self, model: &Loop) -> Option<Pole> {
         let largest = self.values.iter().max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
         Some(self.in_seconds(model, &self.refined(*largest)))
+    }
+
+    /// The pole that fades last among those of this kind; `is_kind` sees the pole over a period, `is_wanted` the pole in seconds.
+    fn slowest(
+        &self,
+        model: &Loop,
+        is_kind: impl Fn(Complex<f64>) -> bool,
+        is_wanted: impl Fn(&Pole) -> bool,
+    ) -> Option<Pole> {
+        // A pole at the origin is a delay; of a pair one stands for both.
+        let of_kind = |value: Complex<f64>| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt() && is_kind(value);
+        let mut found: Vec<_> = self.values.iter().copied().filter(|(_, value)| of_kind(*value)).collect();
+        found.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
+        found.into_iter().map(|pole| self.in_seconds(model, &self.refined(pole))).find(is_wanted)
     }
 
     fn in_seconds(&self, model: &Loop, eigenvalue: &Eigenvalue) -> Pole {

@@ -30,12 +30,21 @@ pub struct Pole {
 }
 
 impl Pole {
+    /// A pair of poles with less damping than this, 1/√2, has a peak of resonance: its oscillation can be seen.
+    pub const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
     /// Damping ratio, of a second-order system with this growth and frequency; negative where it grows.
     #[must_use]
     pub fn damping(&self) -> f64 {
         let omega = TAU * self.frequency;
         let natural = self.growth.hypot(omega);
         if natural == 0.0 { 0.0 } else { -self.growth / natural }
+    }
+
+    /// Whether its oscillation can be seen.
+    #[must_use]
+    pub fn oscillates(&self) -> bool {
+        self.damping() < Self::RESONANT
     }
 
     pub(crate) fn new(period: &Period, model: &Loop, eigenvalue: &Eigenvalue) -> Self {

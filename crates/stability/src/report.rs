@@ -108,6 +108,10 @@ pub struct Report {
     pub instability: Option<Instability>,
     /// The largest pole: the one that grows fastest or, in a stable loop, fades last. `None` where nothing is closed.
     pub largest: Option<Pole>,
+    /// Of the poles that oscillate, with a damping ratio below [`Pole::RESONANT`], the one that fades last.
+    pub slowest_oscillating: Option<Pole>,
+    /// Of the real positive poles, which do not oscillate, the one that fades last.
+    pub slowest_real: Option<Pole>,
     /// Current, velocity and position loop, those that there are.
     pub loops: Vec<LoopReport>,
     /// What is set in an order in which cascades do not work.

@@ -1,12 +1,12 @@
 //! From a scenario to what its run is held to beside its limits.
-use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Rules};
+use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
 use servobench_scenario::{Actuator, Feedback, Scenario};
 use servobench_sim::{Analysis, NotAnalysed, analyse_stability};
-use servobench_stability::{Depth, StabilityError};
+use servobench_stability::{Depth, Report, StabilityError};
 
 /// What the run of `scenario`, which ended early if it says so, is held to.
 pub(crate) fn rules(scenario: &Scenario, ended: Option<EarlyEnd>) -> Rules<'_> {
-    let (linear_loop, not_analysed) = linear_loop(scenario);
+    let (linear_loop, poles, not_analysed) = linear_loop(scenario);
     Rules {
         lifted: &scenario.requirements.lifted,
         expected: &scenario.requirements.expected,
@@ -20,25 +20,40 @@ pub(crate) fn rules(scenario: &Scenario, ended: Option<EarlyEnd>) -> Rules<'_> {
             Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => Driven::ByLoops,
         },
         linear_loop,
+        poles,
         not_analysed,
         ended,
     }
 }
 
-/// What the analysis of the linear loop of `scenario` says, and what is not in it. Where it is stable, its boundaries are nobody's
-/// concern.
-fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<String>) {
+/// What the analysis of the linear loop of `scenario` says, its poles, and what is not in it. Where it is stable, its boundaries are
+/// nobody's concern.
+fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<Poles>, Option<String>) {
     match analyse_stability(scenario, Depth::Verdict) {
-        Ok(Analysis::Done { report, without }) => match report.instability {
-            Some(instability) => (LinearLoop::Unstable(instability.to_string()), None),
-            None => (LinearLoop::Stable, without.map(|what| what.to_string())),
-        },
+        Ok(Analysis::Done { report, without }) => {
+            let poles = Some(poles(&report));
+            match report.instability {
+                Some(instability) => (LinearLoop::Unstable(instability.to_string()), poles, None),
+                None => (LinearLoop::Stable, poles, without.map(|what| what.to_string())),
+            }
+        }
         // What grows beyond all numbers within a period is not stable, though its poles cannot be computed.
         Ok(Analysis::NotPossible(NotAnalysed::Failed(error @ StabilityError::Overflow { .. }))) => {
-            (LinearLoop::Unstable(error.to_string()), None)
+            (LinearLoop::Unstable(error.to_string()), None, None)
         }
-        Ok(Analysis::NotPossible(why)) => (LinearLoop::NotAnalysed, Some(format!("the run alone is judged: {why}"))),
-        Err(error) => (LinearLoop::NotAnalysed, Some(format!("the run alone is judged: {error}"))),
+        Ok(Analysis::NotPossible(why)) => {
+            (LinearLoop::NotAnalysed, None, Some(format!("the run alone is judged: {why}")))
+        }
+        Err(error) => (LinearLoop::NotAnalysed, None, Some(format!("the run alone is judged: {error}"))),
+    }
+}
+
+/// The slowest poles of a report.
+fn poles(report: &Report) -> Poles {
+    let oscillating = report.slowest_oscillating;
+    Poles {
+        oscillating: oscillating.map(|pole| Oscillation { frequency: pole.frequency, decay: -pole.growth }),
+        slowest_real: report.slowest_real.map(|pole| -pole.growth),
     }
 }
 

@@ -21,6 +21,8 @@ pub struct Rules<'a> {
     pub driven: Driven,
     /// What the analysis of the linear loop found.
     pub linear_loop: LinearLoop,
+    /// Poles of the linear loop, as far as it was analysed.
+    pub poles: Option<Poles>,
     /// What of the loops is not in that, and why: there the run alone is judged.
     pub not_analysed: Option<String>,
     /// Why the run ended before its end, if it did.
@@ -47,6 +49,24 @@ pub enum LinearLoop {
     Unstable(String),
     /// It could not be analysed, or there is no loop.
     NotAnalysed,
+}
+
+/// The poles of a linear loop that fade last.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Poles {
+    /// Of those that oscillate, with a damping ratio below 1/√2.
+    pub oscillating: Option<Oscillation>,
+    /// Decay of the slowest one that does not oscillate (1/s).
+    pub slowest_real: Option<f64>,
+}
+
+/// A pair of poles that oscillates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oscillation {
+    /// Frequency (Hz).
+    pub frequency: f64,
+    /// Decay of its amplitude (1/s); negative where it grows.
+    pub decay: f64,
 }
 
 /// Why a run ended before its end.
