@@ -2,11 +2,14 @@
 use crate::bench::plant;
 use crate::coupled;
 use crate::error::BuildError;
+use crate::speeds::Speeds;
 use servobench_base::Dq;
+use servobench_metrics::Quantity;
 use servobench_plant::Encoder;
-use servobench_scenario::{Actuator, AxisMechanics, BusMode, Feedback, LoopSignal, Scenario};
+use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, LoopSignal, Scenario};
 use servobench_stability::{
-    self as stability, Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal,
+    self as stability, Depth, Instability, Loop, Master, OperatingPoint, PositionFeedback, Report, Sensors, Source,
+    VelocitySignal,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -17,11 +20,56 @@ pub enum Analysis {
     Done {
         /// What they say.
         report: Box<Report>,
-        /// A loop of the scenario that is not in it.
-        without: Option<NotAnalysed>,
+        /// The position loop that the master closes over the bus.
+        master: Option<MasterLoop>,
+        /// Parts of the scenario that are not in it.
+        without: Vec<NotAnalysed>,
     },
     /// There is no linear loop that is known here, and why.
     NotPossible(NotAnalysed),
+}
+
+/// The position loop that the master closes over the bus (csv).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MasterLoop {
+    /// Its gain (1/s).
+    pub gain: f64,
+    /// The largest gain with which it is stable (1/s).
+    pub largest: f64,
+}
+
+/// How far off [`MasterLoop::largest`] can be: 3 % as it takes a position that is no whole number of cycles old, and as much again
+/// as it takes the velocity loop.
+const BOUND_OFF: f64 = 0.06;
+
+impl MasterLoop {
+    /// Factor by which the gain may grow.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        self.largest / self.gain
+    }
+
+    /// Whether the gain is beyond the largest one, by more than that can be off.
+    #[must_use]
+    pub fn is_unstable(&self) -> bool {
+        self.gain > self.largest * (1.0 + BOUND_OFF)
+    }
+}
+
+/// Why it is unstable, in words.
+impl Display for MasterLoop {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let [gain, largest] = [self.gain, self.largest].map(|gain| Quantity::new(gain, "1/s"));
+        write!(
+            f,
+            "the loop is unstable: position loop of the master, gain {gain}: with the round trip of the bus and the "
+        )?;
+        if self.largest > 0.0 {
+            write!(f, "velocity loop of the drive it is stable to {largest} ({} ×)", Quantity::new(self.margin(), ""))
+        } else {
+            f.write_str("velocity loop of the drive no gain makes it stable")
+        }
+    }
 }
 
 /// What is not analysed, and why.
@@ -33,12 +81,12 @@ pub enum NotAnalysed {
     ForeignDrive,
     /// The mechanics is an MJCF file or an FMU alone.
     ForeignMechanics(&'static str),
-    /// The master closes the position loop over the bus: what is analysed is the drive.
-    MastersPositionLoop,
     /// FMUs beside the axis act on it: what is analysed is the axis without them.
     Fmus,
-    /// Sensors are late, or the commutation is off: what is analysed is the loop with sensors that are not.
-    LateSensors,
+    /// The commutation is off while a current flows at standstill: what is analysed is the loop around that current in its own axis.
+    Commutation,
+    /// Function blocks make the program, so that only a run tells whether it stays at the speed at which the gain schedule is unstable.
+    GainSchedule(Box<Instability>),
     /// The motor is connected wrongly: what is analysed is the loop with a cable that is right.
     Wiring,
     /// The poles could not be computed.
@@ -56,13 +104,14 @@ impl Display for NotAnalysed {
                     "the mechanics is {what}, whose equations are not known here: describe the axis by its bodies"
                 )
             }
-            Self::MastersPositionLoop => f.write_str(
-                "the position loop of the master, closed over the bus (csv), is not analysed; the drive's loops are",
-            ),
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
-            Self::LateSensors => f.write_str(
-                "delays of the sensors and an error of the commutation are not analysed; the loop without them is",
+            Self::Commutation => f.write_str(
+                "a commutation that is late or off turns the current that the d axis has at standstill, which is not analysed; the \
+                 loop around that current in the d axis is",
             ),
+            Self::GainSchedule(instability) => {
+                write!(f, "whether function blocks stay at this speed only a run tells: {instability}")
+            }
             Self::Wiring => f.write_str(
                 "swapped wires and a lost phase of the motor are not analysed; the loop with a cable that is right is",
             ),
@@ -71,24 +120,53 @@ impl Display for NotAnalysed {
     }
 }
 
-/// Analyses the sampled linear loop of `scenario` at standstill.
+/// Analyses the sampled linear loop of `scenario`: at standstill and, with a gain schedule, at each speed at which `speeds` stay for
+/// longer than a period of its pole. Without `speeds` no one knows how long that is.
 ///
 /// # Errors
 /// [`BuildError`] says which part of the scenario cannot be built.
-pub fn analyse_stability(scenario: &Scenario, depth: Depth) -> Result<Analysis, BuildError> {
-    let (model, without) = match linear_loop(scenario)? {
+pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Speeds>) -> Result<Analysis, BuildError> {
+    let (model, mut without) = match linear_loop(scenario)? {
         Ok(found) => found,
         Err(why) => return Ok(Analysis::NotPossible(why)),
     };
-    Ok(match stability::analyse(&model, depth) {
-        Ok(report) => Analysis::Done { report: Box::new(report), without },
-        Err(error) => Analysis::NotPossible(NotAnalysed::Failed(error)),
-    })
+    let failed = |error| Ok(Analysis::NotPossible(NotAnalysed::Failed(error)));
+    let mut report = match stability::analyse(&model, depth) {
+        Ok(report) => Box::new(report),
+        Err(error) => return failed(error),
+    };
+    if report.is_stable() {
+        let stays = |range| speeds.map_or(f64::INFINITY, |speeds| speeds.longest_within(&range));
+        match stability::analyse_schedule(&model, stays) {
+            Ok(found) if speeds.is_some() => report.instability = found,
+            Ok(found) => without.extend(found.map(|found| NotAnalysed::GainSchedule(Box::new(found)))),
+            Err(error) => return failed(error),
+        }
+    }
+    let master = scenario.bus.as_ref().and_then(|bus| master_loop(scenario, bus, &model));
+    Ok(Analysis::Done { report, master, without })
 }
 
-type Found = Result<(Loop, Option<NotAnalysed>), NotAnalysed>;
+/// The position loop that the master closes over `bus`, if it does.
+fn master_loop(scenario: &Scenario, bus: &Bus, model: &Loop) -> Option<MasterLoop> {
+    let gains = bus.position_loop.filter(|gains| gains.gain > 0.0)?;
+    let tick = scenario.base_rate.period();
+    let cycle = f64::from(bus.cycle) * tick;
+    // The answer is as old as a step of the drive.
+    let age = f64::from(model.drive.position_every.ticks()) * tick;
+    let master = Master {
+        gain: gains.gain,
+        integral_time: gains.integral_time,
+        derivative: gains.derivative.map(|derivative| (derivative.time, derivative.filter)),
+        cycle,
+        round_trip: f64::from(2 * bus.delay + 1) * cycle + age,
+    };
+    Some(MasterLoop { gain: gains.gain, largest: master.largest_gain(model) })
+}
 
-/// The linear loop of `scenario`, and which of its loops is not in it; or why there is none.
+type Found = Result<(Loop, Vec<NotAnalysed>), NotAnalysed>;
+
+/// The linear loop of `scenario`, and what of it is not in that; or why there is none.
 fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     if coupled::replaces_the_drive(scenario) {
         return Ok(Err(NotAnalysed::ForeignDrive));
@@ -116,33 +194,40 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         current_tuning: drive.current_tuning,
         source,
         mechanics: plant::checked(chain)?,
+        sensors: sensors(*encoder, drive),
         point: drive.params.current_loop().map_or_else(OperatingPoint::default, |(current, _)| OperatingPoint {
             current: Dq { d: current.d_reference, q: 0.0 },
         }),
     };
-    let without = if bus.is_some_and(|bus| bus.mode == BusMode::CyclicVelocity) {
-        Some(NotAnalysed::MastersPositionLoop)
-    } else {
-        scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal)).then_some(NotAnalysed::Fmus)
-    };
-    let without = without.or_else(|| sensors_are_late(&scenario.actuator).then_some(NotAnalysed::LateSensors));
+    let acts = scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal));
+    let turns =
+        model.point.current != Dq::default() && (model.sensors.motor_latency > 0.0 || model.sensors.commutation != 0.0);
     let is_wrong = matches!(&scenario.actuator, Actuator::Pmsm { wiring, .. } if !wiring.is_right());
-    let without = without.or(is_wrong.then_some(NotAnalysed::Wiring));
+    let left_out = [(acts, NotAnalysed::Fmus), (turns, NotAnalysed::Commutation), (is_wrong, NotAnalysed::Wiring)];
+    let without = left_out.into_iter().filter_map(|(is_left_out, what)| is_left_out.then_some(what)).collect();
     Ok(Ok((model, without)))
+}
+
+/// How late the sensors of `drive` and the `encoder` of its motor are.
+fn sensors(encoder: Encoder, drive: &Drive) -> Sensors {
+    let latency = |encoder: Encoder| encoder.errors.map_or(0.0, |errors| errors.latency);
+    let current = drive.current_sensor;
+    let ratio = drive.params.current_loop().map_or(0.0, |(current, _)| current.motor.electrical_ratio);
+    Sensors {
+        motor_latency: latency(encoder),
+        load_latency: match drive.position_feedback {
+            Feedback::Motor => 0.0,
+            Feedback::Load(encoder) => latency(encoder),
+        },
+        commutation: encoder.errors.map_or(0.0, |errors| ratio * errors.commutation),
+        current_delay: current.map_or(0, |sensor| sensor.delay),
+        current_shift: current.map_or(0.0, |sensor| sensor.shift),
+        current_gain_error: current.map_or([0.0; 2], |sensor| sensor.gain_error),
+    }
 }
 
 fn velocity_signal(encoder: Encoder) -> VelocitySignal {
     if encoder.gives_velocity() { VelocitySignal::Encoder } else { VelocitySignal::Differences }
-}
-
-/// Whether what a sensor says is late, or commutation is off, which the linear loop does not know.
-fn sensors_are_late(actuator: &Actuator) -> bool {
-    let Some(drive) = actuator.drive() else { return false };
-    let late =
-        |encoder: Encoder| encoder.errors.is_some_and(|errors| errors.latency > 0.0 || errors.commutation != 0.0);
-    actuator.encoder().is_some_and(late)
-        || matches!(drive.position_feedback, Feedback::Load(encoder) if late(encoder))
-        || drive.current_sensor.is_some_and(|sensor| sensor.delay > 0 || sensor.shift > 0.0)
 }
 
 /// Whether what an FMU gives acts on the axis.

@@ -32,7 +32,7 @@ pub enum Depth {
 /// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
 pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
     model.check()?;
-    let mut analysis = Analysis { model, tick: Tick::new(model) };
+    let mut analysis = Analysis::new(model);
     let poles = analysis.poles(analysis.whole())?;
     let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(model, &eigenvalue));
     let is_unstable = unstable.is_some();
@@ -133,12 +133,42 @@ fn candidates(tick: &Tick, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
     all
 }
 
-struct Analysis<'a> {
+/// A loop under analysis, with the gains of a speed of the drive's schedule.
+pub(crate) struct Analysis<'a> {
     model: &'a Loop,
     tick: Tick<'a>,
+    /// Factors on position and velocity gain, and the speed that has them (motor coordinate); `None` at standstill.
+    scheduled: ((f64, f64), Option<f64>),
 }
 
-impl Analysis<'_> {
+impl<'a> Analysis<'a> {
+    /// At standstill.
+    pub(crate) fn new(model: &'a Loop) -> Self {
+        Self { model, tick: Tick::new(model), scheduled: ((1.0, 1.0), None) }
+    }
+
+    fn schedule(&mut self, factors: (f64, f64), speed: Option<f64>) {
+        self.scheduled = (factors, speed);
+        self.tick.schedule(factors);
+    }
+
+    /// The fastest growing pole of the whole loop with its gains by `factors`.
+    pub(crate) fn unstable_at(&mut self, factors: (f64, f64)) -> Result<Option<Pole>, StabilityError> {
+        self.schedule(factors, None);
+        self.unstable(self.whole())
+    }
+
+    /// Why the whole loop, whose largest pole is `pole`, is unstable at `speed`, where it has its gains by `factors`.
+    pub(crate) fn instability_at(
+        &mut self,
+        factors: (f64, f64),
+        speed: f64,
+        pole: Pole,
+    ) -> Result<Instability, StabilityError> {
+        self.schedule(factors, Some(speed));
+        self.instability(pole)
+    }
+
     /// All loops that have a gain.
     fn whole(&self) -> Closed {
         let closes_velocity = self.model.drive.velocity.k_p > 0.0;
@@ -194,7 +224,8 @@ impl Analysis<'_> {
         if boundaries.is_none() && alone != self.whole() && self.unstable(alone)?.is_some() {
             boundaries = Boundaries { alone: true, ..self.boundaries(alone, gain_name, true) };
         }
-        Ok(Instability { name, gain_name, gain, unit, pole, boundaries })
+        let speed = self.scheduled.1.map(|speed| (speed, self.speed_unit()));
+        Ok(Instability { name, gain_name, gain, unit, pole, boundaries, speed })
     }
 
     fn boundaries(&mut self, closed: Closed, gain_name: GainName, is_unstable: bool) -> Boundaries {
@@ -234,11 +265,22 @@ impl Analysis<'_> {
     }
 
     fn outer_gain(&self, name: GainName) -> (f64, &'static str) {
-        let p = &self.model.drive;
-        match (name, self.model.mechanics.bodies()[0].coordinate) {
-            (GainName::Position, _) => (p.position_gain, "1/s"),
-            (_, Coordinate::Rotary) => (p.velocity.k_p, "N·m·s/rad"),
-            (_, Coordinate::Linear) => (p.velocity.k_p, "N·s/m"),
+        let (p, (position, velocity)) = (&self.model.drive, self.scheduled.0);
+        match (name, self.coordinate()) {
+            (GainName::Position, _) => (position * p.position_gain, "1/s"),
+            (_, Coordinate::Rotary) => (velocity * p.velocity.k_p, "N·m·s/rad"),
+            (_, Coordinate::Linear) => (velocity * p.velocity.k_p, "N·s/m"),
+        }
+    }
+
+    fn coordinate(&self) -> Coordinate {
+        self.model.mechanics.bodies()[0].coordinate
+    }
+
+    fn speed_unit(&self) -> &'static str {
+        match self.coordinate() {
+            Coordinate::Rotary => "rad/s",
+            Coordinate::Linear => "m/s",
         }
     }
 

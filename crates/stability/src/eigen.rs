@@ -51,7 +51,7 @@ pub(crate) struct Eigenvalue {
 /// # Errors
 /// [`StabilityError::NotConverged`].
 pub(crate) fn blocks(period: &Period) -> Result<Vec<Block>, StabilityError> {
-    period.pattern.loops().into_iter().map(|states| Block::new(period, states)).collect()
+    period.pattern.loops(&period.controllers).into_iter().map(|states| Block::new(period, states)).collect()
 }
 
 impl Block {

@@ -8,6 +8,8 @@
 //! x(t+1) = C_t·P·x(t)                C_t the loops that are due at tick t, P power stage and mechanics
 //! M = (C_0·P)·(C_{N−1}·P)⋯(C_1·P)    the loop is unstable: |λ(M)| > 1
 //! ```
+//! [`analyse_schedule`] does the same with the gains of a gain schedule; [`Master`] is a position loop over a bus.
+//!
 //! Friction, saturation and quantisation are not in it: [`LEFT_OUT`].
 //! Source: Bittanti & Colaneri, *Periodic Systems*, 2009, ch. 3 (monodromy matrix of a multirate loop).
 
@@ -16,17 +18,23 @@ mod boundary;
 mod eigen;
 mod electrical;
 mod error;
+mod late;
+mod master;
 mod model;
 mod ordering;
 mod period;
 mod pole;
 mod report;
+mod schedule;
 mod state;
 mod structure;
 mod tick;
 
 pub use analyse::{Depth, analyse};
 pub use error::StabilityError;
+pub use late::Sensors;
+pub use master::Master;
 pub use model::{LEFT_OUT, Loop, OperatingPoint, PositionFeedback, Source, VelocitySignal};
 pub use pole::Pole;
 pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};
+pub use schedule::analyse_schedule;

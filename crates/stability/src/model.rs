@@ -1,5 +1,6 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
 use crate::StabilityError;
+use crate::late::Sensors;
 use servobench_base::{Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
@@ -26,6 +27,8 @@ pub struct Loop {
     pub source: Source,
     /// The bodies.
     pub mechanics: Chain,
+    /// How late the sensors are.
+    pub sensors: Sensors,
     /// Where the loop is linearised.
     pub point: OperatingPoint,
 }
@@ -74,6 +77,7 @@ impl Loop {
         self.drive.check()?;
         finite("operating point, current d", self.point.current.d)?;
         finite("operating point, current q", self.point.current.q)?;
+        self.sensors.check()?;
         match (&self.source, &self.drive.stage) {
             (Source::Pmsm(motor), drive::Stage::Current { .. }) => Ok(motor.check()?),
             (Source::Ideal { gain }, drive::Stage::Direct { .. }) => {

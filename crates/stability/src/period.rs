@@ -3,11 +3,12 @@
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
 //! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
 use crate::error::StabilityError;
-use crate::state::State;
+use crate::state::{CONTROLLER, State};
 use crate::structure::Pattern;
 use crate::tick::{Due, Tick};
 use nalgebra::{Complex, DMatrix, DVector};
 use servobench_drive::Stage;
+use std::ops::Range;
 
 /// Largest entry of a product whose columns can still be squared and summed.
 pub(crate) const LARGEST: f64 = 1e150;
@@ -23,6 +24,8 @@ pub(crate) struct Period {
     /// The product of all.
     pub(crate) monodromy: DMatrix<f64>,
     pub(crate) pattern: Pattern,
+    /// The states of the controllers.
+    pub(crate) controllers: Range<usize>,
     /// Length of a tick (s).
     pub(crate) h: f64,
 }
@@ -33,7 +36,7 @@ struct Product(DMatrix<f64>, Pattern);
 
 impl Product {
     fn identity(size: usize) -> Self {
-        Self(DMatrix::identity(size, size), Pattern::identity())
+        Self(DMatrix::identity(size, size), Pattern::identity(size))
     }
 
     fn after(&self, first: &Self) -> Self {
@@ -108,7 +111,8 @@ impl Period {
         if !whole.0.iter().all(|entry| entry.abs() < LARGEST) {
             return Err(StabilityError::Overflow { ticks: position });
         }
-        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, h: tick.h() })
+        let controllers = CONTROLLER..tick.fixed_states();
+        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, controllers, h: tick.h() })
     }
 
     /// Length (s).
@@ -145,13 +149,14 @@ impl Period {
 
 /// The matrix of a tick at the end of which the loops `due` turn.
 fn matrix(tick: &Tick, due: Due) -> DMatrix<f64> {
-    let size = tick.states();
+    let (size, fixed, late) = (tick.states(), tick.fixed_states(), tick.late_states());
     let mut matrix = DMatrix::zeros(size, size);
     for column in 0..size {
-        let mut x = State::unit(column);
+        let mut x = State::unit(column, fixed, late);
         tick.plant(&mut x);
         tick.control(&mut x, due);
-        matrix.column_mut(column).copy_from_slice(&x.to_array()[..size]);
+        matrix.view_mut((0, column), (fixed, 1)).copy_from_slice(&x.to_array()[..fixed]);
+        matrix.view_mut((fixed, column), (late, 1)).copy_from_slice(&x.late);
     }
     matrix
 }

@@ -86,6 +86,8 @@ pub struct Instability {
     pub pole: Pole,
     /// Where the verdict changes.
     pub boundaries: Boundaries,
+    /// Speed of the motor, and its unit, at which the drive's gain schedule has this gain; `None` at standstill.
+    pub speed: Option<(f64, &'static str)>,
 }
 
 /// A loop that is faster than the one below it.
@@ -171,8 +173,12 @@ impl Display for GainName {
 
 impl Display for Instability {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let Self { name, gain_name, gain, unit, pole, boundaries } = self;
-        write!(f, "the loop is unstable: {name}, {gain_name} {} {unit}: ", Rounded(*gain))?;
+        let Self { name, gain_name, gain, unit, pole, boundaries, speed } = self;
+        f.write_str("the loop is unstable")?;
+        if let Some((speed, unit)) = speed {
+            write!(f, " at {} {unit} of the motor (gain schedule)", Rounded(*speed))?;
+        }
+        write!(f, ": {name}, {gain_name} {} {unit}: ", Rounded(*gain))?;
         write!(f, "a pole of |λ| {} at {} ", Magnitude(pole.magnitude), Hertz(pole.frequency))?;
         write!(f, "grows at a rate of {} 1/s; ", Rounded(pole.growth))?;
         let at = |side: &str, boundary: &Boundary| {

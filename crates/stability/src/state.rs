@@ -1,4 +1,6 @@
 //! What a base tick of the linear loop leaves to the next one: deviations from the operating point.
+//!
+//! The states of a loop are as many of the fixed ones as its drive needs, and behind them what late sensors have under way.
 use servobench_base::Dq;
 use servobench_drive::filter;
 use servobench_drive::measurement::observer;
@@ -18,7 +20,7 @@ pub(crate) const CURRENT: usize = MECHANICS + 2;
 pub(crate) const CONTROLLER: usize = MECHANICS + 5;
 
 /// Deviations from the operating point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct State {
     /// Stretches of the links, then velocities of the bodies (axis coordinate, per tick).
     pub(crate) mechanics: [f64; MECHANICS],
@@ -61,11 +63,13 @@ pub(crate) struct State {
     pub(crate) acceleration: f64,
     /// The observer of the velocity (motor coordinate).
     pub(crate) observer: observer::State,
+    /// What late sensors have under way ([`late`](crate::late)).
+    pub(crate) late: Vec<f64>,
 }
 
 impl State {
-    /// The states in order.
-    pub(crate) fn to_array(self) -> [f64; MOST_STATES] {
+    /// The fixed states in order.
+    pub(crate) fn to_array(&self) -> [f64; MOST_STATES] {
         let mut array = [0.0; MOST_STATES];
         let (mechanics, others) = array.split_at_mut(MECHANICS);
         let (others, filters) = others.split_at_mut(STATES - MECHANICS);
@@ -103,8 +107,17 @@ impl State {
         array
     }
 
-    /// The state that is 1 in its entry `index` and 0 elsewhere.
-    pub(crate) fn unit(index: usize) -> Self {
+    /// The state that is 1 in the entry `index` of all `fixed` and behind them `late` ones, and 0 elsewhere.
+    pub(crate) fn unit(index: usize, fixed: usize, late: usize) -> Self {
+        let mut state = if index < fixed { Self::fixed_unit(index) } else { Self::default() };
+        state.late.resize(late, 0.0);
+        if let Some(entry) = index.checked_sub(fixed).and_then(|index| state.late.get_mut(index)) {
+            *entry = 1.0;
+        }
+        state
+    }
+
+    fn fixed_unit(index: usize) -> Self {
         let entry = |i: usize| if i == index { 1.0 } else { 0.0 };
         let other = |i: usize| entry(MECHANICS + i);
         let part = |i: usize| entry(FILTERED + i);
@@ -129,6 +142,7 @@ impl State {
             position_rate: part(2),
             acceleration: part(3),
             observer: observer::State { behind: part(4), velocity: part(5), disturbance: part(6) },
+            late: Vec::new(),
         }
     }
 }
@@ -140,11 +154,13 @@ mod tests {
     #[test]
     fn a_unit_state_is_one_in_its_own_entry_alone() {
         for index in 0..MOST_STATES {
-            let array = State::unit(index).to_array();
+            let array = State::unit(index, MOST_STATES, 3).to_array();
             assert!(
                 array.iter().enumerate().all(|(i, entry)| entry.to_bits() == f64::from(u8::from(i == index)).to_bits())
             );
         }
+        let late = State::unit(STATES + 1, STATES, 3);
+        assert_eq!((late.to_array(), late.late), ([0.0; MOST_STATES], vec![0.0, 1.0, 0.0]));
     }
 
     /// Speed and current of the plant are not the controllers', everything that a loop puts out is.

@@ -6,80 +6,117 @@
 //! holds, bodies and springs that the drive does not act on; their poles are on the circle or inside, by physics. Neither is one
 //! of controllers' states alone: an integrator without input, a filter.
 //! Source: Tarjan, *SIAM J. Comput.* 1(2), 1972 (components); Murota, *Matrices and Matroids for Systems Analysis*, §2.
-use crate::state::{CONTROLLER, MOST_STATES};
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// What acts on what: bit j of row i says whether state j acts on state i.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Pattern([u64; MOST_STATES]);
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Pattern(Vec<Row>);
+
+/// A set of states, 64 a word.
+type Row = Vec<u64>;
+
+fn contains(row: &Row, j: usize) -> bool {
+    row[j / 64] & 1 << (j % 64) != 0
+}
+
+fn insert(row: &mut Row, j: usize) {
+    row[j / 64] |= 1 << (j % 64);
+}
+
+fn unite(row: &mut Row, other: &Row) {
+    for (word, other) in row.iter_mut().zip(other) {
+        *word |= other;
+    }
+}
 
 impl Pattern {
-    /// Every state acts on itself alone.
-    pub(crate) fn identity() -> Self {
-        Self(std::array::from_fn(|i| 1 << i))
+    /// Of `size` states, each of which acts on those of its row.
+    fn with_rows(size: usize, acts: impl Fn(usize, usize) -> bool) -> Self {
+        let row = |i: usize| {
+            let mut row = vec![0; size.div_ceil(64)];
+            (0..size).filter(|&j| acts(j, i)).for_each(|j| insert(&mut row, j));
+            row
+        };
+        Self((0..size).map(row).collect())
+    }
+
+    /// Every one of `size` states acts on itself alone.
+    pub(crate) fn identity(size: usize) -> Self {
+        Self::with_rows(size, |j, i| i == j)
     }
 
     /// Of a matrix: where it is not exactly zero.
     pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
-        let size = matrix.nrows();
-        let row = |i: usize| (0..size).filter(|&j| matrix[(i, j)] != 0.0).fold(0, |row, j| row | 1 << j);
-        Self(std::array::from_fn(|i| if i < size { row(i) } else { 0 }))
+        Self::with_rows(matrix.nrows(), |j, i| matrix[(i, j)] != 0.0)
     }
 
     /// What acts on what when `first` comes before this one.
     pub(crate) fn after(&self, first: &Self) -> Self {
-        let through = |row: u64| (0..MOST_STATES).filter(|&j| row & 1 << j != 0).fold(0, |sum, j| sum | first.0[j]);
-        Self(self.0.map(through))
+        let through = |row: &Row| {
+            let mut sum = vec![0; row.len()];
+            (0..self.0.len()).filter(|&j| contains(row, j)).for_each(|j| unite(&mut sum, &first.0[j]));
+            sum
+        };
+        Self(self.0.iter().map(through).collect())
     }
 
-    /// The strongly connected components that hold states of a controller and of what it controls.
-    pub(crate) fn loops(&self) -> Vec<Vec<usize>> {
-        let mut reached = self.0;
-        for via in 0..MOST_STATES {
-            for i in 0..MOST_STATES {
-                if reached[i] & 1 << via != 0 {
-                    reached[i] |= reached[via];
-                }
-            }
+    /// The strongly connected components that hold states of a controller, which are `controllers`, and of what it controls.
+    pub(crate) fn loops(&self, controllers: &Range<usize>) -> Vec<Vec<usize>> {
+        let is_controllers = |j: &usize| controllers.contains(j);
+        let holds_both = |one: &Vec<usize>| one.iter().any(is_controllers) && !one.iter().all(is_controllers);
+        self.components().into_iter().filter(holds_both).collect()
+    }
+
+    /// The strongly connected components; a state that does not act on itself is none.
+    fn components(&self) -> Vec<Vec<usize>> {
+        let size = self.0.len();
+        let mut reached = self.0.clone();
+        for via in 0..size {
+            let through = reached[via].clone();
+            reached.iter_mut().filter(|row| contains(row, via)).for_each(|row| unite(row, &through));
         }
-        let acts = |j: usize, i: usize| reached[i] & 1 << j != 0;
-        let mut is_seen = [false; MOST_STATES];
-        let mut loops = Vec::new();
-        for i in 0..MOST_STATES {
+        let acts = |j: usize, i: usize| contains(&reached[i], j);
+        let mut is_seen = vec![false; size];
+        let mut components = Vec::new();
+        for i in 0..size {
             if is_seen[i] || !acts(i, i) {
                 continue;
             }
-            let component: Vec<usize> = (i..MOST_STATES).filter(|&j| acts(i, j) && acts(j, i)).collect();
+            let component: Vec<usize> = (i..size).filter(|&j| acts(i, j) && acts(j, i)).collect();
             for &j in &component {
                 is_seen[j] = true;
             }
-            if component.iter().any(|&j| j >= CONTROLLER) && component.iter().any(|&j| j < CONTROLLER) {
-                loops.push(component);
-            }
+            components.push(component);
         }
-        loops
+        components
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::{CONTROLLER, MOST_STATES};
+
+    /// Two words.
+    const SIZE: usize = MOST_STATES + 40;
+    const CONTROLLERS: Range<usize> = CONTROLLER..MOST_STATES;
 
     fn pattern(edges: &[(usize, usize)]) -> Pattern {
-        let mut matrix = DMatrix::zeros(MOST_STATES, MOST_STATES);
+        let mut matrix = DMatrix::zeros(SIZE, SIZE);
         for &(from, to) in edges {
             matrix[(to, from)] = 1e-300;
         }
         Pattern::of(&matrix)
     }
 
-    /// A ring through a controller, a ring without one, a chain behind them, a ring of controllers.
+    /// A ring through a controller and a late sensor, a ring without one, a chain behind them, a ring of controllers.
     #[test]
     fn only_rings_through_a_controller_are_loops() {
         let c = CONTROLLER;
-        let ring = pattern(&[(0, c), (c, 2), (2, 0), (3, 4), (4, 3), (2, 5), (5, c + 1)]);
-        assert_eq!(ring.loops(), [vec![0, 2, c]]);
-        assert_eq!(pattern(&[(c, c), (0, 0), (1, c), (c + 1, c + 2), (c + 2, c + 1)]).loops(), [[0; 0]; 0]);
+        let ring = pattern(&[(0, SIZE - 1), (SIZE - 1, c), (c, 2), (2, 0), (3, 4), (4, 3), (2, 5), (5, c + 1)]);
+        assert_eq!(ring.loops(&CONTROLLERS), [vec![0, 2, c, SIZE - 1]]);
+        assert_eq!(pattern(&[(c, c), (0, 0), (1, c), (c + 1, c + 2), (c + 2, c + 1)]).loops(&CONTROLLERS), [[0; 0]; 0]);
     }
 
     #[test]
@@ -87,6 +124,6 @@ mod tests {
         let first = pattern(&[(0, 1), (1, 1)]);
         let second = pattern(&[(1, 2)]);
         assert_eq!(second.after(&first), pattern(&[(0, 2), (1, 2)]));
-        assert_eq!(second.after(&Pattern::identity()), second);
+        assert_eq!(second.after(&Pattern::identity(SIZE)), second);
     }
 }

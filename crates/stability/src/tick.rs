@@ -4,10 +4,11 @@
 //! The equations are those of `drive::firmware`, `drive::{velocity, current}` and of the power stage of `sim`, around the
 //! operating point at standstill: no set-point, no limit, no rounding of encoders. A loop that is opened puts out nothing.
 use crate::electrical::Electrical;
+use crate::late::{CurrentLine, Line, Passage, rotated, times};
 use crate::model::{Loop, PositionFeedback, Source, VelocitySignal};
 use crate::state::{MECHANICS, MOST_STATES, STATES, State};
 use nalgebra::DMatrix;
-use servobench_base::Dq;
+use servobench_base::{Divider, Dq};
 use servobench_drive::measurement::{self, observer};
 use servobench_drive::{Stage, derivative, filter};
 use servobench_plant::transition;
@@ -54,12 +55,35 @@ pub(crate) struct Tick<'a> {
     transmission: f64,
     /// Base tick (s).
     h: f64,
+    /// Late encoders of motor and load, and late current sensors.
+    late: (Option<Line>, Option<Line>, Option<CurrentLine>),
+    late_states: usize,
+    /// Current that the drive takes for one that flows, as a complex number.
+    current_ratio: Dq,
+    /// Factors of the gain schedule on the gains of position and velocity loop.
+    scheduled: (f64, f64),
 }
 
 impl<'a> Tick<'a> {
     pub(crate) fn new(model: &'a Loop) -> Self {
         let h = model.drive.base_rate.period();
-        let bodies = model.mechanics.bodies();
+        let (bodies, drive, sensors) = (model.mechanics.bodies(), &model.drive, &model.sensors);
+        let mut late_states = 0;
+        let mut line = |latency, every: Divider| {
+            let line = Line::new(latency, every.ticks(), h, late_states);
+            late_states += line.map_or(0, |line| line.states());
+            line
+        };
+        let motor = line(sensors.motor_latency, drive.velocity_every);
+        let load = match model.position_feedback {
+            PositionFeedback::Motor => None,
+            PositionFeedback::Load => line(sensors.load_latency, drive.position_every),
+        };
+        let current = match drive.stage {
+            Stage::Current { .. } => CurrentLine::new(sensors, h, late_states),
+            Stage::Direct { .. } => None,
+        };
+        late_states += current.map_or(0, |line| line.states());
         Self {
             model,
             closed: Closed { position: model.closes_position, velocity: true, shaft: true },
@@ -72,12 +96,21 @@ impl<'a> Tick<'a> {
             bodies: bodies.len(),
             transmission: bodies[0].transmission,
             h,
+            late: (motor, load, current),
+            late_states,
+            current_ratio: sensors.current_ratio(),
+            scheduled: (1.0, 1.0),
         }
     }
 
     /// The same loop with these loops closed and gains so much larger.
     pub(crate) fn with(&mut self, closed: Closed, factors: Factors) {
         (self.closed, self.factors) = (closed, factors);
+    }
+
+    /// The same loop with the gains of position and velocity loop by these factors of a gain schedule.
+    pub(crate) const fn schedule(&mut self, factors: (f64, f64)) {
+        self.scheduled = factors;
     }
 
     pub(crate) const fn closed(&self) -> Closed {
@@ -88,8 +121,18 @@ impl<'a> Tick<'a> {
         self.model
     }
 
-    /// Number of states: two more for each filter, and all of them with parts that most drives have not.
+    /// Number of states.
     pub(crate) fn states(&self) -> usize {
+        self.fixed_states() + self.late_states
+    }
+
+    /// Number of states of late sensors.
+    pub(crate) const fn late_states(&self) -> usize {
+        self.late_states
+    }
+
+    /// Number of all other states: two more for each filter, and all of them with parts that most drives have not.
+    pub(crate) fn fixed_states(&self) -> usize {
         let blocks = &self.model.drive.blocks;
         if blocks.position.is_some() || blocks.acceleration.is_some() || blocks.observer().is_some() {
             return MOST_STATES;
@@ -132,7 +175,11 @@ impl<'a> Tick<'a> {
 
     /// The loops that are due, the slower ones first: what they say reaches the faster ones in the same tick.
     pub(crate) fn control(&self, x: &mut State, due: Due) {
+        if due.velocity {
+            self.sample_motor(x);
+        }
         if due.position {
+            self.sample_load(x);
             self.position_loop(x);
         }
         if due.velocity {
@@ -143,13 +190,35 @@ impl<'a> Tick<'a> {
         }
     }
 
+    /// The travel that the drive sees at a cycle of the velocity loop is that of a latency ago.
+    fn sample_motor(&self, x: &mut State) {
+        if let Some(line) = &self.late.0 {
+            x.travelled = line.sample(&mut x.late) / self.transmission;
+        }
+    }
+
+    fn sample_load(&self, x: &mut State) {
+        if let Some(line) = &self.late.1 {
+            line.sample(&mut x.late);
+        }
+    }
+
+    /// Position that closes the position loop (axis coordinate).
+    fn position_read(&self, x: &State) -> f64 {
+        let p = &self.model.drive;
+        match (self.model.position_feedback, &self.late) {
+            (PositionFeedback::Motor, (None, ..)) => p.transmission / self.transmission * x.position,
+            (PositionFeedback::Motor, (Some(line), ..)) => p.transmission / self.transmission * line.position(&x.late),
+            (PositionFeedback::Load, (_, None, _)) => self.load_position(x),
+            (PositionFeedback::Load, (_, Some(line), _)) => line.position(&x.late),
+        }
+    }
+
     fn position_loop(&self, x: &mut State) {
         let p = &self.model.drive;
-        let position = match self.model.position_feedback {
-            PositionFeedback::Motor => p.transmission / self.transmission * x.position,
-            PositionFeedback::Load => self.load_position(x),
-        };
-        let gain = if self.closed.position { self.factors.position * p.position_gain } else { 0.0 };
+        let position = self.position_read(x);
+        let gain = self.factors.position * self.scheduled.0 * p.position_gain;
+        let gain = if self.closed.position { gain } else { 0.0 };
         let Some(parts) = &p.blocks.position else {
             x.velocity_reference = -gain * position;
             return;
@@ -183,7 +252,8 @@ impl<'a> Tick<'a> {
         };
         let last = x.filtered_velocity;
         x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
-        let gain = if self.closed.velocity { self.factors.velocity * p.velocity.k_p } else { 0.0 };
+        let gain = self.factors.velocity * self.scheduled.1 * p.velocity.k_p;
+        let gain = if self.closed.velocity { gain } else { 0.0 };
         let reference = x.velocity_reference / p.transmission;
         let mut proportional = gain * (p.blocks.reference_weight * reference - x.filtered_velocity);
         if let Some(acceleration) = &p.blocks.acceleration {
@@ -209,7 +279,12 @@ impl<'a> Tick<'a> {
         };
         let h = self.model.drive.period(*every);
         let factors = self.factors.current;
-        let error = Dq { d: -x.current.d, q: x.effort / p.motor.effort_constant(p.d_reference) - x.current.q };
+        let current = match &self.late.2 {
+            None => x.current,
+            Some(line) => line.sample(&mut x.late, x.current),
+        };
+        let current = times(current, self.current_ratio);
+        let error = Dq { d: -current.d, q: x.effort / p.motor.effort_constant(p.d_reference) - current.q };
         let omega_e = p.motor.electrical_ratio * x.filtered_velocity;
         let Dq { d: i_d, q: i_q } = self.model.point.current;
         let decoupling = Dq {
@@ -225,14 +300,17 @@ impl<'a> Tick<'a> {
         // What was computed a cycle ago goes out; the voltage of the operating point is turned ahead by 1.5·h·ω.
         (x.applied, x.applied_travel) = (x.pending, x.pending_travel);
         let ahead = turned(electrical.voltage, 1.5 * h * omega_e);
-        x.pending = Dq { d: computed.d + ahead.d, q: computed.q + ahead.q };
+        let out = rotated(computed, self.model.sensors.commutation);
+        x.pending = Dq { d: out.d + ahead.d, q: out.q + ahead.q };
         x.pending_travel = 0.0;
     }
 
     /// Power stage and mechanics from this tick to the next.
     pub(crate) fn plant(&self, x: &mut State) {
+        let current = x.current;
         let effort = self.power_stage(x);
         if !self.closed.shaft {
+            self.pass_current(x, current, 0.0);
             (x.mechanics, x.position, x.last_speed) = ([0.0; MECHANICS], 0.0, 0.0);
             return;
         }
@@ -243,10 +321,38 @@ impl<'a> Tick<'a> {
         };
         let next = std::array::from_fn(|i| if i < states { row(i) } else { 0.0 });
         let travel = row(states);
-        x.mechanics = next;
+        let before = std::mem::replace(&mut x.mechanics, next);
         x.position += travel;
         for travelled in [&mut x.travelled, &mut x.pending_travel, &mut x.applied_travel] {
             *travelled += travel / self.transmission;
+        }
+        self.pass_encoders(x, travel, &before);
+        self.pass_current(x, current, travel / self.transmission);
+    }
+
+    /// The tick, with the motor's `travel` and the mechanics `before` it, passes for late encoders.
+    fn pass_encoders(&self, x: &mut State, travel: f64, before: &[f64; MECHANICS]) {
+        let last = self.bodies - 1;
+        let passage = |now: &[f64; MECHANICS], body: usize, travel: f64| Passage {
+            travel,
+            before: before[last + body],
+            after: now[last + body],
+        };
+        if let Some(line) = &self.late.0 {
+            line.tick(&mut x.late, passage(&x.mechanics, 0, travel));
+        }
+        if let Some(line) = &self.late.1 {
+            let stretched = |stretches: &[f64; MECHANICS]| stretches[..last].iter().sum::<f64>();
+            let travel = travel - (stretched(&x.mechanics) - stretched(before));
+            line.tick(&mut x.late, passage(&x.mechanics, last, travel));
+        }
+    }
+
+    /// The tick passes for samples of the current, which was `current` before; the rotor has turned by `travel` (motor coordinate).
+    fn pass_current(&self, x: &mut State, current: Dq, travel: f64) {
+        if let (Some(line), Source::Pmsm(motor)) = (&self.late.2, &self.model.source) {
+            let back = turned(self.model.point.current, -motor.electrical_ratio * travel);
+            line.tick(&mut x.late, current, back);
         }
     }
 

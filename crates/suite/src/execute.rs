@@ -80,7 +80,7 @@ pub fn execute(
         Some(Interruption::Early(ended)) => (Some(ended), None),
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
-    let requirements = judge_requirements(&recording, &rules(&job.scenario, ended));
+    let requirements = judge_requirements(&recording, &rules(&job.scenario, &recording, ended));
     let record = &job.scenario.record;
     let recording = selected(recording, &record.channels);
     let wanted = job.metrics();

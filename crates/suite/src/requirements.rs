@@ -1,12 +1,13 @@
 //! From a scenario to what its run is held to beside its limits.
 use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
 use servobench_scenario::{Actuator, Feedback, Scenario};
-use servobench_sim::{Analysis, NotAnalysed, analyse_stability};
+use servobench_sim::{Analysis, MasterLoop, NotAnalysed, Speeds, analyse_stability};
 use servobench_stability::{Depth, Report, StabilityError};
+use servobench_trace::Recording;
 
-/// What the run of `scenario`, which ended early if it says so, is held to.
-pub(crate) fn rules(scenario: &Scenario, ended: Option<EarlyEnd>) -> Rules<'_> {
-    let (linear_loop, poles, not_analysed) = linear_loop(scenario);
+/// What the run of `scenario` that `recording` is of, and which ended early if it says so, is held to.
+pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Option<EarlyEnd>) -> Rules<'a> {
+    let (linear_loop, poles, not_analysed) = linear_loop(scenario, recording);
     Rules {
         lifted: &scenario.requirements.lifted,
         expected: &scenario.requirements.expected,
@@ -28,13 +29,16 @@ pub(crate) fn rules(scenario: &Scenario, ended: Option<EarlyEnd>) -> Rules<'_> {
 
 /// What the analysis of the linear loop of `scenario` says, its poles, and what is not in it. Where it is stable, its boundaries are
 /// nobody's concern.
-fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<Poles>, Option<String>) {
-    match analyse_stability(scenario, Depth::Verdict) {
-        Ok(Analysis::Done { report, without }) => {
+fn linear_loop(scenario: &Scenario, recording: &Recording) -> (LinearLoop, Option<Poles>, Option<String>) {
+    let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
+    let speeds = is_scheduled.then(|| Speeds::recorded(recording, scenario.axis.transmission)).flatten();
+    match analyse_stability(scenario, Depth::Verdict, speeds.as_ref()) {
+        Ok(Analysis::Done { report, master, without }) => {
             let poles = Some(poles(&report));
-            match report.instability {
-                Some(instability) => (LinearLoop::Unstable(instability.to_string()), poles, None),
-                None => (LinearLoop::Stable, poles, without.map(|what| what.to_string())),
+            let of_master = master.filter(MasterLoop::is_unstable).map(|master| master.to_string());
+            match report.instability.map(|instability| instability.to_string()).or(of_master) {
+                Some(why) => (LinearLoop::Unstable(why), poles, None),
+                None => (LinearLoop::Stable, poles, listed(&without)),
             }
         }
         // What grows beyond all numbers within a period is not stable, though its poles cannot be computed.
@@ -46,6 +50,12 @@ fn linear_loop(scenario: &Scenario) -> (LinearLoop, Option<Poles>, Option<String
         }
         Err(error) => (LinearLoop::NotAnalysed, None, Some(format!("the run alone is judged: {error}"))),
     }
+}
+
+/// What is not analysed, in one line; `None` where all is.
+fn listed(without: &[NotAnalysed]) -> Option<String> {
+    let words: Vec<String> = without.iter().map(ToString::to_string).collect();
+    (!words.is_empty()).then(|| words.join("; "))
 }
 
 /// The slowest poles of a report.

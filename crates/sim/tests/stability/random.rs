@@ -1,11 +1,11 @@
-//! Random loops: all combinations of motors, bodies, rates, filters and wrong estimates.
+//! Random loops: all combinations of motors, bodies, rates, filters, late sensors and wrong estimates.
 use crate::files::scenario;
 use servobench_base::{Coordinate, Rate};
 use servobench_drive::current::{Gains, Tuning};
 use servobench_drive::filter::{self, Filter};
 use servobench_drive::measurement::{self, observer};
 use servobench_drive::{Stage, delay, derivative, position};
-use servobench_plant::{Body, Chain, Encoder, Friction, Link};
+use servobench_plant::{Body, Chain, CurrentSensor, Encoder, EncoderErrors, Friction, Link};
 use servobench_scenario::{Actuator, AxisMechanics, Feedback, Scenario};
 use servobench_testkit::Random;
 
@@ -134,7 +134,44 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     drive.estimate.transmission = transmission * off;
     blocks(random, &mut drive.params);
     parts(random, &mut drive.params, (inertia, omega));
+    if random.unit() < 0.5 {
+        late(random, &mut scenario);
+    }
     scenario
+}
+
+/// Sensors that are late: by some cycles and a share of a tick; current sensors that read too much, and a commutation that is off.
+fn late(random: &mut Random, scenario: &mut Scenario) {
+    let tick = scenario.base_rate.period();
+    let mut encoder = || {
+        let latency = if random.unit() < 0.3 { tick } else { random.logarithmic(0.2, 20.0) * tick };
+        let errors = EncoderErrors { latency, ..EncoderErrors::default() };
+        Encoder { errors: (random.unit() < 0.7).then_some(errors), ..Encoder::default() }
+    };
+    let (motor, load) = (encoder(), encoder());
+    let mut current = CurrentSensor { delay: random.one_of(&[0, 0, 1, 2]), ..CurrentSensor::default() };
+    current.shift = if random.unit() < 0.5 { random.unit() * tick } else { 0.0 };
+    current.gain_error = [random.logarithmic(0.8, 1.25) - 1.0; 2];
+    let commutation = if random.unit() < 0.4 { random.unit() - 0.5 } else { 0.0 };
+    let drive = match &mut scenario.actuator {
+        Actuator::Pmsm { encoder, drive, motor: pmsm, .. } => {
+            *encoder = motor;
+            if commutation != 0.0 {
+                let errors = encoder.errors.get_or_insert_default();
+                errors.commutation = commutation / pmsm.electrical_ratio;
+            }
+            drive.current_sensor = Some(current);
+            drive
+        }
+        Actuator::IdealSource { encoder, drive, .. } => {
+            *encoder = motor;
+            drive
+        }
+        Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
+    };
+    if let Feedback::Load(encoder) = &mut drive.position_feedback {
+        *encoder = load;
+    }
 }
 
 /// Filters in the torque path and a weight on the reference, of some loops.

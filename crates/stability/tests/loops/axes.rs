@@ -3,7 +3,9 @@ use servobench_base::Coordinate;
 use servobench_base::{Divider, Dq, Rate};
 use servobench_drive::{self as drive, current, feedforward, velocity};
 use servobench_plant::{Body, Chain, Friction, Link, pmsm};
-use servobench_stability::{Depth, Loop, OperatingPoint, PositionFeedback, Report, Source, VelocitySignal, analyse};
+use servobench_stability::{
+    Depth, Loop, OperatingPoint, PositionFeedback, Report, Sensors, Source, VelocitySignal, analyse,
+};
 
 pub(crate) const TAU: f64 = std::f64::consts::TAU;
 
@@ -49,6 +51,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
         current_tuning: None,
         source: Source::Ideal { gain: 1.0 },
         mechanics,
+        sensors: Sensors::IDEAL,
         point: OperatingPoint::default(),
     }
 }

@@ -1,8 +1,10 @@
 //! Loops whose poles are known in closed form.
 use crate::axes::{MOTOR, TAU, Tuning, body, chain, ideal, report, servo};
 use servobench_drive::current;
-use servobench_drive::{self as drive, derivative, filter, measurement, position, velocity};
-use servobench_stability::{GainName, Loop, LoopName, LoopReport, PositionFeedback, VelocitySignal};
+use servobench_drive::{self as drive, derivative, filter, measurement, position, schedule, velocity};
+use servobench_stability::{
+    GainName, Loop, LoopName, LoopReport, PositionFeedback, Sensors, VelocitySignal, analyse_schedule,
+};
 
 /// Boundaries are bisected to 1e-6 of the gain.
 const BISECTED: f64 = 2e-6;
@@ -51,6 +53,61 @@ fn differences_of_positions_cost_half_a_period() {
     assert!((pole.frequency / 750.0 - 1.0).abs() < 1e-3, "{pole:?}");
 }
 
+/// Oracle: the same m cycles late: (z − 1)·z^(m+1) + a/2·(z + 1), on the circle at a = 2·tan(π/(4·(m + 1))), whatever part of the m
+/// cycles are ticks of the base rate; a share of a tick more is between two of them.
+#[test]
+fn a_late_encoder_is_a_dead_time() {
+    let mass = 2.6;
+    let found = |every: u32, latency: f64| {
+        let h = f64::from(every) / 12e3;
+        let sensors = Sensors { motor_latency: latency * h, ..Sensors::IDEAL };
+        let velocity_signal = VelocitySignal::Differences;
+        let model = ideal(12_000, every, 0.02 * mass / h, chain(vec![body(mass, 0.0)], &[]));
+        above(&Loop { sensors, velocity_signal, ..model }, LoopName::Velocity) * h / mass
+    };
+    for every in [1, 4] {
+        for cycles in [0_u32, 1, 2, 7, 31] {
+            let a = found(every, f64::from(cycles));
+            let expected = 2.0 * (TAU / 8.0 / f64::from(cycles + 1)).tan();
+            assert!((a / expected - 1.0).abs() < BISECTED, "{every} {cycles}: {a} {expected}");
+        }
+        let between = [2.0, 2.2, 2.5, 2.99, 3.0].map(|latency| found(every, latency));
+        assert!(between.windows(2).all(|pair| pair[1] < pair[0]), "{every}: {between:?}");
+    }
+}
+
+/// Oracle: v(k+1) = (1 − K·f(ω)·h/m)·v(k): speeds from f(ω) = 2·m/(K·h) on are unstable, by a pole at half the rate.
+#[test]
+fn a_gain_schedule_is_unstable_from_a_speed_on() {
+    let (mass, h, first) = (7.3, 1.0 / 12e3, 0.4);
+    let schedule = schedule::Params { from: 2.0, to: 12.0, position: 1.0, velocity: 11.0 };
+    let rest = ideal(12_000, 1, first * mass / h, chain(vec![body(mass, 0.0)], &[]));
+    let blocks = drive::Blocks { schedule: Some(schedule), ..drive::Blocks::default() };
+    let model = Loop { drive: drive::Params { blocks, ..rest.drive }, ..rest };
+    assert!(report(&model).is_stable(), "at standstill");
+    // 1 + s·10 = 2/0.4 at s = 0.4.
+    let boundary = 2.0 + 0.4 * 10.0;
+    let stays = |time: f64| {
+        analyse_schedule(&model, |range| {
+            assert!((range.start / boundary - 1.0).abs() < 0.05 && range.end.is_infinite(), "{range:?}");
+            time
+        })
+        .unwrap()
+    };
+    // Two ticks are a period of the pole.
+    assert_eq!(stays(1.9 * h), None);
+    let found = stays(2.1 * h).unwrap();
+    assert_eq!((found.name, found.speed), (LoopName::Velocity, Some((12.0, "m/s"))));
+    assert!((found.gain / (11.0 * first * mass / h) - 1.0).abs() < 1e-12, "{found:?}");
+    assert!((found.pole.magnitude - (1.0_f64 - 4.4).abs()).abs() < 1e-12, "{found:?}");
+    assert!((found.boundaries.below.unwrap().factor * 4.4 / 2.0 - 1.0).abs() < BISECTED, "{found:?}");
+    let said = found.to_string();
+    assert!(
+        said.starts_with("the loop is unstable at 12 m/s of the motor (gain schedule): velocity loop, gain "),
+        "{said}"
+    );
+}
+
 /// Oracle: a double integrator under position and velocity, sampled (Åström & Wittenmark, *Computer-Controlled Systems*,
 /// 3rd ed., example 3.2): x' = x + h·v + h²/2m·u, v' = v + h/m·u, u = −K·(K_v·x + v). With a = K·h/m and b = K_v·h:
 /// z² + (a + a·b/2 − 2)·z + 1 − a + a·b/2, by Jury stable for 0 < b < 2 and a < 2.
@@ -63,6 +120,12 @@ fn a_double_integrator_under_position_and_velocity() {
     };
     let stable = report(&cascade(0.7, 0.4));
     assert!(stable.is_stable());
+    // z² − 1.16·z + 0.44: a pair of |λ|² = 0.44 and cos φ = 0.58/|λ|.
+    let pair = stable.slowest_oscillating.unwrap();
+    let (magnitude, angle) = (0.44_f64.sqrt(), (0.58 / 0.44_f64.sqrt()).acos());
+    assert_eq!(stable.slowest_real, None);
+    assert!((pair.growth * h / magnitude.ln() - 1.0).abs() < 1e-9, "{pair:?}");
+    assert!((pair.frequency * TAU * h / angle - 1.0).abs() < 1e-9, "{pair:?}");
     let boundary =
         |name| stable.loops.iter().find(|found| found.name == name).unwrap().boundaries.unwrap().above.unwrap();
     assert!((boundary(LoopName::Velocity).factor * 0.7 / 2.0 - 1.0).abs() < BISECTED, "a = 2");

@@ -1,12 +1,12 @@
 //! How fast the loops are, and what comes late.
 use servobench_base::Dq;
 use servobench_drive::current::Tuning;
-use servobench_scenario::Scenario;
+use servobench_scenario::{BusMode, Scenario};
 
 /// A loop of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopBandwidth {
-    /// `current`, `velocity`, `position`.
+    /// `current`, `velocity`, `position`, or `master's position`.
     pub name: &'static str,
     /// Bandwidth that its gain makes of what the drive believes (rad/s); `None` where it believes nothing.
     pub bandwidth: Option<f64>,
@@ -39,7 +39,15 @@ pub(super) fn loops(scenario: &Scenario) -> Vec<LoopBandwidth> {
     let bandwidth = (inertia > 0.0).then(|| params.velocity.k_p / inertia);
     loops.push(LoopBandwidth { name: "velocity", bandwidth, rate: params.velocity_rate().hertz().into() });
     let rate = params.position_rate().hertz().into();
-    loops.push(LoopBandwidth { name: "position", bandwidth: Some(params.position_gain), rate });
+    let bus = scenario.bus.as_ref();
+    match bus.map(|bus| (bus.mode, bus.position_loop)) {
+        Some((BusMode::CyclicVelocity, Some(gains))) => {
+            let rate = f64::from(scenario.base_rate.hertz()) / bus.map_or(1.0, |bus| bus.cycle.into());
+            loops.push(LoopBandwidth { name: "master's position", bandwidth: Some(gains.gain), rate });
+        }
+        Some((BusMode::ProfileVelocity, _)) => {}
+        _ => loops.push(LoopBandwidth { name: "position", bandwidth: Some(params.position_gain), rate }),
+    }
     loops
 }
 

@@ -1,10 +1,10 @@
 //! Whether the loops are stable, and how far from their boundaries.
 use super::Doubt;
-use servobench_drive::{self as drive, current, velocity};
+use servobench_drive::{self as drive, current, schedule, velocity};
 use servobench_metrics::Quantity;
 use servobench_scenario::{Scenario, parameter_key};
-use servobench_sim::{Analysis, BuildError, analyse_stability};
-use servobench_stability::{Boundaries, Depth, GainName, LEFT_OUT, LoopReport};
+use servobench_sim::{Analysis, BuildError, MasterLoop, Speeds, analyse_stability};
+use servobench_stability::{Boundaries, Depth, GainName, Instability, LEFT_OUT, LoopReport};
 
 /// What the analysis of the linear loop says of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,39 +12,55 @@ pub struct LoopStability(Analysis);
 
 impl LoopStability {
     pub(super) fn of(scenario: &Scenario) -> Result<Self, BuildError> {
-        Ok(Self(analyse_stability(scenario, Depth::Boundaries)?))
+        let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
+        let speeds = if is_scheduled { Speeds::planned(scenario)? } else { None };
+        Ok(Self(analyse_stability(scenario, Depth::Boundaries, speeds.as_ref())?))
     }
 
     /// How far each loop is from a boundary; or why that is not known.
     pub(super) fn words(&self) -> Vec<String> {
-        let (report, without) = match &self.0 {
-            Analysis::Done { report, without } => (report, without),
+        let (report, master, without) = match &self.0 {
+            Analysis::Done { report, master, without } => (report, master, without),
             Analysis::NotPossible(why) => return vec![why.to_string()],
         };
         let mut words: Vec<String> = report.loops.iter().filter_map(margins).collect();
-        if !report.is_stable() {
+        if !report.is_stable() || master.is_some_and(|master| master.is_unstable()) {
             words.insert(0, "unstable".to_owned());
         }
-        words.extend(without.as_ref().map(ToString::to_string));
+        words.extend(master.as_ref().map(of_master));
+        words.extend(without.iter().map(ToString::to_string));
         words
     }
 
     /// An unstable loop, and loops that are faster than those below them.
     pub(super) fn doubts(&self) -> Vec<Doubt> {
-        let Analysis::Done { report, .. } = &self.0 else { return Vec::new() };
-        let unstable = report.instability.iter().map(|instability| {
-            let help = format!("every run of it fails the requirement `stable`; {LEFT_OUT}");
-            Doubt::new(key_of(instability.gain_name), instability.to_string(), help)
-        });
+        let Analysis::Done { report, master, .. } = &self.0 else { return Vec::new() };
+        let help = || format!("every run of it fails the requirement `stable`; {LEFT_OUT}");
+        let of_drive = report
+            .instability
+            .iter()
+            .map(|instability| Doubt::new(key_of(instability), instability.to_string(), help()));
+        let of_master = master.iter().filter(|master| master.is_unstable());
+        let of_master = of_master.map(|master| Doubt::new("bus.position_gain", master.to_string(), help()));
+        let unstable = of_drive.chain(of_master);
         let key =
-            |outer| report.loops.iter().find(|one| one.name == outer).map_or("drive", |one| key_of(one.gain_name));
+            |outer| report.loops.iter().find(|one| one.name == outer).map_or("drive", |one| key_of_gain(one.gain_name));
         let orders = report.warnings.iter().map(|warning| Doubt::new(key(warning.outer), warning.to_string(), ""));
         unstable.chain(orders).collect()
     }
 }
 
+/// The key that makes the gain of `instability`.
+fn key_of(instability: &Instability) -> &'static str {
+    match (instability.speed, instability.gain_name) {
+        (Some(_), GainName::Position) => parameter_key(schedule::Parameter::POSITION),
+        (Some(_), GainName::Velocity) => parameter_key(schedule::Parameter::VELOCITY_GAIN),
+        (_, gain) => key_of_gain(gain),
+    }
+}
+
 /// The key that sets `gain`.
-fn key_of(gain: GainName) -> &'static str {
+fn key_of_gain(gain: GainName) -> &'static str {
     match gain {
         GainName::Position => parameter_key(drive::Parameter::POSITION_GAIN),
         GainName::Velocity => parameter_key(velocity::Parameter::GAIN),
@@ -52,6 +68,12 @@ fn key_of(gain: GainName) -> &'static str {
         GainName::CurrentD => parameter_key(current::Parameter::GAIN_D),
         GainName::CurrentQ => parameter_key(current::Parameter::GAIN_Q),
     }
+}
+
+/// The gain of the position loop in the master, and how far it is from its bound.
+fn of_master(master: &MasterLoop) -> String {
+    let [gain, largest] = [master.gain, master.largest].map(|gain| Quantity::new(gain, "1/s"));
+    format!("master's position gain {gain} to {} × ({largest})", Quantity::new(master.margin(), ""))
 }
 
 /// By how much the gain of a loop may change until the verdict on the whole loop does.

@@ -1,0 +1,135 @@
+//! Gains over speed: the loop with the gains of every speed of the drive's schedule, as if they stayed.
+//!
+//! The speeds are looked at where no gain changes by more than [`RATIO`] from one to the next. A run of neighbours that are unstable is
+//! a range of speeds. Whether it counts is a matter of how long the set-point stays in it: in a shorter time than a period of the
+//! pole nothing has gone there and back. Frozen at its fastest, a pole says nothing of gains that change as fast as it swings.
+use crate::analyse::Analysis;
+use crate::error::StabilityError;
+use crate::model::Loop;
+use crate::pole::Pole;
+use crate::report::Instability;
+use servobench_drive::schedule;
+use std::ops::Range;
+
+/// Gains at most that far apart (5 %) from one speed to the next: margins of a loop change by less than 0.5 dB.
+const RATIO: f64 = 1.05;
+/// Speeds at least, that of standstill apart.
+const FEWEST: usize = 8;
+/// Speeds at most for each of both gains: those that change by more than a factor of 500 are looked at in coarser steps.
+const MOST: usize = 128;
+
+/// A speed, the gains there, and their fastest growing pole.
+struct At {
+    speed: f64,
+    factors: (f64, f64),
+    pole: Option<Pole>,
+}
+
+/// Why the loop is unstable at a speed at which the set-point stays for longer than a period of the pole. `stays` is told a range of
+/// speeds (rad/s or m/s, of the motor) and gives the longest time for which the set-point is within it (s). Standstill is not looked
+/// at: [`analyse`](crate::analyse) does.
+///
+/// # Errors
+/// [`StabilityError`], as of [`analyse`](crate::analyse).
+pub fn analyse_schedule(
+    model: &Loop,
+    stays: impl Fn(Range<f64>) -> f64,
+) -> Result<Option<Instability>, StabilityError> {
+    model.check()?;
+    let Some(schedule) = &model.drive.blocks.schedule else { return Ok(None) };
+    let mut analysis = Analysis::new(model);
+    let mut speeds = Vec::new();
+    for share in shares(schedule) {
+        let speed = schedule.from + share * (schedule.to - schedule.from);
+        let factors = schedule.factors(speed);
+        speeds.push(At { speed, factors, pole: analysis.unstable_at(factors)? });
+    }
+    let mut worst: Option<&At> = None;
+    for unstable in ranges(&speeds) {
+        let growth = |at: &At| at.pole.map_or(f64::NEG_INFINITY, |pole| pole.growth);
+        let Some(fastest) = speeds[unstable.clone()].iter().max_by(|a, b| growth(a).total_cmp(&growth(b))) else {
+            continue;
+        };
+        let within = edge(&speeds, unstable.start)..edge(&speeds, unstable.end);
+        if stays(within) > fastest.pole.map_or(f64::INFINITY, period)
+            && worst.is_none_or(|at| growth(fastest) > growth(at))
+        {
+            worst = Some(fastest);
+        }
+    }
+    let Some(At { speed, factors, pole: Some(pole) }) = worst else { return Ok(None) };
+    analysis.instability_at(*factors, *speed, *pole).map(Some)
+}
+
+/// A period of `pole` (s), which grows; of one that does not swing, the time in which it grows by e.
+fn period(pole: Pole) -> f64 {
+    if pole.frequency > 0.0 { 1.0 / pole.frequency } else { 1.0 / pole.growth }
+}
+
+/// Runs of neighbours that are unstable.
+fn ranges(speeds: &[At]) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for (index, _) in speeds.iter().enumerate().filter(|(_, at)| at.pole.is_some()) {
+        match ranges.last_mut() {
+            Some(last) if last.end == index => last.end += 1,
+            _ => ranges.push(index..index + 1),
+        }
+    }
+    ranges
+}
+
+/// Half-way between the speed `index` and the one before; 0 below the first, without an end above the last.
+fn edge(speeds: &[At], index: usize) -> f64 {
+    match (index.checked_sub(1).map(|before| speeds[before].speed), speeds.get(index)) {
+        (Some(before), Some(at)) => f64::midpoint(before, at.speed),
+        (None, Some(at)) => at.speed,
+        (_, None) => f64::INFINITY,
+    }
+}
+
+/// Shares of the way from the first gains to the last, at which neither gain differs by more than [`RATIO`] from the one before; 0 apart.
+fn shares(schedule: &schedule::Params) -> Vec<f64> {
+    let mut shares: Vec<f64> = [schedule.position, schedule.velocity].into_iter().flat_map(of_factor).collect();
+    shares.sort_by(f64::total_cmp);
+    shares.dedup();
+    shares
+}
+
+/// Those of a gain that becomes `factor` times as large: 1 + s·(f − 1) = f^u, with u in equal steps.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+fn of_factor(factor: f64) -> Vec<f64> {
+    let steps = ((factor.ln().abs() / RATIO.ln()).ceil() as usize).clamp(FEWEST, MOST);
+    let share = |i: usize| {
+        let u = i as f64 / steps as f64;
+        if i == steps {
+            1.0
+        } else if (factor - 1.0).abs() < RATIO - 1.0 {
+            u
+        } else {
+            (factor.powf(u) - 1.0) / (factor - 1.0)
+        }
+    };
+    (1..=steps).map(share).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_gain_jumps_from_speed_to_speed() {
+        for (position, velocity) in [(1.0, 70.0), (0.08, 1.0), (0.3, 12.0), (1.0, 1.0), (1.02, 0.99)] {
+            let schedule = schedule::Params { from: 2.0, to: 5.0, position, velocity };
+            let shares = shares(&schedule);
+            assert!(shares.len() >= FEWEST && (shares[shares.len() - 1] - 1.0).abs() < 1e-15, "{shares:?}");
+            let mut last = (1.0, 1.0);
+            for share in shares {
+                let now = schedule.factors(2.0 + 3.0 * share);
+                for (before, after) in [(last.0, now.0), (last.1, now.1)] {
+                    assert!((after / before).ln().abs() <= RATIO.ln() * (1.0 + 1e-9), "{schedule:?}: {last:?} {now:?}");
+                }
+                last = now;
+            }
+        }
+    }
+}
