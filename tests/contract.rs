@@ -152,16 +152,21 @@ fn a_wrong_setup_is_refused_by_the_name_of_its_field() {
     }
 }
 
+/// A run that ends by it has failed, on every engine, and is no error of the program.
 #[test]
-fn what_is_not_finite_ends_the_run() {
+fn what_is_not_finite_is_divergence() {
     for engine in engines() {
-        for input in [
-            Input { actuation: Actuation::Effort(f64::NAN), ..REST },
-            Input { motor_disturbance: f64::INFINITY, ..REST },
-            Input { load_disturbance: f64::NAN, ..REST },
-        ] {
-            let mut mechanics = build(engine, &setup(2, Drive::Effort));
-            assert!(mechanics.advance(&input).is_err(), "{} went on after {input:?}", engine.name());
+        for count in 1..=2 {
+            for input in [
+                Input { actuation: Actuation::Effort(f64::NAN), ..REST },
+                Input { actuation: Actuation::Effort(f64::NEG_INFINITY), ..REST },
+                Input { motor_disturbance: f64::INFINITY, ..REST },
+                Input { load_disturbance: f64::NAN, ..REST },
+            ] {
+                let mut mechanics = build(engine, &setup(count, Drive::Effort));
+                let error = mechanics.advance(&input).unwrap_err();
+                assert!(matches!(error, MechanicsError::Diverged { .. }), "{} of {input:?}: {error}", engine.name());
+            }
         }
     }
 }

@@ -196,6 +196,7 @@ impl Mechanics for FmuMechanics {
         let Actuation::Effort(effort) = input.actuation else {
             return Err(MechanicsError::wrong_actuation(NAME));
         };
+        input.check(NAME)?;
         self.add(effort, input)?;
         self.state.since += 1;
         if self.state.since == self.model.ticks {

@@ -154,7 +154,8 @@ impl Mechanics for MujocoChain {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        simulation::check_input(input)?;
+        // MuJoCo takes 0 for what is not a number.
+        input.check(crate::NAME)?;
         let base = self.base(input.actuation)?;
         let held = self.apply(input);
         if let Some(base) = &base {

@@ -82,7 +82,8 @@ impl Mechanics for MujocoMjcf {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        simulation::check_input(input)?;
+        // MuJoCo takes 0 for what is not a number.
+        input.check(NAME)?;
         let Actuation::Effort(effort) = input.actuation else { return Err(MechanicsError::wrong_actuation(NAME)) };
         self.data.ctrl_mut()[self.actuator.ctrl] = self.actuator.ctrl(effort)?;
         let forces = self.data.qfrc_applied_mut();

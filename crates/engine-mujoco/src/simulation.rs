@@ -2,9 +2,8 @@
 use crate::{NAME, messages};
 use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
 use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
-use servobench_base::finite;
 use servobench_files::with_short_quotes;
-use servobench_plant::{Actuation, BodyState, Input, MechanicsError};
+use servobench_plant::{BodyState, MechanicsError};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -66,31 +65,6 @@ fn warned(data: &Data) -> MechanicsError {
     } else {
         MechanicsError::Native { engine: NAME, message }
     }
-}
-
-/// # Errors
-/// [`MechanicsError::Parameter`] names the first input that is not finite: `MuJoCo` would replace it by zero.
-pub(crate) fn check_input(input: &Input) -> Result<(), MechanicsError> {
-    let drive = match input.actuation {
-        Actuation::Effort(effort) => effort,
-        Actuation::Motion(now) => now.x + now.v + now.a + now.j + now.s,
-    };
-    // One test for all of them: a sum with something that is not finite is not finite.
-    if (drive + input.motor_disturbance + input.load_disturbance).is_finite() {
-        Ok(())
-    } else {
-        name_input(drive, input)
-    }
-}
-
-/// Which input is not finite; none, when only their sum is too large.
-#[cold]
-fn name_input(drive: f64, input: &Input) -> Result<(), MechanicsError> {
-    let name = if matches!(input.actuation, Actuation::Effort(_)) { "effort" } else { "set-point" };
-    finite(name, drive)?;
-    finite("motor_disturbance", input.motor_disturbance)?;
-    finite("load_disturbance", input.load_disturbance)?;
-    Ok(())
 }
 
 /// # Errors

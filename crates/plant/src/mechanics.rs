@@ -51,6 +51,36 @@ pub struct Input {
     pub load_disturbance: f64,
 }
 
+impl Input {
+    /// For an engine whose states do not tell: one that takes 0 for a number that is none, or that hands it on to foreign code.
+    ///
+    /// # Errors
+    /// [`MechanicsError::Diverged`] of `engine` names the first number that is not finite: what computed it has diverged.
+    pub fn check(&self, engine: EngineName) -> Result<(), MechanicsError> {
+        let drive = match self.actuation {
+            Actuation::Effort(effort) => effort,
+            Actuation::Motion(now) => now.x + now.v + now.a + now.j + now.s,
+        };
+        // One test for all of them: a sum with something that is not finite is not finite.
+        if (drive + self.motor_disturbance + self.load_disturbance).is_finite() {
+            return Ok(());
+        }
+        self.name_what_is_not_finite(drive, engine)
+    }
+
+    /// None, when only their sum is too large.
+    #[cold]
+    fn name_what_is_not_finite(&self, drive: f64, engine: EngineName) -> Result<(), MechanicsError> {
+        let drive = (if matches!(self.actuation, Actuation::Effort(_)) { "effort" } else { "set-point" }, drive);
+        let disturbances =
+            [("disturbance of the motor", self.motor_disturbance), ("disturbance of the load", self.load_disturbance)];
+        let wrong = [drive].into_iter().chain(disturbances).find(|(_, value)| !value.is_finite());
+        wrong.map_or(Ok(()), |(name, value)| {
+            Err(MechanicsError::Diverged { engine, message: format!("the {name} is not finite: {value}") })
+        })
+    }
+}
+
 /// What a foreign model says of itself, in its own words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogMessage {

@@ -29,12 +29,15 @@ fn divergence_is_an_error_and_not_a_restart() {
 }
 
 #[test]
-fn an_input_that_is_not_a_number_is_refused_by_name() {
+fn an_input_that_is_not_a_number_is_divergence_by_name() {
     let mut mechanics = mujoco(two_mass(), Drive::Effort, STEP, &[]);
-    let error = mechanics.advance(&efforts(f64::NAN, 0.0)).unwrap_err();
-    assert_eq!(error.to_string(), "`effort` must be finite, got NaN");
-    let error = mechanics.advance(&efforts(0.0, f64::INFINITY)).unwrap_err();
-    assert_eq!(error.to_string(), "`load_disturbance` must be finite, got inf");
+    for (input, said) in [
+        (efforts(f64::NAN, 0.0), "the effort is not finite: NaN"),
+        (efforts(0.0, f64::INFINITY), "the disturbance of the load is not finite: inf"),
+    ] {
+        let error = mechanics.advance(&input).unwrap_err();
+        assert!(matches!(&error, MechanicsError::Diverged { message, .. } if message == said), "{error}");
+    }
 }
 
 #[test]
