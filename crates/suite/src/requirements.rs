@@ -67,14 +67,14 @@ fn poles(report: &Report) -> Poles {
     }
 }
 
-/// One increment of the encoder that closes the position loop (axis unit); 0 for an ideal one, or none.
+/// What the encoder that closes the position loop tells apart (axis unit); 0 for an ideal one, or none.
 fn increment(scenario: &Scenario) -> f64 {
     let motor = match &scenario.actuator {
         Actuator::Pmsm { encoder, .. } | Actuator::IdealSource { encoder, .. } => encoder,
         Actuator::Prescribed | Actuator::Off => return 0.0,
     };
     match scenario.actuator.drive().map(|drive| drive.position_feedback) {
-        Some(Feedback::Load(encoder)) => encoder.increment.unwrap_or_default(),
-        _ => scenario.axis.transmission * motor.increment.unwrap_or_default(),
+        Some(Feedback::Load(encoder)) => encoder.resolution(),
+        _ => scenario.axis.transmission * motor.resolution(),
     }
 }

@@ -142,6 +142,14 @@ impl Encoder {
         Ok(())
     }
 
+    /// Distance of two positions that it tells apart: an increment or, if that is wider, the error of its signals within a period; 0
+    /// of one that is ideal but for noise.
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        let signals = self.errors.and_then(|errors| errors.signals);
+        self.increment.unwrap_or_default().max(signals.map_or(0.0, |signals| signals.error_width()))
+    }
+
     /// Whether it gives the velocity, too.
     #[must_use]
     pub fn gives_velocity(&self) -> bool {
@@ -292,6 +300,17 @@ mod tests {
         let ideal = Reading { position: 0.1, velocity: Some(2.0), ..Reading::default() };
         assert_eq!(Encoder::default().read(0.1, 2.0), ideal);
         assert!(Encoder { increment: Some(0.0), errors: None }.check().is_err());
+    }
+
+    /// Oracle: by hand, 20 µm·0.02/2π = 63.7 nm.
+    #[test]
+    fn what_it_tells_apart_is_an_increment_or_the_error_of_its_signals() {
+        let signals = Signals { amplitude_error: 0.02, ..Signals::ideal(20e-6) };
+        let errors = Some(EncoderErrors { signals: Some(signals), ..EncoderErrors::default() });
+        let resolution = |increment, errors| Encoder { increment, errors }.resolution();
+        assert_eq!([resolution(None, None), resolution(Some(1e-9), None)], [0.0, 1e-9]);
+        assert!((resolution(Some(1e-9), errors) / 63.66e-9 - 1.0).abs() < 1e-4);
+        assert!((resolution(Some(1e-6), errors) / 1e-6 - 1.0).abs() < 1e-15);
     }
 
     fn erring(increment: Option<f64>, errors: EncoderErrors) -> EncoderState {

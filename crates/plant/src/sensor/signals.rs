@@ -62,6 +62,14 @@ impl Signals {
         Self { period, amplitude_error: 0.0, offset: [0.0; 2], phase_error: 0.0, lost: None }
     }
 
+    /// Width, from lowest to highest, of the error of the position within a signal period (rad or m), to first order in the errors;
+    /// at most, since those once and twice per period need not add.
+    #[must_use]
+    pub fn error_width(&self) -> f64 {
+        let twice = libm::hypot(self.amplitude_error, self.phase_error);
+        self.period * PER_TURN * (twice + 2.0 * libm::hypot(self.offset[0], self.offset[1]))
+    }
+
     /// # Errors
     /// [`ParamError`] for errors with which the signals do not go round zero any more.
     pub(super) fn check(&self) -> Result<(), ParamError> {
@@ -170,6 +178,24 @@ mod tests {
             let [low, high] = extremes(Signals { phase_error: e, ..none });
             let expected = (e / 2.0).tan().asin();
             assert!(close(high - e / 2.0, expected) && close(e / 2.0 - low, expected), "{e}: {low} {high} {expected}");
+        }
+    }
+
+    /// Oracle: the errors themselves. Of one kind the width is that of the first order; together it is an upper bound, by a third at most.
+    #[test]
+    fn the_width_is_that_of_the_errors() {
+        let none = Signals::ideal(PERIOD);
+        let kinds = [
+            Signals { amplitude_error: -0.02, ..none },
+            Signals { offset: [0.004, -0.003], ..none },
+            Signals { amplitude_error: 0.01, phase_error: -0.007, ..none },
+            Signals { amplitude_error: -0.02, phase_error: -0.0077, offset: [0.0, -0.004], ..none },
+        ];
+        for (number, signals) in kinds.into_iter().enumerate() {
+            let [low, high] = extremes(signals);
+            let ratio = signals.error_width() / ((high - low) * PERIOD / TAU);
+            let most = if number < 3 { 1.02 } else { 4.0 / 3.0 };
+            assert!((0.98..most).contains(&ratio), "{signals:?}: {ratio}");
         }
     }
 

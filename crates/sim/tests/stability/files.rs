@@ -1,5 +1,5 @@
 //! Scenarios as files have them.
-use crate::deviation::Deviation;
+use crate::deviation::{Deviation, growth};
 use servobench_scenario::{Scenario, parse};
 use servobench_sim::{Analysis, NotAnalysed, Speeds, analyse_stability};
 use servobench_stability::{Depth, LoopName, Report};
@@ -80,6 +80,26 @@ fn differences_of_positions_are_what_the_run_has_too() {
         let report = report(&scenario, Depth::Verdict);
         assert_eq!(report.is_stable(), factor < 1.0);
         assert_follows_the_pole(&scenario, &report, 8);
+    }
+}
+
+/// Oracle: the run itself. An encoder that is late by so many ticks and a half: up to a latency the axis is stable, and a tick further
+/// its deviation grows.
+#[test]
+fn a_late_encoder_is_stable_to_the_tick_to_which_its_run_is() {
+    let late = |encoder: &str, gain: f64, ticks: f64| {
+        let encoder = format!("encoder = {{ {encoder}latency = \"{} us\" }}\nmax_current", ticks * 1e6 / 16e3);
+        scenario(&ROTOR.replace("max_current", &encoder).replace("GAIN", &format!("{gain} Nm s/rad")))
+    };
+    for (encoder, gain) in [("", 0.6), ("", 1.3), ("commutation_offset = \"20 deg\", ", 0.9)] {
+        let is_stable = |ticks: f64| report(&late(encoder, gain, ticks), Depth::Verdict).is_stable();
+        let last = (0..160).map(|k| f64::from(k) + 0.5).take_while(|ticks| is_stable(*ticks)).last().unwrap();
+        println!("{encoder}{gain}: stable to {last} ticks");
+        assert!((4.0..100.0).contains(&last), "{last}");
+        for ticks in [last, last + 1.0] {
+            let growth = growth(&late(encoder, gain, ticks)).unwrap_or_else(|not_told| panic!("{not_told:?}"));
+            assert_eq!(growth > 0.0, ticks > last, "{encoder}{gain}: {ticks} of {last}: {growth}");
+        }
     }
 }
 

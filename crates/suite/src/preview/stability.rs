@@ -8,18 +8,22 @@ use servobench_stability::{Boundaries, Depth, GainName, Instability, LEFT_OUT, L
 
 /// What the analysis of the linear loop says of a scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LoopStability(Analysis);
+pub struct LoopStability {
+    analysis: Analysis,
+    /// Whether the gains depend on the speed.
+    is_scheduled: bool,
+}
 
 impl LoopStability {
     pub(super) fn of(scenario: &Scenario) -> Result<Self, BuildError> {
         let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
         let speeds = if is_scheduled { Speeds::planned(scenario)? } else { None };
-        Ok(Self(analyse_stability(scenario, Depth::Boundaries, speeds.as_ref())?))
+        Ok(Self { analysis: analyse_stability(scenario, Depth::Boundaries, speeds.as_ref())?, is_scheduled })
     }
 
     /// How far each loop is from a boundary; or why that is not known.
     pub(super) fn words(&self) -> Vec<String> {
-        let (report, master, without) = match &self.0 {
+        let (report, master, without) = match &self.analysis {
             Analysis::Done { report, master, without } => (report, master, without),
             Analysis::NotPossible(why) => return vec![why.to_string()],
         };
@@ -28,13 +32,16 @@ impl LoopStability {
             words.insert(0, "unstable".to_owned());
         }
         words.extend(master.as_ref().map(of_master));
+        if self.is_scheduled {
+            words.push("margins of the gains at standstill".to_owned());
+        }
         words.extend(without.iter().map(ToString::to_string));
         words
     }
 
     /// An unstable loop, and loops that are faster than those below them.
     pub(super) fn doubts(&self) -> Vec<Doubt> {
-        let Analysis::Done { report, master, .. } = &self.0 else { return Vec::new() };
+        let Analysis::Done { report, master, .. } = &self.analysis else { return Vec::new() };
         let help = || format!("every run of it fails the requirement `stable`; {LEFT_OUT}");
         let of_drive = report
             .instability
