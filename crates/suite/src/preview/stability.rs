@@ -1,6 +1,6 @@
 //! Whether the loops are stable, and how far from their boundaries.
 use super::Doubt;
-use servobench_drive::{self as drive, current, schedule, velocity};
+use servobench_drive::{self as drive, current, velocity};
 use servobench_metrics::Quantity;
 use servobench_scenario::{Scenario, parameter_key};
 use servobench_sim::{Analysis, BuildError, MasterLoop, Speeds, analyse_stability};
@@ -57,13 +57,9 @@ impl LoopStability {
     }
 }
 
-/// The key that makes the gain of `instability`.
+/// The key that makes the gain of `instability`: at speed the schedule, since the loop is stable at standstill.
 fn key_of(instability: &Instability) -> &'static str {
-    match (instability.speed, instability.gain_name) {
-        (Some(_), GainName::Position) => parameter_key(schedule::Parameter::POSITION),
-        (Some(_), GainName::Velocity) => parameter_key(schedule::Parameter::VELOCITY_GAIN),
-        (_, gain) => key_of_gain(gain),
-    }
+    if instability.speed.is_some() { "drive.gain_schedule" } else { key_of_gain(instability.gain_name) }
 }
 
 /// The key that sets `gain`.
