@@ -22,6 +22,7 @@ mod limit_table;
 mod list;
 mod load;
 mod mjcf_files;
+mod mjcf_size;
 mod models;
 mod name_table;
 mod nearest;

@@ -7,6 +7,7 @@
 //!
 //! Source: MuJoCo documentation, *XML Reference*, `include`, `compiler/meshdir`, `texturedir`, `assetdir`, `strippath`.
 use crate::access::{FileAccess, Refused};
+use crate::mjcf_size::Size;
 use roxmltree::{Document, ParsingOptions};
 use servobench_files::{FileRole, XmlBounds, XmlExcess, quoted, with_short_quotes};
 use std::collections::{BTreeSet, HashSet};
@@ -44,6 +45,7 @@ pub(crate) fn look_through(path: &Path, xml: &str, files: &mut FileAccess) -> Re
             }
         }
     }
+    named.size.hold(path)?;
     for asset in &named.assets {
         let bare = Path::new(asset).file_name().map(PathBuf::from);
         for name in [Some(PathBuf::from(asset)), bare].into_iter().flatten().collect::<BTreeSet<_>>() {
@@ -69,6 +71,8 @@ struct Named {
     own: BTreeSet<PathBuf>,
     /// Folders that they give for meshes and the like.
     given: BTreeSet<PathBuf>,
+    /// Numbers of what they make.
+    size: Size,
 }
 
 impl Named {
@@ -90,6 +94,7 @@ impl Named {
                 return refuse(format!("`{}` is no well-formed XML: {why}", path.display()));
             }
         };
+        self.size.add(&document);
         self.own.insert(folder_of(path));
         let mut models = BTreeSet::new();
         for node in document.descendants().filter(roxmltree::Node::is_element) {
