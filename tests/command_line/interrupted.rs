@@ -53,7 +53,9 @@ impl Suite {
 
     /// What is left is run, and then everything is as if nothing had ended the suite.
     fn goes_on(&self, out: &str) {
-        let output = servobench(&["run", "--quiet", "--resume", self.out(out).to_str().unwrap()]);
+        let report = self.out(out).with_extension("xml");
+        let (folder, junit) = (self.out(out), report.to_str().unwrap());
+        let output = servobench(&["run", "--quiet", "--resume", folder.to_str().unwrap(), "--junit", junit]);
         assert_eq!(code(&output), 2, "{}", said(&output));
         let results = fs::read(self.out(out).join("results.json")).unwrap();
         assert!(results == self.whole, "{}", String::from_utf8_lossy(&results));
@@ -199,6 +201,7 @@ fn a_suite_whose_scenarios_have_changed_does_not_go_on() {
     let output = servobench(&["run", "--resume", suite.out("changed").to_str().unwrap()]);
     assert_eq!(code(&output), 2);
     assert!(said(&output).contains("are not those it was begun with"), "{}", said(&output));
+    assert!(said(&output).contains("a scenario that has no result yet"), "{}", said(&output));
     assert!(fs::read(suite.out("changed").join("results.journal")).unwrap() == before);
 }
 
@@ -234,6 +237,128 @@ fn a_complete_suite_is_reported_again() {
     let output = servobench(&["run", "--resume", suite.work.path().to_str().unwrap()]);
     assert_eq!(code(&output), 2);
     assert!(said(&output).contains("there is no suite in"), "{}", said(&output));
+}
+
+/// Whatever differs from what the report is of, it is not shown as today's, and what differs is named.
+#[test]
+fn a_complete_suite_is_not_reported_again_once_something_has_changed() {
+    let limited = format!("{SLIDE}[limits]\nfollowing_error_peak_load = \"1 m\"\n");
+    let work = folder(&[("a.toml", &limited), ("b.toml", &limited)]);
+    let out = work.path().join("out");
+    let files = ["a.toml", "b.toml"].map(|name| work.path().join(name));
+    let mut suite = command(&["run", "--quiet"]);
+    assert_eq!(code(&suite.args(&files).arg("--out").arg(&out).output().unwrap()), 0);
+    let resumed = || servobench(&["run", "--resume", out.to_str().unwrap()]);
+    let output = resumed();
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(
+        said(&output).contains("nothing is left to run") && said(&output).contains("2 passed"),
+        "{}",
+        said(&output)
+    );
+
+    let (results, recording) = (out.join("results.json"), out.join("a.exact.parquet"));
+    let is_refused = |changed: &Path, text: Option<Vec<u8>>, words: &str| {
+        let before = fs::read(changed).unwrap();
+        match text {
+            Some(text) => fs::write(changed, text).unwrap(),
+            None => fs::remove_file(changed).unwrap(),
+        }
+        let output = resumed();
+        assert_eq!(code(&output), 2, "{}", said(&output));
+        let told = said(&output);
+        assert!(told.contains("its report is not one of today") && told.contains(words), "{told}");
+        assert!(!told.contains("passed"), "{told}");
+        assert!(told.lines().count() <= 3, "only what differs: {told}");
+        fs::write(changed, before).unwrap();
+    };
+    // A run of it would fail.
+    let strict = limited.replace("1 m\"\n", "1 nm\"\n");
+    is_refused(&files[1], Some(strict.into_bytes()), "`b.toml` has changed");
+    is_refused(&files[1], None, "cannot be used now");
+    let edited = fs::read_to_string(&results).unwrap().replacen("\"passed\"", "\"unjudged\"", 1);
+    is_refused(&results, Some(edited.into_bytes()), "`results.json`: the results are not those that were written");
+    is_refused(&recording, None, "`a.exact.parquet` is gone");
+    let other = fs::read(out.join("b.exact.parquet")).unwrap();
+    is_refused(&recording, Some(other), "`a.exact.parquet` is not the recording that was measured");
+    assert_eq!(code(&resumed()), 0);
+}
+
+/// A journal that somebody sent: no option of it writes, nothing outside of what the command line of now allows is read.
+#[test]
+fn a_journal_neither_writes_nor_reads_elsewhere() {
+    let suite = Suite::new();
+    let mut child = suite.under_way("sent");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let journal = suite.out("sent").join("results.journal");
+    let written = fs::read_to_string(&journal).unwrap();
+    let resumed =
+        |more: &[&str]| servobench(&[&["run", "--resume", suite.out("sent").to_str().unwrap()], more].concat());
+    // The suite was begun with `--junit`, which would write over a file of whoever resumes it.
+    let victim = suite.out("sent.xml");
+    fs::write(&victim, "mine").unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("secret.toml"), "password = 1\n").unwrap();
+    let hostile = |from: &str, to: &str| {
+        let (first, rest) = written.split_once('\n').unwrap();
+        let json = first[17..].replace(from, to);
+        assert_ne!(json, first[17..], "{from}");
+        fs::write(&journal, format!("{:016x} {json}\n{rest}", twox_hash::XxHash64::oneshot(0, json.as_bytes())))
+            .unwrap();
+    };
+    let secret = elsewhere.path().join("secret.toml");
+    let a = suite.work.path().join("a.toml");
+    for (from, to) in [
+        (a.to_str().unwrap(), secret.to_str().unwrap()),
+        (
+            a.to_str().unwrap(),
+            &format!("{}/../{}", suite.work.path().display(), secret.strip_prefix("/tmp").unwrap_or(&secret).display()),
+        ),
+    ] {
+        hostile(from, to);
+        let output = resumed(&[]);
+        assert_eq!(code(&output), 2, "{}", said(&output));
+        assert!(
+            said(&output).contains("which is outside of") && !said(&output).contains("password"),
+            "{}",
+            said(&output)
+        );
+    }
+    // A link is what it leads to.
+    std::os::unix::fs::symlink(&secret, suite.work.path().join("link.toml")).unwrap();
+    hostile("a.toml", "link.toml");
+    assert!(said(&resumed(&[])).contains("which is outside of"));
+    hostile("\"stems\":[\"a.exact\"", "\"stems\":[\"../../x\"");
+    assert!(said(&resumed(&[])).contains("which no run leaves beside it"));
+    fs::write(&journal, &written).unwrap();
+    let output = resumed(&["--root", elsewhere.path().to_str().unwrap()]);
+    assert!(code(&output) == 2 && said(&output).contains("which is outside of"), "{}", said(&output));
+    let output = resumed(&[]);
+    assert_eq!(code(&output), 2, "{}", said(&output));
+    assert!(said(&output).contains("4 runs: 3 unjudged"), "{}", said(&output));
+    assert_eq!(fs::read(victim).unwrap(), b"mine");
+}
+
+/// Recordings that something removes or changes while the suite runs are found at its end.
+#[test]
+fn recordings_that_change_while_the_suite_runs_take_the_verdict_away() {
+    let suite = Suite::new();
+    for (out, text) in [("gone", None), ("edited", Some("PAR1"))] {
+        let mut child = suite.under_way(out);
+        let recording = suite.out(out).join("a.exact.parquet");
+        match text {
+            None => fs::remove_file(&recording).unwrap(),
+            Some(text) => fs::write(&recording, text).unwrap(),
+        }
+        assert_eq!(exit_of(&mut child), Some(2));
+        let run = &suite.results(out)["scenarios"][0];
+        assert_eq!((run["name"].as_str(), run["verdict"].as_str()), (Some("a"), Some("error")));
+        let reason = run["reasons"][0].as_str().unwrap();
+        assert!(reason.contains("changed while the suite ran: `a.exact.parquet`"), "{reason}");
+        assert!(!recording.exists(), "nothing names it any more");
+        suite.goes_on(out);
+    }
 }
 
 /// What came in on standard input is not there again.

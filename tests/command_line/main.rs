@@ -4,6 +4,7 @@ mod attached;
 mod check;
 mod compare;
 mod completions;
+mod deny;
 mod fmu;
 mod fmu_standard;
 mod fmu_suite;

@@ -232,7 +232,7 @@ fn a_missed_limit_is_in_junit_with_its_line_and_the_time_that_the_run_took() {
     assert!(!text.contains("time=\"0.000\""), "{text}");
     // One line for what did not pass, and the count.
     let lines: Vec<_> = said(&output).lines().map(str::to_owned).collect();
-    assert_eq!(lines, ["FAILED   slide on exact: move_time 227 ms, limit 1.00 ms", "1 run: 1 failed"]);
+    assert_eq!(lines, ["FAILED   slide on exact: move_time 227 ms, limit 1.00 ms", "1 run: 1 failed; 1 with warnings"]);
     let results = json(&fs::read(out.join("results.json")).unwrap());
     assert_eq!(results["scenarios"][0]["metrics"]["move_time"]["line"], line);
     assert_eq!(results["scenarios"][0]["parameters"]["drive.velocity.bandwidth"], "80 Hz");

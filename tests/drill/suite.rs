@@ -192,7 +192,7 @@ impl Suite {
     /// What `--resume` makes of it is what it would have been.
     fn go_on(&self, fault: &Fault, name: &str, known: Option<usize>, place: &str) {
         let mut resume = self.program();
-        resume.args(["run", "--resume"]).arg(self.out(name));
+        resume.args(["run", "--resume"]).arg(self.out(name)).arg("--junit").arg(self.junit(name));
         let (mut status, mut said) = finished(start_of(resume), place);
         if status.code() == Some(2) && said.contains("there is no suite in") {
             // It ended before it could begin its journal, or was complete without one.

@@ -11,7 +11,7 @@ pub(crate) use choice::choice;
 pub(crate) use compare::{CompareArgs, Equal, EqualTerm, Variant};
 pub(crate) use mistakes::parse;
 pub(crate) use shapers::Shapers;
-pub(crate) use suite::{FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
+pub(crate) use suite::{DenyArgs, FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
@@ -23,7 +23,7 @@ use servobench_fmi::Version;
 #[cfg(feature = "fmu")]
 use servobench_fmu::Part;
 use servobench_plant::EngineName;
-use servobench_scenario::Override;
+use servobench_scenario::{Override, TimeBound};
 use servobench_structured_text::{Dialect, Format};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub(crate) struct Cli {
 
 const AFTER_HELP: &str = "Exit codes: 0 passed, or unjudged because there are no limits; 2 invalid input; 3 error: a run could not \
                           be carried out or its results not be written; 4 failed: a limit is missed, a requirement broken, \
-                          an expected fault missing; 130 and 143 interrupted. Of several, 2 comes before 3 before 4.";
+                          an expected fault missing, or a run has what --deny names; 130 and 143 interrupted. Of several, 2 comes before 3 before 4.";
 
 const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
                          its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
@@ -363,6 +363,11 @@ fn time(text: &str) -> Result<Duration, String> {
     }
 }
 
+/// A bound of time by the clock, as "5 min"; "none" is none.
+fn time_bound(text: &str) -> Result<TimeBound, String> {
+    if text == "none" { Ok(TimeBound::Unlimited) } else { Ok(TimeBound::AtMost(time(text)?.as_secs_f64())) }
+}
+
 /// An amount of memory (B), as "2 GB".
 fn memory(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 4] = [("GiB", 1_073_741_824.0), ("MiB", 1_048_576.0), ("GB", 1e9), ("MB", 1e6)];
@@ -428,6 +433,37 @@ mod tests {
         for wrong in ["90", "90 m", "0 s", "-1 s", "1e30 s"] {
             assert!(timeout(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_limit_of_time_may_be_none() {
+        let limit = |text| Cli::try_parse_from(["servobench", "run", "--time-limit", text]);
+        for (text, bound) in [("none", TimeBound::Unlimited), ("2 min", TimeBound::AtMost(120.0))] {
+            let Command::Run(args) = limit(text).unwrap().command else { panic!("run") };
+            assert_eq!(args.suite.time_limit, Some(bound));
+        }
+        assert!(limit("never").is_err() && limit("0 s").is_err());
+    }
+
+    /// A journal is a file: nothing that it says is read, written or run by an option.
+    #[test]
+    fn what_could_do_harm_is_what_the_command_line_of_now_says() {
+        let suite = |words: &[&str]| {
+            let Command::Run(args) = Cli::try_parse_from([&["servobench", "run"], words].concat()).unwrap().command
+            else {
+                panic!("run")
+            };
+            args.suite
+        };
+        let of_journal = ["--junit", "/etc/x", "--root", "/", "--allow-unisolated-fmus", "--deny", "lifted", "--rrd"];
+        let here = std::path::Path::new("/here");
+        let resumed = suite(&of_journal).resumed(&suite(&["--resume", "out"]), here);
+        assert_eq!((resumed.junit, resumed.with.root, resumed.fmus.allow_unisolated_fmus), (None, None, false));
+        assert!(resumed.rrd && resumed.deny.kinds().len() == 1, "what is denied stays so");
+        let now = suite(&["--resume", "out", "--junit", "a.xml", "--root", "b", "--strict"]);
+        let resumed = suite(&of_journal).resumed(&now, here);
+        assert_eq!((resumed.junit, resumed.with.root), (Some("/here/a.xml".into()), Some("/here/b".into())));
+        assert_eq!(resumed.deny.kinds().len(), 3);
     }
 
     #[test]

@@ -9,9 +9,7 @@ use servobench_advise::AdviseError;
 use servobench_config::Choice as _;
 use servobench_isolation::ContainError;
 use servobench_report::ReportError;
-#[cfg(feature = "fmu")]
-use servobench_results::printable;
-use servobench_results::{COMPARISON, FolderError, JournalError, RESULTS, ResultsError};
+use servobench_results::{COMPARISON, FolderError, JournalError, RESULTS, ResultsError, printable};
 use servobench_scenario::{Diagnostic, LoadError, Sources};
 use servobench_structured_text::ExportError;
 use servobench_suite::{CompareError, Job, RunError};
@@ -62,8 +60,15 @@ pub(crate) enum CliError {
     #[error("there is no suite in `{}` that could go on: `run` writes one there with `--out`", .0.display())]
     NothingToResume(PathBuf),
     #[error("the suite in `{}` cannot go on: its scenarios, a file that they name, or the program are not those it was begun \
-             with; run it again", .0.display())]
-    OtherSuite(PathBuf),
+             with; run it again\n  {}", .folder.display(), .found.join("\n  "))]
+    OtherSuite { folder: PathBuf, found: Vec<String> },
+    #[error("the suite in `{}` is complete, and its report is not one of today; run it again\n  {}", .folder.display(), .found.join("\n  "))]
+    NotOfToday { folder: PathBuf, found: Vec<String> },
+    #[error("the journal in `{}` names `{}`, which is outside of {}: a journal may come from anywhere; if you trust it, allow a folder \
+             that holds its scenarios by `--root DIR`", .folder.display(), .path.display(), folders(.roots))]
+    OutsideOfToday { folder: PathBuf, path: PathBuf, roots: Vec<PathBuf> },
+    #[error("--resume: this suite was begun with `--root {}`; give it again if its scenarios may read there", printable(&.0.display().to_string()))]
+    RootAgain(PathBuf),
     #[error(transparent)]
     Advise(#[from] AdviseMistake),
     #[error("`{}` is no table of a sweep and would be lost: name another folder with `--out`, or remove it", .0.display())]
@@ -212,7 +217,11 @@ impl CliError {
             | Self::OtherRecording(_)
             | Self::NothingToResume(_)
             | Self::Folder(FolderError::NotOurs { .. })
-            | Self::OtherSuite(_)
+            | Self::OtherSuite { .. }
+            | Self::NotOfToday { .. }
+            | Self::OutsideOfToday { .. }
+            | Self::RootAgain(_)
+            | Self::Journal(JournalError::Link(_) | JournalError::Outside { .. })
             | Self::OtherCommand { .. }
             | Self::NoValidPoint { .. }
             | Self::NoSweep
@@ -269,6 +278,11 @@ impl CliError {
 /// A line each.
 fn lines(all: &[impl Display]) -> String {
     all.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+/// Folders in a list.
+fn folders(all: &[PathBuf]) -> String {
+    all.iter().map(|folder| format!("`{}`", folder.display())).collect::<Vec<_>>().join(" and ")
 }
 
 /// The options that a diagram was refused for, before the reason.

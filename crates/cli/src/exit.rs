@@ -5,7 +5,7 @@
 //! | 0 | every run passed, or is unjudged because there are no limits |
 //! | 2 | invalid input: usage, scenario, model |
 //! | 3 | error: a run could not be carried out (engine missing, native failure), or what it gave could not be written |
-//! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing |
+//! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing; or a run has what `--deny` names |
 //! | 130, 143 | interrupted (SIGINT, SIGTERM), as a shell says it, whatever came of the runs until then |
 //!
 //! Of several: 2 before 3 before 4.
@@ -25,7 +25,7 @@ pub(crate) enum Exit {
     Input,
     /// A run could not be carried out.
     Run,
-    /// A run failed.
+    /// A run failed, or has what is denied.
     Failed,
     /// It was told to stop.
     Interrupted,

@@ -139,6 +139,7 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
         parameters: scenario.parameters.iter().map(|one| (one.key.clone(), one.value.clone())).collect(),
         overrides: scenario.overrides.iter().map(ToString::to_string).collect(),
         limits: limit_places(scenario),
+        check_warnings: None,
     }
 }
 

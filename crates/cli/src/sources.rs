@@ -15,6 +15,7 @@ use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What stands for standard input among the scenarios.
 const STDIN: &str = "-";
@@ -290,8 +291,16 @@ pub(crate) fn demo(with: &OverrideArgs) -> Result<Vec<Source>, LoadError> {
     loaded.map(|loaded| loaded.inspect(warn).map(source)).collect()
 }
 
+/// Set where warnings of files are left to the report.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on warnings of files are not said when they are read: the report counts them.
+pub(crate) fn leave_warnings_to_the_report() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
 fn warn(loaded: &Loaded) {
-    if !loaded.warnings.is_empty() {
+    if !loaded.warnings.is_empty() && !IS_QUIET.load(Ordering::Relaxed) {
         say(&render(&loaded.warnings, &loaded.sources, Severity::Warning));
     }
 }

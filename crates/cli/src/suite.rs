@@ -1,11 +1,15 @@
 //! Carries out a suite: its runs side by side, each noted when it has ended, whatever ends the program.
+mod complete;
+mod denied;
 mod files;
+mod held;
 mod ledger;
 mod resume;
 
+pub(crate) use denied::deny;
 pub(crate) use files::{Files, JUNIT};
 pub(crate) use ledger::{Closed, Ledger, write_junit};
-pub(crate) use resume::{Begun, Found, suite_in};
+pub(crate) use resume::{Begun, Found, other_suite, suite_in};
 
 use crate::args::{Keep, SuiteArgs};
 use crate::console::{command, say};
@@ -16,9 +20,9 @@ use crate::output::{self, Written};
 use crate::outputs::OutputFolder;
 use crate::progress::Progress;
 use crate::workers;
-use servobench_report::{Style, brief, run_count};
+use servobench_report::{Denied, Style, brief, run_count};
 use servobench_results::{Finished, Outcome, RunIdentity, RunResult, Runs, Unfinished};
-use servobench_suite::{Broken, Engines, Job, Run, Workers, execute, map_in_parallel};
+use servobench_suite::{Broken, Engines, Job, Run, Workers, check_warnings, execute, map_in_parallel};
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
@@ -89,6 +93,7 @@ impl Carrying<'_> {
         let said = end(&kept, ledger.folder().path());
         say_all(&troubles);
         said?;
+        let exit = exit.worse(deny(&kept, &self.args.deny, self.args.quiet)?);
         Ok(if interrupt::is_stopping() { Exit::Interrupted } else { exit })
     }
 
@@ -194,8 +199,13 @@ impl Carrying<'_> {
 
     fn identity(self, job: &Job, written: Written) -> RunIdentity {
         let mut identity = output::identity(job, written);
-        if self.plan.is_sweep() {
+        let is_sweep = self.plan.is_sweep();
+        if is_sweep {
             identity.parameters.clear();
+        }
+        // A sweep has as many scenarios as runs, and one warning would stand in most of them.
+        if !is_sweep || self.args.deny.kinds().contains(&Denied::Warnings) {
+            identity.check_warnings = Some(check_warnings(job));
         }
         identity
     }
@@ -215,9 +225,13 @@ fn say_all(troubles: &[CliError]) {
 /// What brings the runs that are left, or that ended with an error: `3 of 8 runs have no result yet; to run them: servobench run
 /// --resume DIR`; empty where none is.
 pub(crate) fn how_to_resume(runs: &dyn Runs, subcommand: &str, args: &SuiteArgs, out: &Path) -> String {
-    let out = out.to_string_lossy();
-    let trust: &[&str] = if args.fmus.allow_unisolated_fmus { &["--allow-unisolated-fmus"] } else { &[] };
-    let resume = command(&[&[subcommand, "--resume", &out], trust].concat()) + "\n";
+    let mut words = vec![subcommand.to_owned(), "--resume".to_owned(), out.to_string_lossy().into_owned()];
+    // What a journal does not say.
+    words.extend(args.fmus.allow_unisolated_fmus.then(|| "--allow-unisolated-fmus".to_owned()));
+    for (option, path) in [("--root", &args.with.root), ("--junit", &args.junit)] {
+        words.extend(path.iter().flat_map(|path| [option.to_owned(), path.to_string_lossy().into_owned()]));
+    }
+    let resume = command(&words.iter().map(String::as_str).collect::<Vec<_>>()) + "\n";
     let (unfinished, errors) = (runs.unfinished().count(), runs.count_of(Outcome::Error));
     if unfinished > 0 {
         let of = unfinished + runs.heads().count();

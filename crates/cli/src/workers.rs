@@ -3,6 +3,7 @@ use crate::console::say;
 use crate::error::CliError;
 use servobench_isolation::memory_of_machine;
 use servobench_results::printable;
+use servobench_scenario::TimeBound;
 use servobench_suite::{AtATime, RunLimits, WorkerCommand, Workers};
 use std::num::NonZero;
 use std::path::Path;
@@ -27,7 +28,7 @@ pub(crate) fn dismiss(workers: &Workers) {
 
 /// What a run may take. Without a limit of its own it gets half of the memory that there is: beside a recording there is what is
 /// measured of it.
-pub(crate) fn limits(time: Option<Duration>, memory: Option<u64>) -> RunLimits {
+pub(crate) fn limits(time: Option<TimeBound>, memory: Option<u64>) -> RunLimits {
     RunLimits { time, memory: memory.unwrap_or_else(|| memory_of_machine().map_or(UNKNOWN, |memory| memory / 2)) }
 }
 

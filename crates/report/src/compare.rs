@@ -140,6 +140,7 @@ mod tests {
         slow failed: executed: `jog` was never executed: `home.Done` did not come
         slow failed: expected, but did not come: 8611h of `drive` from 0.5 s on
         slow: lifted: stable: the velocity loop has a pole outside the unit circle
+        slow: lifted: 8611h of `drive` from 0.5 s on
         "#);
         let kept = vec![Compared { label: "jerk", result: &jerk, moves: &[] }; 2];
         assert_eq!(Comparison::new(kept).failed(76), "");

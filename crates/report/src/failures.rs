@@ -59,7 +59,8 @@ pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
     broken.chain(missing.map(|expected| format!("expected, but did not come: {}", expected.words()))).collect()
 }
 
-/// Requirements that the scenario lifts: in one sentence those that would hold, and each that would not with the reason.
+/// Everything that is lifted: in one sentence requirements that would hold, each that would not with the reason, then calls with `optional` and
+/// expected faults without an end of their time.
 pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
     let all = || run.requirements_that_are(Standing::Lifted);
     let kept: Vec<&str> = all().filter(|(_, reasons)| reasons.is_empty()).map(|(name, _)| name).collect();
@@ -69,7 +70,15 @@ pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
         let more = if reasons.len() > 1 { format!(" (and {} more)", reasons.len() - 1) } else { String::new() };
         Some(format!("lifted: {name}: {first}{more}"))
     });
-    broken.chain(kept).collect()
+    let optional: Vec<String> = run.optional_calls.iter().map(|name| format!("`{name}`")).collect();
+    let optional = (!optional.is_empty()).then(|| format!("lifted: optional calls: {}", optional.join(", ")));
+    let open = run.open_expectations().map(|expected| {
+        let words = expected.words();
+        if expected.from > 0.0 { words } else { format!("{words} at any time") }
+    });
+    let open: Vec<String> = open.collect();
+    let open = (!open.is_empty()).then(|| format!("lifted: {}", open.join(", ")));
+    broken.chain(kept).chain(optional).chain(open).collect()
 }
 
 impl MissedLimit<'_> {

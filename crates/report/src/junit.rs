@@ -13,7 +13,7 @@ use std::time::Duration;
 /// one text.
 ///
 /// A run that did not end is an error, so that a suite that was ended before its time is never taken for one that passed.
-/// What failed is a failure: its message says which limit is missed by how much or which requirement is broken, its text
+/// A run without limits is skipped: nobody looked at what it gave. What failed is a failure: its message says which limit is missed by how much or which requirement is broken, its text
 /// says all of that with file and line, and the case has the attributes `file` and `line` of the first limit. What is invalid
 /// or could not be carried out is an error. The verdict is a property; metrics, lifted requirements and warnings are the
 /// case's output, what FMUs said at last its error output.
@@ -25,6 +25,7 @@ pub fn junit(runs: &dyn Runs) -> impl Iterator<Item = Result<String, ReportError
     let mut suite = TestSuite::new(NAME);
     let count = |kind| runs.heads().filter(|head| kind_of(head.verdict) == Some(kind)).count();
     suite.tests = runs.heads().count() + unfinished;
+    suite.skipped = runs.count_of(Outcome::Unjudged);
     suite.failures = count(NonSuccessKind::Failure);
     suite.errors = count(NonSuccessKind::Error) + unfinished;
     if runs.heads().any(|head| head.took.is_some()) {
@@ -78,6 +79,10 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let mut case = TestCase::new(format!("{}{engine}{with}", printable(&run.name).trim()), status(run));
     case.set_classname(class_name(run.file.as_deref()));
     case.add_property(("verdict", run.verdict.word()));
+    let lifted = lifted(run);
+    if !lifted.is_empty() {
+        case.add_property(("lifted", printable(&lifted.join("; ").replace("lifted: ", "")).as_str()));
+    }
     if let Some(time) = time {
         case.set_time(time);
     }
@@ -117,6 +122,7 @@ fn unfinished_case(run: &Unfinished) -> TestCase {
 fn output(run: &RunResult) -> String {
     let mut lines = lifted(run);
     lines.extend(run.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(run.check_warnings.iter().flatten().map(|warning| format!("warning of check: {warning}")));
     if run.verdict.is_whole() && !run.metrics.is_empty() {
         lines.push(metric_table(run, Style::default()));
     }
@@ -133,6 +139,13 @@ const fn kind_of(outcome: Outcome) -> Option<NonSuccessKind> {
 }
 
 fn status(run: &RunResult) -> TestCaseStatus {
+    if run.verdict == Outcome::Unjudged {
+        let mut status = TestCaseStatus::skipped();
+        status
+            .set_type("unjudged")
+            .set_message("no limits: give the scenario `[limits]`, or deny such runs with `--deny unjudged`");
+        return status;
+    }
     let Some(kind) = kind_of(run.verdict) else { return TestCaseStatus::success() };
     let (what, told) = if run.verdict == Outcome::Failed { failures(run) } else { (run.verdict.word(), vec![]) };
     let told = if told.is_empty() { run.reasons.clone() } else { told };
@@ -202,7 +215,11 @@ mod tests {
         assert_eq!(cases[0].name.as_str(), "lambrechts-jerk [exact]");
         let classname = cases[0].classname.as_ref().map(quick_junit::XmlString::as_str);
         assert_eq!(classname, Some("scenarios/lambrechts-jerk.toml"));
-        assert!(matches!(cases[0].status, TestCaseStatus::Success { .. }));
+        assert_eq!((report.skipped, report.test_suites[0].skipped), (2, 2));
+        let TestCaseStatus::Skipped { ty, message, .. } = &cases[0].status else { panic!("{:?}", cases[0]) };
+        let [ty, message] = [ty, message].map(|of| of.as_ref().map_or("", quick_junit::XmlString::as_str));
+        assert!(ty == "unjudged" && message.starts_with("no limits: "), "{message}");
+        assert!(matches!(cases[2].status, TestCaseStatus::Success { .. }));
         assert_eq!(cases[0].properties[0].value.as_str(), "unjudged (no limits)");
         let (kind, _, message, description) = told(&cases[4]);
         assert_eq!(kind, NonSuccessKind::Error);
@@ -235,6 +252,8 @@ mod tests {
         assert!(message.starts_with("arrives: the load ended 200 mm short of 200 mm"), "{message}");
         let out = cases[2].system_out.as_ref().unwrap().as_str();
         assert!(out.starts_with("lifted: bounded\n"), "{out}");
+        let lifted = &cases[2].properties[1];
+        assert_eq!((lifted.name.as_str(), lifted.value.as_str()), ("lifted", "bounded"));
     }
 
     #[test]

@@ -7,6 +7,7 @@
 mod advice;
 mod bound_limits;
 mod compare;
+mod denied;
 mod drawing;
 mod error;
 mod failures;
@@ -25,6 +26,7 @@ mod verdict_table;
 
 pub use advice::{AdviceOptions, advice_json, advice_text};
 pub use compare::{Compared, Comparison};
+pub use denied::{Denied, denials};
 pub use error::ReportError;
 pub use fmu_table::fmu_table;
 pub use junit::junit;

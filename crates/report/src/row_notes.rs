@@ -36,9 +36,10 @@ pub(crate) fn row_notes(run: &RunResult, indent: usize, style: Style) -> String 
     notes.text
 }
 
-/// Warnings, then what happened, then which limits bound.
+/// Warnings of the verdict, those of `check`, then what happened, then which limits bound.
 fn remarkable(run: &RunResult) -> Vec<String> {
     let mut all = run.warnings.clone();
+    all.extend(run.check_warnings.iter().flatten().map(|warning| format!("check: {warning}")));
     if run.verdict.is_whole() {
         all.extend(warnings(run));
     }

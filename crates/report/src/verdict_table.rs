@@ -72,7 +72,11 @@ pub fn verdict_table(runs: &dyn Runs, style: Style, all_metrics: bool) -> impl I
     for (k, part) in wrapped(&overridden(runs), style.width.saturating_sub(2)).iter().enumerate() {
         line(&mut end, &format!("{}{part}", if k == 0 { "" } else { "  " }));
     }
-    line(&mut end, &run_count(runs, style));
+    line(&mut end, &outcome_count(runs, style));
+    let doubtful = doubtful_count(runs, style);
+    if !doubtful.is_empty() {
+        line(&mut end, &doubtful);
+    }
     once(start).chain(rows).chain(once(Ok(end)))
 }
 
@@ -198,9 +202,16 @@ impl Columns {
     }
 }
 
-/// How many runs there are, and what came of them: `31 runs: 30 passed, 1 failed`.
+/// Counts of runs by their outcome, and of those that lift something or have warnings, in a line: `31 runs: 30 passed, 1 failed; 2 with
+/// something lifted, 1 with warnings`.
 #[must_use]
 pub fn run_count(runs: &dyn Runs, style: Style) -> String {
+    let (outcomes, doubtful) = (outcome_count(runs, style), doubtful_count(runs, style));
+    if doubtful.is_empty() { outcomes } else { format!("{outcomes}; {doubtful}") }
+}
+
+/// Counts of runs by their outcome: `31 runs: 30 passed, 1 failed`.
+fn outcome_count(runs: &dyn Runs, style: Style) -> String {
     let parts = ORDER.into_iter().map(|outcome| (outcome, runs.count_of(outcome))).filter(|(_, count)| *count > 0);
     let mut parts: Vec<_> =
         parts.map(|(outcome, count)| style.paint(shown(outcome).1, &format!("{count} {}", outcome.word()))).collect();
@@ -210,6 +221,18 @@ pub fn run_count(runs: &dyn Runs, style: Style) -> String {
     }
     let count = runs.heads().count();
     format!("{count} run{}: {}", if count == 1 { "" } else { "s" }, parts.join(", "))
+}
+
+/// Counts of runs that came to an end and lift something or have warnings; empty where none does.
+fn doubtful_count(runs: &dyn Runs, style: Style) -> String {
+    let count =
+        |is_so: fn(&RunHead<'_>) -> bool| runs.heads().filter(|head| head.verdict.is_whole() && is_so(head)).count();
+    let counts = [
+        (count(|head| head.lifts), "with something lifted"),
+        (count(|head| head.warns == Some(true)), "with warnings"),
+    ];
+    let parts = counts.into_iter().filter(|(count, _)| *count > 0);
+    parts.map(|(count, what)| style.paint(Ink::Warning, &format!("{count} {what}"))).collect::<Vec<_>>().join(", ")
 }
 
 fn line(table: &mut String, text: &str) {
@@ -258,6 +281,7 @@ mod tests {
                    expected, but did not come: 8611h of `drive` from 0.5 s on
                    lifted: stable: the velocity loop has a pole outside the unit
                      circle
+                   lifted: 8611h of `drive` from 0.5 s on
                    two frames were lost
         ERROR      two-mass              rapier          –         –         –         –
                    the mechanics diverged at 0.123 s: the position of `load` is not
@@ -272,6 +296,7 @@ mod tests {
                    `axis.mjcf.file`: there is no `arm.xml`
 
         7 runs: 1 passed, 2 unjudged (no limits), 2 failed, 1 error, 1 invalid
+        2 with something lifted, 1 with warnings
         "#);
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
@@ -310,7 +335,7 @@ mod tests {
         FAILED   pick on exact: arrives: the load ended 200 mm short of 200 mm (window ±5 µm); effort limit bound for 1.99 s (and 2 more)
         ERROR    two-mass on rapier: the mechanics diverged at 0.123 s: the position of `load` is not finite; take a smaller step than 1.00 ms
         INVALID  two-mass on rapier: `axis.mjcf.file`: there is no `arm.xml`
-        7 runs: 1 passed, 2 unjudged (no limits), 2 failed, 1 error, 1 invalid
+        7 runs: 1 passed, 2 unjudged (no limits), 2 failed, 1 error, 1 invalid; 2 with something lifted, 1 with warnings
         "#);
     }
 

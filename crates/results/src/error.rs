@@ -27,6 +27,12 @@ pub enum ResultsError {
         /// Schema of the file.
         found: String,
     },
+    /// Nothing says whether they are as they were written.
+    #[error("the results have no digest, by which an edited file is recognised: an earlier version wrote them")]
+    Unsealed,
+    /// They are not as they were written.
+    #[error("the results are not those that were written: their digest is another one")]
+    Edited,
     /// What the journal holds of a run cannot be read.
     #[error(transparent)]
     Journal(#[from] JournalError),

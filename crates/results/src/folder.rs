@@ -215,7 +215,7 @@ fn left_by(stems: &[String]) -> impl Iterator<Item = String> {
 }
 
 /// Whether `name` is that of a file beside the list, of a kind that a run leaves: a list may come from anywhere.
-fn is_left_by_a_run(name: &str) -> bool {
+pub(crate) fn is_left_by_a_run(name: &str) -> bool {
     let path = Path::new(name);
     let is_beside = path.file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\']);
     is_beside && path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd" || kind == "svg")

@@ -12,8 +12,10 @@
 //!
 //! Reading keeps what is whole: a line that is torn, or damaged, is a run that has not ended.
 use crate::digest::Digest;
+use crate::folder::is_left_by_a_run;
 use crate::run::RunResult;
 use serde::{Deserialize, Serialize};
+use servobench_files::named;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -35,6 +37,9 @@ pub struct Suite {
     pub version: u32,
     /// What [`crate::Results::suite`] will be.
     pub suite: Digest,
+    /// Digest of the program that began it; empty where nobody noted it.
+    #[serde(default)]
+    pub program: Digest,
     /// The command line without the program's name.
     pub command: Vec<String>,
     /// Folder that relative paths of the command line start from.
@@ -49,14 +54,25 @@ pub struct Suite {
 impl Suite {
     /// A suite of this version.
     #[must_use]
-    pub const fn new(
+    pub fn new(
         suite: Digest,
         command: Vec<String>,
         folder: PathBuf,
         standard_input: Option<String>,
         stems: Vec<String>,
     ) -> Self {
-        Self { version: VERSION, suite, command, folder, standard_input, stems }
+        Self { version: VERSION, suite, program: Digest::default(), command, folder, standard_input, stems }
+    }
+
+    /// The same, begun by the program with this digest.
+    #[must_use]
+    pub fn by(self, program: Digest) -> Self {
+        Self { program, ..self }
+    }
+
+    /// The first name that is not one of a file beside the journal.
+    fn outside(&self) -> Option<String> {
+        self.stems.iter().find(|stem| !is_left_by_a_run(&format!("{stem}.parquet"))).cloned()
     }
 }
 
@@ -69,6 +85,14 @@ pub struct Finished {
     pub seconds: f64,
     /// What came of it.
     pub result: RunResult,
+}
+
+impl Finished {
+    /// The first name of a file of the run that is not one beside the journal, of a kind that runs leave.
+    fn outside(&self) -> Option<String> {
+        let RunResult { recording, files, .. } = &self.result;
+        recording.iter().chain(files).find(|name| !is_left_by_a_run(name)).cloned()
+    }
 }
 
 /// A record to be written.
@@ -113,6 +137,20 @@ pub enum JournalError {
         path: PathBuf,
         /// Its version.
         found: u32,
+    },
+    /// The journal is a link: records would be appended to another file.
+    #[error("the journal `{}` is a link to another file and is not resumed: run the scenarios again in another folder", .0.display())]
+    Link(PathBuf),
+    /// The journal names a file that no run leaves beside it.
+    #[error(
+        "the journal `{}` names `{}`, which no run leaves beside it, and is not resumed: it is not as servobench wrote it; run the \
+         scenarios again in another folder", path.display(), named(name)
+    )]
+    Outside {
+        /// The journal.
+        path: PathBuf,
+        /// The name.
+        name: String,
     },
     /// A record that was written is another one now.
     #[error("the record of a run in the journal `{}` has changed since it was written: is the disk in order?", .0.display())]
@@ -159,15 +197,28 @@ impl Journal {
     }
 
     /// Goes on with the journal at `path`: what suite it is of. `each` is told the runs that have ended and where their records are;
-    /// of several records of one run the last one counts.
+    /// of several records of one run the last one counts. A journal may come from anywhere: one that is a link, or that names a file
+    /// outside of its folder, is refused, and `each` is told none of its runs from there on.
     ///
     /// # Errors
     /// [`JournalError`]
-    pub fn resume(path: PathBuf, each: impl FnMut(Finished, Place)) -> Result<(Self, Suite), JournalError> {
+    pub fn resume(path: PathBuf, mut each: impl FnMut(Finished, Place)) -> Result<(Self, Suite), JournalError> {
+        if std::fs::symlink_metadata(&path).map_err(failed("read", &path))?.is_symlink() {
+            return Err(JournalError::Link(path));
+        }
         // A FIFO under its name would keep its reader waiting.
         servobench_files::metadata(&path, u64::MAX).map_err(failed("read", &path))?;
         let mut file = File::options().read(true).write(true).open(&path).map_err(failed("read", &path))?;
-        let suite = read(&file, &path, each)?;
+        let mut outside = None;
+        let suite = read(&file, &path, |finished, place| {
+            outside = outside.take().or_else(|| finished.outside());
+            if outside.is_none() {
+                each(finished, place);
+            }
+        })?;
+        if let Some(name) = suite.outside().or(outside) {
+            return Err(JournalError::Outside { path, name });
+        }
         let length = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;
         // An empty line is no record: it does not matter if the last line was whole.
         Ok((Self { file, path, synced: Instant::now(), is_torn: length > 0 }, suite))
@@ -420,6 +471,48 @@ mod tests {
                 assert!(records.iter().all(|record| finished().contains(record)), "{at}");
             }
         }
+    }
+
+    /// Whoever sent the folder may have written into its journal whatever he liked.
+    #[test]
+    fn a_journal_that_leads_outside_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.journal");
+        let names = ["../a.parquet", "/etc/passwd", "b/a.parquet", "..", "", "a\\b.parquet", "results.json", "a.toml"];
+        let mut told = 0;
+        for name in names {
+            for of_recording in [true, false] {
+                let mut journal = Journal::create(path.clone(), &suite()).unwrap();
+                let mut hostile = finished().remove(0);
+                if of_recording {
+                    hostile.result.recording = Some(name.into());
+                } else {
+                    hostile.result.files.push(name.into());
+                }
+                journal.append(&hostile).unwrap();
+                journal.append(&finished()[1]).unwrap();
+                let refusal = Journal::resume(path.clone(), |_, _| told += 1).unwrap_err();
+                assert!(matches!(&refusal, JournalError::Outside { name: found, .. } if found == name), "{refusal}");
+            }
+        }
+        assert_eq!(told, 0);
+        for stem in ["../a", "/a", "a/b"] {
+            Journal::create(path.clone(), &Suite { stems: vec![stem.into()], ..suite() }).unwrap();
+            assert!(matches!(resumed(&path), Err(JournalError::Outside { .. })), "{stem}");
+        }
+    }
+
+    /// Records would be appended to where the link leads.
+    #[cfg(unix)]
+    #[test]
+    fn a_journal_that_is_a_link_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, other) = (folder.path().join("results.journal"), folder.path().join("other"));
+        let before = written(&other);
+        std::os::unix::fs::symlink(&other, &link).unwrap();
+        let refusal = resumed(&link).unwrap_err().to_string();
+        assert!(refusal.contains("is a link to another file"), "{refusal}");
+        assert_eq!(fs::read(other).unwrap(), before);
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! The results of a suite as they come.
+use crate::digest::Digest;
 use crate::journal::{Finished, Journal, JournalError, Place, Suite};
 use crate::planned::Planned;
 use crate::results::{Outcome, Unfinished};
@@ -26,6 +27,9 @@ struct Ended {
     verdict: Outcome,
     took: Duration,
     has_recording: bool,
+    lifts: bool,
+    warns: Option<bool>,
+    inputs: Digest,
     result: Where,
 }
 
@@ -43,6 +47,9 @@ impl Ended {
             verdict: result.verdict,
             took: Duration::try_from_secs_f64(seconds).unwrap_or_default(),
             has_recording: result.recording.is_some(),
+            lifts: result.lifts(),
+            warns: result.warns(),
+            inputs: result.inputs,
             result: place.map_or_else(|| Where::Memory(Box::new(result)), Where::Journal),
         }
     }
@@ -85,6 +92,13 @@ impl Kept {
     #[must_use]
     pub const fn planned(&self) -> &Planned {
         &self.planned
+    }
+
+    /// Only those of the runs that ended are taken for ended whose inputs are what `inputs` gives for their place: the others, by their
+    /// places, are run again.
+    pub fn hold_inputs(&mut self, inputs: impl Fn(usize) -> Digest) -> Vec<usize> {
+        let others = self.ended.extract_if(.., |index, ended| ended.inputs != inputs(*index));
+        others.map(|(index, _)| index).collect()
     }
 
     /// How many have ended.
@@ -132,9 +146,9 @@ impl Runs for Kept {
     fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_> {
         let heads = self.ended.iter().filter_map(|(index, ended)| {
             let Unfinished { name, file, engine } = self.planned.get(*index)?;
-            let &Ended { verdict, took, has_recording, .. } = ended;
-            let file = file.as_deref();
-            Some(RunHead { index: *index, name, file, engine, verdict, took: Some(took), has_recording })
+            let &Ended { verdict, took, has_recording, lifts, warns, .. } = ended;
+            let (file, took) = (file.as_deref(), Some(took));
+            Some(RunHead { index: *index, name, file, engine, verdict, took, has_recording, lifts, warns })
         });
         Box::new(heads)
     }
@@ -160,7 +174,6 @@ impl Runs for Kept {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::digest::Digest;
     use crate::samples;
 
     fn planned() -> Vec<Unfinished> {

@@ -2,6 +2,7 @@
 use crate::digest::Digest;
 use crate::error::ResultsError;
 use crate::run::RunResult;
+use crate::written::digest_of;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use servobench_files::with_short_quotes;
@@ -58,7 +59,7 @@ pub struct Unfinished {
 }
 
 /// What came of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Every limit is kept, every requirement met, every expected fault has come.
@@ -71,6 +72,7 @@ pub enum Outcome {
     #[serde(alias = "input")]
     Invalid,
     /// The run could not be carried out.
+    #[default]
     Error,
 }
 
@@ -139,12 +141,35 @@ impl Results {
         Self::of_suite(Digest::default(), scenarios, Vec::new())
     }
 
-    /// As JSON, numbers in the shortest form that reads back to the same bits.
+    /// As JSON, numbers in the shortest form that reads back to the same bits, with the digest of the results behind them.
     ///
     /// # Errors
     /// [`ResultsError::Json`].
     pub fn to_json(&self) -> Result<String, ResultsError> {
-        Ok(serde_json::to_string_pretty(self)? + "\n")
+        #[derive(Serialize)]
+        struct Sealed<'a> {
+            #[serde(flatten)]
+            results: &'a Results,
+            digest: Digest,
+        }
+        Ok(serde_json::to_string_pretty(&Sealed { results: self, digest: digest_of(self)? })? + "\n")
+    }
+
+    /// Reads what [`Results::to_json`] wrote, unless it has been edited since.
+    ///
+    /// # Errors
+    /// As [`Results::from_json`]; [`ResultsError::Unsealed`], [`ResultsError::Edited`].
+    pub fn from_sealed_json(text: &str) -> Result<Self, ResultsError> {
+        #[derive(Deserialize)]
+        struct Seal {
+            digest: Option<Digest>,
+        }
+        let results = Self::from_json(text)?;
+        match serde_json::from_str::<Seal>(text)?.digest {
+            None => Err(ResultsError::Unsealed),
+            Some(digest) if digest == digest_of(&results)? => Ok(results),
+            Some(_) => Err(ResultsError::Edited),
+        }
     }
 
     /// Reads what [`Results::to_json`] wrote, and results of older versions: those of version 2 say nothing of what the runs

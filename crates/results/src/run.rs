@@ -33,6 +33,8 @@ pub struct RunIdentity {
     pub overrides: Vec<String>,
     /// Where the scenario file has which limit.
     pub limits: Vec<LimitPlace>,
+    /// Warnings of `check`; `None` where nobody checked.
+    pub check_warnings: Option<Vec<String>>,
 }
 
 /// Where a limit stands in its file.
@@ -47,7 +49,7 @@ pub struct LimitPlace {
 }
 
 /// One scenario on one engine.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunResult {
     /// Name of the scenario.
     pub name: String,
@@ -75,9 +77,15 @@ pub struct RunResult {
     /// The faults that were expected.
     #[serde(default)]
     pub expected: Vec<ExpectedResult>,
+    /// Calls with `optional`, by name; left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub optional_calls: Vec<String>,
     /// What breaks no requirement and should be known.
     #[serde(default)]
     pub warnings: Vec<String>,
+    /// Warnings of `check`; left out where nobody checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check_warnings: Option<Vec<String>>,
     /// What the scenario file says, models and overrides merged in, by key.
     #[serde(default)]
     pub parameters: IndexMap<String, String>,
@@ -128,6 +136,8 @@ impl RunResult {
         result.requirements = standings.map(|(name, result)| (name.to_string(), result.clone())).collect();
         result.expected = verdict.expected.iter().map(ExpectedResult::from).collect();
         result.warnings.clone_from(&verdict.warnings);
+        let optional = recording.calls.iter().filter(|call| call.is_optional);
+        result.optional_calls = optional.map(|call| call.name.clone()).collect();
         let is_judged = result.all_metrics().any(|(_, metric)| metric.pass.is_some()) || !result.expected.is_empty();
         result.verdict = match (verdict.passed(), is_judged) {
             (false, _) => Outcome::Failed,
@@ -172,6 +182,31 @@ impl RunResult {
         all.map(|(name, requirement)| (name.as_str(), requirement.reasons.as_slice()))
     }
 
+    /// Expected faults that may come at any time from some time on: without an end of its window an expectation lifts `no_fault` of that
+    /// fault for the rest of the run.
+    pub fn open_expectations(&self) -> impl Iterator<Item = &ExpectedResult> {
+        self.expected.iter().filter(|expected| expected.to.is_none())
+    }
+
+    /// True where something is lifted that every run is held to: a requirement, a call with `optional`, an expected fault without an end of
+    /// its window.
+    #[must_use]
+    pub fn lifts(&self) -> bool {
+        self.requirements_that_are(Standing::Lifted).next().is_some()
+            || !self.optional_calls.is_empty()
+            || self.open_expectations().next().is_some()
+    }
+
+    /// True with warnings of the verdict or of `check`; `None` where the verdict has none and `check` was not asked.
+    #[must_use]
+    pub fn warns(&self) -> Option<bool> {
+        match (&self.check_warnings, self.warnings.is_empty()) {
+            (_, false) => Some(true),
+            (Some(found), true) => Some(!found.is_empty()),
+            (None, true) => None,
+        }
+    }
+
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
         let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
         let log = recording.map(|recording| recording.log.as_slice()).unwrap_or_default();
@@ -187,7 +222,9 @@ impl RunResult {
             reasons: Vec::new(),
             requirements: IndexMap::new(),
             expected: Vec::new(),
+            optional_calls: Vec::new(),
             warnings: Vec::new(),
+            check_warnings: run.check_warnings,
             parameters: run.parameters.into_iter().collect(),
             overrides: run.overrides,
             metrics: of_set(&metrics.run),

@@ -40,6 +40,10 @@ pub struct RunHead<'a> {
     pub took: Option<Duration>,
     /// Whether it left a recording.
     pub has_recording: bool,
+    /// See [`RunResult::lifts`].
+    pub lifts: bool,
+    /// See [`RunResult::warns`].
+    pub warns: Option<bool>,
 }
 
 impl dyn Runs + '_ {
@@ -64,6 +68,8 @@ impl Runs for Results {
             verdict: run.verdict,
             took: None,
             has_recording: run.recording.is_some(),
+            lifts: run.lifts(),
+            warns: run.warns(),
         });
         Box::new(heads)
     }

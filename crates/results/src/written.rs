@@ -1,19 +1,51 @@
-//! `results.json` while its runs are read, one after the other.
-use crate::digest::Digest;
+//! `results.json` while its runs are read, one after the other, with the digest by which an edited file is recognised.
+use crate::digest::{Digest, Digester};
 use crate::error::ResultsError;
 use crate::journal::JournalError;
-use crate::results::Results;
+use crate::results::{Results, Unfinished};
+use crate::run::RunResult;
 use crate::runs::Runs;
-use serde::ser::SerializeSeq as _;
+use serde::ser::{Error as _, SerializeSeq as _};
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 use std::io::Write;
+
+/// Results with their digest behind them. It is computed while the runs are written.
+#[derive(Serialize)]
+struct Sealed<'a, R: Serialize> {
+    #[serde(flatten)]
+    results: Results<R, &'a Unfinished>,
+    digest: Sum<'a>,
+}
+
+/// The digest of the parts that were written until then.
+struct Sum<'a>(&'a RefCell<Digester>);
+
+impl Serialize for Sum<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.borrow().clone().finish().serialize(serializer)
+    }
+}
+
+/// The digest of results begins with what does not depend on the runs that ended.
+fn begun(suite: &Digest, unfinished: &[&Unfinished]) -> Result<Digester, serde_json::Error> {
+    let start = Digester::default().with(suite.to_string());
+    unfinished.iter().try_fold(start, |digester, run| Ok(digester.with(serde_json::to_vec(run)?)))
+}
+
+/// The digest that a file of these results has: of the suite, the runs that did not end, and those that did, each as JSON.
+pub(crate) fn digest_of(results: &Results) -> Result<Digest, ResultsError> {
+    let begun = begun(&results.suite, &results.unfinished.iter().collect::<Vec<_>>())?;
+    let all = results.scenarios.iter().try_fold(begun, |digester, run| Ok(digester.with(serde_json::to_vec(run)?)));
+    Ok(all.map_err(ResultsError::Json)?.finish())
+}
 
 /// The results of runs that are read while they are written.
 struct OneByOne<'a> {
     runs: &'a dyn Runs,
     /// Why a run could not be read.
     refusal: RefCell<Option<JournalError>>,
+    digester: &'a RefCell<Digester>,
 }
 
 impl Serialize for &OneByOne<'_> {
@@ -21,11 +53,16 @@ impl Serialize for &OneByOne<'_> {
         let mut all = serializer.serialize_seq(None)?;
         for run in self.runs.each() {
             match run {
-                Ok(run) => all.serialize_element(&*run)?,
+                Ok(run) => {
+                    let run: &RunResult = &run;
+                    let json = serde_json::to_vec(run).map_err(S::Error::custom)?;
+                    self.digester.replace_with(|digester| std::mem::take(digester).with(json));
+                    all.serialize_element(run)?;
+                }
                 Err(error) => {
                     let words = error.to_string();
                     self.refusal.replace(Some(error));
-                    return Err(serde::ser::Error::custom(words));
+                    return Err(S::Error::custom(words));
                 }
             }
         }
@@ -38,9 +75,11 @@ impl Serialize for &OneByOne<'_> {
 /// # Errors
 /// [`ResultsError::Journal`] when a run cannot be read, [`ResultsError::Write`].
 pub fn write_results(suite: &Digest, runs: &dyn Runs, out: &mut dyn Write) -> Result<(), ResultsError> {
-    let each = OneByOne { runs, refusal: RefCell::new(None) };
-    let written =
-        serde_json::to_writer_pretty(&mut *out, &Results::of_suite(*suite, &each, runs.unfinished().collect()));
+    let unfinished: Vec<&Unfinished> = runs.unfinished().collect();
+    let digester = RefCell::new(begun(suite, &unfinished)?);
+    let each = OneByOne { runs, refusal: RefCell::new(None), digester: &digester };
+    let results = Results::of_suite(*suite, &each, unfinished);
+    let written = serde_json::to_writer_pretty(&mut *out, &Sealed { results, digest: Sum(&digester) });
     match (written, each.refusal.into_inner()) {
         (_, Some(refusal)) => Err(refusal.into()),
         (Err(error), None) if error.is_io() => Err(ResultsError::Write(error.into())),

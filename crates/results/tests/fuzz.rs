@@ -1,7 +1,9 @@
 //! Fuzz targets: whatever is in a `results.json` or a journal, it is refused, or it is written again as it was read.
 //! `docs/testing.md` says how to run more of them.
 use servobench_fuzz::{Splice, check, fuzz};
-use servobench_results::{Journal, Kept, Results, Runs as _, Unfinished, files_of_results, read_journal};
+use servobench_results::{
+    Finished, Journal, JournalError, Kept, Results, Runs as _, Unfinished, files_of_results, read_journal,
+};
 use std::fs;
 use std::path::Path;
 use twox_hash::XxHash64;
@@ -85,6 +87,52 @@ fn with_digests(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().concat()
 }
 
+/// Names that lead out of a folder, or that no run leaves.
+const PLACES: &[&str] = &[
+    "../",
+    "..",
+    "/etc/passwd",
+    "/",
+    "\\\\",
+    "a/b.parquet",
+    ".parquet",
+    "\"recording\":\"../x.parquet\"",
+    "\"files\":[\"/tmp/x.rrd\",\"a.exact.parquet\"]",
+    "\"stems\":[\"../a\"]",
+    "\"folder\":\"/\"",
+    "--junit",
+    "--root",
+    "\u{0}",
+];
+
+/// Whatever a journal says, nothing that it names is outside of its folder once it is resumed.
+#[test]
+fn hostile_journals() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("results.journal");
+    let with_files = RECORDS[0].replace("\"events\":[]", "\"events\":[],\"files\":[\"a.exact.parquet\"]");
+    let is_beside = |name: &str| {
+        Path::new(name).file_name().is_some_and(|file| file == name) && !name.contains(['/', '\\']) && name != ".."
+    };
+    fuzz(check!(), 1_000, Splice::text(&[RECORDS[0], &with_files], PLACES), |text: &String| {
+        fs::write(&path, with_digests(text)).unwrap();
+        let mut told = Vec::new();
+        match Kept::resume(path.clone(), |one| {
+            told_names(one).for_each(|name| assert!(is_beside(name), "{name}"));
+            true
+        }) {
+            Ok((_, suite)) => told.extend(suite.stems),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+        assert!(told.iter().all(|stem| is_beside(&format!("{stem}.parquet"))), "{told:?}");
+    });
+}
+
+/// Names of files of a run.
+fn told_names(one: &Finished) -> impl Iterator<Item = &str> {
+    one.result.recording.iter().chain(&one.result.files).map(String::as_str)
+}
+
 #[test]
 fn journals() {
     let folder = tempfile::tempdir().unwrap();
@@ -105,8 +153,12 @@ fn journals() {
                     assert_eq!(&journal.at(place).unwrap(), one);
                 }
                 assert_eq!(all_in(&fs::read_to_string(&path).unwrap()).unwrap(), (suite.clone(), finished.clone()));
-                // The last record of a run is the one that counts.
-                let (mut kept, again) = Kept::resume(path.clone(), |_| true).unwrap();
+                // The last record of a run is the one that counts. One that leads outside is read, and not resumed.
+                let (mut kept, again) = match Kept::resume(path.clone(), |_| true) {
+                    Ok(resumed) => resumed,
+                    Err(JournalError::Outside { .. }) => return,
+                    Err(error) => panic!("{error}"),
+                };
                 assert_eq!(again, suite);
                 kept.plan(vec![Unfinished { name: String::new(), file: None, engine: String::new() }; 2]);
                 for head in kept.heads() {

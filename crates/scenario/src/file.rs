@@ -35,7 +35,7 @@ pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 
 use crate::format::FORMAT;
 use crate::limit_table::LimitTable;
-use crate::list::{Many, OneOrMany};
+use crate::list::{BoundOrNone, Many, OneOrMany};
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
@@ -103,9 +103,9 @@ table! {
         base_rate: Rate = "16 kHz",
         /// Length of the run, 1e6 s at most; default: the program and half a second.
         duration: f64 = positive(Plain(&TIME), "2 s"),
-        /// How long the run may take by the clock; default: as long as it needs. One that takes longer is an error. What is simulated does
-        /// not depend on it.
-        time_limit: f64 = positive(Plain(&TIME), "5 min"),
+        /// Longest time by the clock, "none" for no limit; default: ten minutes and a hundred times the time
+        /// that `check` estimates. One that takes longer is an error. What is simulated does not depend on it.
+        time_limit: BoundOrNone = positive(Plain(&TIME), "5 min"),
     }
 }
 

@@ -62,7 +62,7 @@ pub use points::{
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
     InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc, Record, Requirements,
-    Scenario, Step,
+    Scenario, Step, TimeBound,
 };
 pub use schema::{json_schema, sweep_schema};
 pub use source::{SourceId, Sources};

@@ -102,6 +102,32 @@ pub(crate) enum Automatic {
     Given(f64),
 }
 
+/// A bound, or "none" where there is to be none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum BoundOrNone {
+    None,
+    Given(f64),
+}
+
+impl Field<Measure> for BoundOrNone {
+    fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
+        match node.value.as_text() {
+            Some("none") => Some(Self::None),
+            Some(text) if !quantity::begins_with_a_number(text) => {
+                let (key, example) = (key(path), spec.example);
+                let message = format!("`{key}` must be \"none\" or a value like {example}, got {}", written(node));
+                report.error(node.span, message, "");
+                None
+            }
+            _ => f64::decode(path, node, spec, report).map(Self::Given),
+        }
+    }
+
+    fn schema(spec: &Measure) -> Json {
+        json!({ "anyOf": [{ "const": "none" }, f64::schema(spec)] })
+    }
+}
+
 impl Field<Measure> for Automatic {
     fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
         match node.value.as_text() {

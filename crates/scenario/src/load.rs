@@ -165,6 +165,7 @@ fn parse_from(
                 scenario.units = display_units(&scenario.parameters, scenario.axis.motion);
             }
             scenario.overrides = overrides.to_vec();
+            scenario.warnings = warnings.iter().map(|warning| warning.placed_message(&sources)).collect();
             scenario.root = report.files.root().map(Path::to_owned);
             scenario.made_of = report.files.into_made_of();
             let mjcf = match &scenario.axis.mechanics {

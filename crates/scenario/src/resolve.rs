@@ -42,7 +42,8 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{File, MotorKind, Run};
 use crate::limit_table::LimitTable;
-use crate::scenario::{BusMode, LONGEST_RUN, Record, Scenario};
+use crate::list::BoundOrNone;
+use crate::scenario::{BusMode, LONGEST_RUN, Record, Scenario, TimeBound};
 use crate::simple::MAX_RATE;
 use crate::source::{At, Authority, Sources, Span};
 use servobench_base::Rate;
@@ -120,7 +121,11 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         engines,
         base_rate: base_rate?,
         duration,
-        time_limit: run.and_then(|run| run.time_limit.given().copied()),
+        time_limit: run.and_then(|run| run.time_limit.given()).map(|limit| match limit {
+            BoundOrNone::None => TimeBound::Unlimited,
+            BoundOrNone::Given(seconds) => TimeBound::AtMost(*seconds),
+        }),
+        warnings: Vec::new(),
         axis: moved?,
         actuator: actuator?,
         program: program?,

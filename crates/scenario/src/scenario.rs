@@ -38,6 +38,26 @@ pub const LONGEST_RUN: f64 = 1e6;
 /// Most ticks of a run: 25 minutes of the engine `exact`, a week at 16 kHz.
 pub const MOST_TICKS: u64 = 10_000_000_000;
 
+/// Bound of the time of a run by the clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeBound {
+    /// As long as it needs.
+    Unlimited,
+    /// So long (s).
+    AtMost(f64),
+}
+
+impl TimeBound {
+    /// The bound (s), where there is one.
+    #[must_use]
+    pub const fn seconds(self) -> Option<f64> {
+        match self {
+            Self::Unlimited => None,
+            Self::AtMost(seconds) => Some(seconds),
+        }
+    }
+}
+
 /// One experiment: an axis, a program of moves, what to measure and the limits that make it pass or fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
@@ -53,8 +73,10 @@ pub struct Scenario {
     pub base_rate: Rate,
     /// Length of the run (s); `None`: the program and half a second.
     pub duration: Option<f64>,
-    /// How long the run may take by the clock (s); `None`: as long as it needs.
-    pub time_limit: Option<f64>,
+    /// Bound of the time by the clock; `None`: not given.
+    pub time_limit: Option<TimeBound>,
+    /// Doubts about its files, each behind its place.
+    pub warnings: Vec<String>,
     /// The mechanics.
     pub axis: Axis,
     /// What moves it, and what commands that.

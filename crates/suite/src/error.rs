@@ -25,11 +25,13 @@ pub enum RunError {
     Panicked(#[from] Panicked),
     /// It took longer than it may.
     #[error(
-        "its limit of time, {} s, was reached at {reached:.3} s of {length:.3} s simulated; allow it longer with `run.time_limit` and \
+        "its {which} of time, {} s, was reached at {reached:.3} s of {length:.3} s simulated; allow it longer with `run.time_limit` and \
          `--time-limit`, or shorten the run",
         limit.as_secs_f64()
     )]
     TimeLimit {
+        /// `limit` or `default limit`.
+        which: &'static str,
         /// How long it may take, by the clock.
         limit: Duration,
         /// How far it came (s).

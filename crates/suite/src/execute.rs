@@ -3,7 +3,8 @@ use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
 use crate::requirements::rules;
-use crate::worker::{RunLimits, Workers};
+use crate::time_limit::TimeLimit;
+use crate::worker::Workers;
 use servobench_isolation::Stopwatch;
 use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only};
 use servobench_plant::{Engine, MechanicsError};
@@ -113,7 +114,7 @@ fn recorded(
     if job.runs_in_worker() {
         return workers.run(job, progress);
     }
-    let limit = TimeLimit::of(job, workers.limits());
+    let limit = TimeLimit::of(job, workers.limits().time);
     let built_by = Loop { engine, fmu_opener: engines.fmu_opener, records_all: job.records_all() };
     let (recording, failure) = run_here(&job.scenario, built_by, limit.map(|limit| limit.time), progress)?;
     let interruption = failure.map(|failure| match (limit, &failure.reason) {
@@ -121,31 +122,6 @@ fn recorded(
         _ => failure.into(),
     });
     Ok((recording, interruption))
-}
-
-/// How long a run may take.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TimeLimit<'a> {
-    pub(crate) time: Duration,
-    job: &'a Job,
-}
-
-impl<'a> TimeLimit<'a> {
-    /// What the scenario of `job` says, or `limits`, whichever is less.
-    pub(crate) fn of(job: &'a Job, limits: RunLimits) -> Option<Self> {
-        let own = job.scenario.time_limit.map(|limit| Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX));
-        own.into_iter().chain(limits.time).min().map(|time| Self { time, job })
-    }
-
-    /// How long the run would have been (s); not a number when it cannot be planned.
-    pub(crate) fn length(self) -> f64 {
-        Bench::length(&self.job.scenario).unwrap_or(f64::NAN)
-    }
-
-    /// The run came to `reached` (s).
-    pub(crate) fn exceeded(self, reached: f64) -> RunError {
-        RunError::TimeLimit { limit: self.time, reached, length: self.length() }
-    }
 }
 
 /// Who builds a closed loop.

@@ -11,6 +11,7 @@ mod panicked;
 mod pool;
 mod preview;
 mod requirements;
+mod time_limit;
 mod usage;
 pub mod worker;
 
@@ -28,7 +29,7 @@ pub use panicked::Panicked;
 pub use pool::{AtATime, map_in_parallel};
 pub use preview::{
     Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, LoopStability, Modes,
-    PlannedProgram, Preview, VoltageDemand, preview,
+    PlannedProgram, Preview, VoltageDemand, check_warnings, preview,
 };
 pub use usage::{LoadMode, Usage, limits_of_set_point, load_mode};
 pub use worker::{RunLimits, WorkerCommand, WorkerError, Workers};

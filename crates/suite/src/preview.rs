@@ -31,8 +31,11 @@ pub use servo::{Inertias, Modes};
 pub use stability::LoopStability;
 
 use crate::job::Job;
-use servobench_scenario::Scenario;
+use crate::panicked::caught;
+use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_sim::{BuildError, Program};
+use servobench_stability::Depth;
+use std::slice::from_ref;
 
 /// What can be said of a scenario without running it.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +71,35 @@ pub struct Preview {
 /// # Errors
 /// [`BuildError`] of moves that cannot be planned or of bodies that cannot be; [`check`](crate::check) says where.
 pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
+    previewed(jobs, Depth::Boundaries)
+}
+
+/// Warnings of `check` about the scenario of `job` on its engine, each behind its place: about its files, then, where it can be built, of
+/// its preview.
+#[must_use]
+pub fn check_warnings(job: &Job) -> Vec<String> {
+    let found = caught(|| previewed(from_ref(job), Depth::Verdict));
+    let doubts = found.ok().and_then(Result::ok).flatten().map_or_else(Vec::new, |preview| preview.doubts);
+    let placed = doubts.iter().map(|doubt| placed(doubt, &job.scenario));
+    job.scenario.warnings.iter().cloned().chain(placed).collect()
+}
+
+/// `axis.toml:12: the move has no length`
+fn placed(doubt: &Doubt, scenario: &Scenario) -> String {
+    let Doubt { key, line, message, .. } = doubt;
+    if let (Some(line), AxisMechanics::Mjcf(mjcf)) = (line, &scenario.axis.mechanics) {
+        return format!("{}:{line}: {message}", mjcf.path.display());
+    }
+    let is_of_key = |own: &str| own == key || own.strip_prefix(key.as_str()).is_some_and(|rest| rest.starts_with('.'));
+    let parameter = scenario.parameters.iter().find(|parameter| is_of_key(&parameter.key));
+    let file = scenario.path.as_ref().map_or_else(|| scenario.name.clone(), |path| path.display().to_string());
+    match parameter.and_then(|parameter| parameter.line) {
+        Some(line) => format!("{file}:{line}: {message}"),
+        None => format!("{file}: `{key}`: {message}"),
+    }
+}
+
+fn previewed(jobs: &[Job], depth: Depth) -> Result<Option<Preview>, BuildError> {
     let Some(Job { scenario, .. }) = jobs.first() else { return Ok(None) };
     let (planned, chain) = (Program::new(scenario)?, servobench_sim::Bench::chain(scenario)?);
     let program = PlannedProgram::new(scenario, &planned);
@@ -75,7 +107,7 @@ pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
     let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
     let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
     let engines = EngineSteps::of(scenario, modes.as_ref(), &names);
-    let stability = LoopStability::of(scenario)?;
+    let stability = LoopStability::of(scenario, depth)?;
     let mut doubts = program.doubts(scenario);
     doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));

@@ -6,9 +6,10 @@ pub(crate) use equal::{Equal, EqualTerm};
 pub(crate) use variant::Variant;
 
 use super::shapers::{self, Shapers};
-use super::{FmuTrustArgs, MemoryArgs, OverrideArgs, engine, file, time};
+use super::{DenyArgs, FmuTrustArgs, MemoryArgs, OverrideArgs, engine, file, time, time_bound};
 use clap::Args;
 use servobench_plant::EngineName;
+use servobench_scenario::TimeBound;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -44,11 +45,14 @@ pub(crate) struct CompareArgs {
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
-    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    pub(crate) time_limit: Option<Duration>,
+    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less. none: no limit [default: ten
+    /// minutes and a hundred times the time that check estimates].
+    #[arg(long, value_name = "TIME", value_parser = time_bound)]
+    pub(crate) time_limit: Option<TimeBound>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
+    #[command(flatten)]
+    pub(crate) deny: DenyArgs,
     #[command(flatten)]
     pub(crate) fmus: FmuTrustArgs,
 }

@@ -1,8 +1,11 @@
 //! Arguments of what runs suites of scenarios: `run` and `sweep`.
-use super::{OverrideArgs, engine, file, memory, time};
+use super::{OverrideArgs, choice, engine, file, memory, time, time_bound};
 use clap::{Args, ValueEnum};
+use servobench_config::Choice as _;
 use servobench_plant::EngineName;
-use std::path::PathBuf;
+use servobench_report::Denied;
+use servobench_scenario::TimeBound;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
@@ -13,9 +16,10 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR", value_parser = file())]
     pub(crate) out: Option<PathBuf>,
     /// Run what is left of the suite in this folder, which was ended before its time; scenarios and options are those that it was
-    /// begun with.
+    /// begun with, but --root, --junit and --allow-unisolated-fmus, which are given again. A suite that is complete is reported if
+    /// nothing that it was made of has changed since.
     #[arg(long, value_name = "DIR", value_parser = file(),
-          conflicts_with_all = ["scenarios", "overrides", "root", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
+          conflicts_with_all = ["scenarios", "overrides", "out", "engine", "keep", "rrd", "worker_timeout", "time_limit", "memory_limit"])]
     pub(crate) resume: Option<PathBuf>,
     /// Recordings that stay, with their timing diagrams and .rrd.
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = Keep::All)]
@@ -36,9 +40,9 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "DIR", value_parser = file())]
     pub(crate) out: Option<PathBuf>,
     /// Run what is left of the sweep in this folder, which was ended before its time; file and options are those that it was begun
-    /// with.
+    /// with, but --root, --junit and --allow-unisolated-fmus, which are given again.
     #[arg(long, value_name = "DIR", value_parser = file(),
-          conflicts_with_all = ["sweep", "overrides", "root", "out", "engine", "keep", "rrd", "junit", "worker_timeout", "time_limit", "memory_limit"])]
+          conflicts_with_all = ["sweep", "overrides", "out", "engine", "keep", "rrd", "worker_timeout", "time_limit", "memory_limit"])]
     pub(crate) resume: Option<PathBuf>,
     /// Recordings that stay, with their timing diagrams and .rrd.
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = Keep::None)]
@@ -67,22 +71,59 @@ pub(crate) struct SuiteArgs {
     /// End the process of an isolated engine that makes no progress for this long.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "5 min")]
     pub(crate) worker_timeout: Duration,
-    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less.
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    pub(crate) time_limit: Option<Duration>,
+    /// End a run that takes longer by the clock; it is an error. run.time_limit of a scenario may be less. none: no limit [default: ten
+    /// minutes and a hundred times the time that check estimates].
+    #[arg(long, value_name = "TIME", value_parser = time_bound)]
+    pub(crate) time_limit: Option<TimeBound>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
-    /// Print failures only, a line each, and the count; of a sweep the count.
+    /// Print failures only, a line each, and a line with the counts; of a sweep that line.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) deny: DenyArgs,
     #[command(flatten)]
     pub(crate) fmus: FmuTrustArgs,
 }
 
 impl SuiteArgs {
-    /// Those of a suite that goes on: what it was begun with, but how much runs at a time, what is printed and which FMUs are trusted.
-    pub(crate) fn resumed(self, now: &Self) -> Self {
-        Self { fmus: now.fmus, jobs: now.jobs.or(self.jobs), quiet: now.quiet, ..self }
+    /// Those of a suite that goes on: what it was begun with, but how much runs at a time and what is printed, and all by which a journal
+    /// could read, write or run something: which files may be read, where the JUnit report goes, which FMUs are trusted. Relative paths
+    /// of now start from `here`. What either denies is denied.
+    pub(crate) fn resumed(self, now: &Self, here: &Path) -> Self {
+        let anew = |path: &Option<PathBuf>| path.as_ref().map(|path| here.join(path));
+        Self {
+            with: OverrideArgs { root: anew(&now.with.root), ..self.with },
+            junit: anew(&now.junit),
+            deny: self.deny.and(&now.deny),
+            fmus: now.fmus,
+            jobs: now.jobs.or(self.jobs),
+            quiet: now.quiet,
+            ..self
+        }
+    }
+}
+
+/// Denied properties of runs that did not fail.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct DenyArgs {
+    /// End with exit code 4, and say where, when a run has this although it did not fail; several with commas.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = choice::<Denied>())]
+    pub(crate) deny: Vec<Denied>,
+    /// Deny all of these.
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+impl DenyArgs {
+    /// All that is denied.
+    pub(crate) fn kinds(&self) -> Vec<Denied> {
+        if self.strict { Denied::ALL.iter().map(|(_, kind, _)| *kind).collect() } else { self.deny.clone() }
+    }
+
+    /// The kinds that either denies.
+    fn and(self, other: &Self) -> Self {
+        Self { strict: self.strict || other.strict, deny: [self.deny, other.deny.clone()].concat() }
     }
 }
 

@@ -15,12 +15,13 @@ use crate::interrupt;
 use crate::output::{self, Written};
 use crate::outputs::{OutputFolder, Outputs};
 use crate::progress::Progress;
+use crate::suite::deny;
 use crate::workers;
 use earlier::Earlier;
 use servobench_report::{Compared, Comparison};
 use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult};
 use servobench_suite::{
-    Job, Run, RunError, comparable, execute, limits_agree, map_in_parallel, only_setpoints_differ,
+    Job, Run, RunError, check_warnings, comparable, execute, limits_agree, map_in_parallel, only_setpoints_differ,
     setpoints_have_closed_form,
 };
 use variants::Wanted;
@@ -68,6 +69,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     recording::write(&out, &name, &wanted, &runs)?;
     let results = results(&name, &wanted, &runs);
     let exit = results.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
+    let all = Results::new(results.clone());
     let now = wanted.iter().zip(&results).zip(&runs).map(|((one, result), run)| Compared {
         label: &one.label,
         result,
@@ -82,13 +84,13 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let has_something = comparison.has_something_to_compare();
     let heading = heading::heading(args, &wanted, &earlier, slowing.as_ref());
     let text = text_of(args, &comparison, [&heading, &failed], &name);
-    let json = Results::new(results.clone()).to_json()?;
+    let json = all.to_json()?;
     write_list(&out, &json)?;
     if !has_something {
         return Err(CliError::NothingToCompare);
     }
     print(&text)?;
-    Ok(exit)
+    Ok(exit.worse(deny(&all, &args.deny, false)?))
 }
 
 fn write_list(out: &OutputFolder, json: &str) -> Result<(), CliError> {
@@ -108,7 +110,8 @@ fn earlier_runs(args: &CompareArgs, wanted: &[Wanted]) -> Result<Vec<Earlier>, C
 fn results(name: &str, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
     let written = Written { recording: Some(name.to_owned()), files: vec![name.to_owned()], ..Written::default() };
     let each = wanted.iter().zip(runs).map(|(one, run)| {
-        let identity = output::identity(&one.job, written.clone());
+        let mut identity = output::identity(&one.job, written.clone());
+        identity.check_warnings = Some(check_warnings(&one.job));
         RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict)
     });
     each.collect()

@@ -2,6 +2,7 @@
 mod wanted;
 
 use crate::args::{self, Command, Keep, RunArgs};
+use crate::build_id;
 use crate::console::{command, print, print_parts, say, style};
 use crate::engines;
 use crate::error::CliError;
@@ -9,9 +10,11 @@ use crate::exit::Exit;
 use crate::output;
 use crate::outputs::Outputs;
 use crate::sources;
-use crate::suite::{Begun, Carrying, Files, Found, JUNIT, Ledger, exit_of, how_to_resume, suite_in, write_junit};
+use crate::suite::{
+    Begun, Carrying, Files, Found, JUNIT, Ledger, deny, exit_of, how_to_resume, other_suite, suite_in, write_junit,
+};
 use servobench_report::{brief, verdict_table};
-use servobench_results::{Folder, Kept, RESULTS, Runs, Suite};
+use servobench_results::{Digest, Folder, Kept, OF_A_SWEEP, RESULTS, Results, Runs, Suite};
 use servobench_suite::Engines;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -23,16 +26,29 @@ const OUT_OF_THE_DEMO: &str = "servobench-out/demo";
 
 /// Runs the scenarios, judges them and writes what came of them; or what is left of a suite that was ended before its time.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    if args.suite.quiet {
+        sources::leave_warnings_to_the_report();
+    }
     match &args.resume {
         None => begun(args),
         Some(folder) => match suite_in(folder, &args.suite)? {
             Found::Begun(suite) => resumed(*suite, args),
-            Found::Complete(results) => {
-                say_what_came(&results, args, folder, 0)?;
-                Ok(exit_of(&results))
-            }
+            Found::Complete(results) => reported_again(&results, args, folder),
         },
     }
+}
+
+/// The report of a suite that is complete and of today: nothing is run.
+fn reported_again(results: &Results, args: &RunArgs, folder: &Path) -> Result<Exit, CliError> {
+    if !args.suite.quiet {
+        say("nothing is left to run: scenarios, files, program, recordings and results are as they were\n");
+    }
+    say_what_came(results, args, folder, 0)?;
+    let files = Files::named(folder, args.suite.junit.as_deref(), |_| true, &OF_A_SWEEP)?;
+    if let Some(output) = &files.junit {
+        write_junit(results, output)?;
+    }
+    Ok(exit_of(results).worse(deny(results, &args.suite.deny, args.suite.quiet)?))
 }
 
 /// A suite from its beginning.
@@ -60,22 +76,25 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     let removed = folder.remove(&folder.former(RESULTS)?);
     let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
     let suite = Suite::new(wanted.digest(), args::command_line(), here, sources::stdin(), wanted.stems());
+    let suite = suite.by(Digest::of(build_id::program().as_bytes()));
     let ledger = Ledger::begin(folder, files, wanted.take_planned(), &suite)?;
     carried_out(args, &wanted, &engines, ledger, removed)
 }
 
 /// The rest of a suite: the same runs, of which those that ended are not run again.
 fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
-    let Begun { folder, suite, mut kept, command } = begun;
+    let Begun { folder, suite, mut kept, command, here } = begun;
     let Command::Run(began) = command else {
         return Err(CliError::OtherCommand { folder: folder.path().to_owned(), command: "sweep" });
     };
-    let args = RunArgs { suite: began.suite.resumed(&now.suite), verbose: now.verbose, ..began };
+    let args = RunArgs { suite: began.suite.resumed(&now.suite, &here), verbose: now.verbose, ..began };
     let engines = engines::installed();
     let mut wanted = Wanted::of(&args, &engines)?;
     if wanted.digest() != suite.suite {
-        return Err(CliError::OtherSuite(folder.path().to_owned()));
+        return Err(other_suite(folder.path(), &suite, &kept, args.suite.with.root.as_deref()));
     }
+    // What a journal says of a run counts for the run that it is of.
+    kept.hold_inputs(|index| wanted.inputs(index));
     let files = files(&args, folder.path(), &wanted)?;
     if !args.suite.quiet {
         say(&format!("{} of {} runs had ended; running the others\n", kept.ended(), wanted.len()));

@@ -3,15 +3,16 @@ mod outcome;
 mod points;
 
 use crate::args::{self, Command, Keep, SweepArgs};
+use crate::build_id;
 use crate::console::{print, say, style};
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::sources;
-use crate::suite::{Begun, Carrying, Files, Found, Ledger, exit_of, suite_in};
+use crate::suite::{Begun, Carrying, Files, Found, Ledger, deny, exit_of, other_suite, suite_in, write_junit};
 use points::Points;
 use servobench_report::run_count;
-use servobench_results::{Folder, OF_A_SWEEP, RESULTS, Runs, Suite, TABLE_CSV, is_table_of_a_sweep};
+use servobench_results::{Digest, Folder, OF_A_SWEEP, RESULTS, Runs, Suite, TABLE_CSV, is_table_of_a_sweep};
 use std::path::Path;
 
 /// Runs every point of a sweep, judges it and says what the values cost; or goes on with a sweep that was ended before its time.
@@ -21,7 +22,11 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
             Found::Begun(suite) => resumed(*suite, args),
             Found::Complete(results) => {
                 print(&(run_count(&results, style()) + "\n"))?;
-                Ok(exit_of(&results))
+                let files = Files::named(folder, args.suite.junit.as_deref(), |_| true, &OF_A_SWEEP)?;
+                if let Some(output) = &files.junit {
+                    write_junit(&results, output)?;
+                }
+                Ok(exit_of(&results).worse(deny(&results, &args.suite.deny, args.suite.quiet)?))
             }
         },
         (None, Some(path)) => begun(path, args),
@@ -44,21 +49,22 @@ fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
     folder.remove(&folder.former(RESULTS)?);
     let here = std::env::current_dir().map_err(|error| CliError::Read { path: ".".into(), error })?;
     let suite = Suite::new(points.digest(), args::command_line(), here, sources::stdin(), points.stems());
+    let suite = suite.by(Digest::of(build_id::program().as_bytes()));
     let ledger = Ledger::begin(folder, files, points.planned(), &suite)?;
     carried_out(args, &points, ledger)
 }
 
 /// The rest of a sweep: the same points, of which those that ended are not run again.
 fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
-    let Begun { folder, suite, mut kept, command } = begun;
+    let Begun { folder, suite, mut kept, command, here } = begun;
     let Command::Sweep(began) = command else {
         return Err(CliError::OtherCommand { folder: folder.path().to_owned(), command: "run" });
     };
-    let args = SweepArgs { suite: began.suite.resumed(&now.suite), ..began };
+    let args = SweepArgs { suite: began.suite.resumed(&now.suite, &here), ..began };
     let path = args.sweep.clone().ok_or(CliError::NoSweep)?;
     let points = Points::of(&path, &args)?;
     if points.digest() != suite.suite {
-        return Err(CliError::OtherSuite(folder.path().to_owned()));
+        return Err(other_suite(folder.path(), &suite, &kept, args.suite.with.root.as_deref()));
     }
     let files = files(&args, folder.path(), &points)?;
     if !args.suite.quiet {

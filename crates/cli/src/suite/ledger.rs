@@ -1,15 +1,19 @@
 //! What came of each run, kept where nothing that has ended is lost: in the journal while the suite runs, in `results.json` and
 //! JUnit at its end, whichever end that is.
 use super::files::Files;
+use super::held::changed_files;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::outputs::{Output, OutputFolder};
+use crate::workers::at_a_time;
 use servobench_report::junit;
 use servobench_results::{
-    Digest, Finished, Folder, Journal, Kept, Outcome, Planned, RESULTS, ResultsError, Runs, Suite, Unfinished,
-    write_results,
+    Digest, Finished, Folder, Journal, JournalError, Kept, Outcome, Planned, RESULTS, ResultsError, RunResult, Runs,
+    Suite, Unfinished, write_results,
 };
+use servobench_suite::{RunLimits, map_in_parallel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// The results of a suite as they come. One thread after the other notes its runs; the last word is that of whoever closes it.
 pub(crate) struct Ledger {
@@ -101,6 +105,9 @@ impl Ledger {
         let mut state = self.state();
         let mut kept = state.kept.take()?;
         let mut troubles = std::mem::take(&mut state.troubles);
+        if kept.unfinished().next().is_none() {
+            troubles.extend(self.hold_files(&mut kept).err().map(CliError::from));
+        }
         troubles.extend(kept.sync().err().map(CliError::from));
         let written = self.write_results(&kept);
         let is_safe = written.is_ok();
@@ -115,6 +122,30 @@ impl Ledger {
             troubles.extend(self.folder.remove_unnamed(&self.stems, &kept).err().map(CliError::from));
         }
         Some(Closed { kept, troubles })
+    }
+
+    /// Takes its verdict from each run whose files are not there as it wrote them: something changed or removed them while the suite ran,
+    /// and results that name them would be of another run.
+    fn hold_files(&self, kept: &mut Kept) -> Result<(), JournalError> {
+        let mut left: Vec<(usize, Duration, RunResult)> = Vec::new();
+        for head in kept.heads().filter(|head| head.has_recording) {
+            // The names alone: all results at once are larger than memory.
+            let RunResult { recording, recording_seal, files, .. } = kept.result(head.index)?.into_owned();
+            let names = RunResult { recording, recording_seal, files, ..RunResult::default() };
+            left.push((head.index, head.took.unwrap_or_default(), names));
+        }
+        let limit = at_a_time(None, RunLimits { time: None, memory: u64::MAX });
+        let folder = self.folder.path();
+        let changed = map_in_parallel(&left, limit, |_| ((), 0), |(.., run), ()| changed_files(folder, run));
+        for ((index, took, _), changed) in left.iter().zip(changed) {
+            let Some(what) = changed.unwrap_or_else(|panic| Some(panic.to_string())) else { continue };
+            let mut result = kept.result(*index)?.into_owned();
+            result.verdict = Outcome::Error;
+            result.reasons = vec![format!("what the run left was changed while the suite ran: {what}")];
+            (result.recording, result.recording_seal, result.files) = (None, None, Vec::new());
+            kept.note(Finished { index: *index, seconds: took.as_secs_f64(), result })?;
+        }
+        Ok(())
     }
 
     fn write_results(&self, kept: &Kept) -> Result<(), CliError> {

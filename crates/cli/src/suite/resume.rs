@@ -1,13 +1,19 @@
 //! `--resume`: the rest of a suite that was ended before its time.
+//!
+//! A journal is a file that may come from anywhere. What is taken from it are the scenarios and how they are run; they have to be where
+//! the command line of now lets scenarios be. It says what may be read, where the JUnit report goes and which FMUs are trusted.
+use super::complete::{complete, listed};
+use super::held::{changed_files, changed_inputs};
 use crate::args::{self, Command, SuiteArgs};
+use crate::build_id;
+use crate::console::say;
 use crate::error::CliError;
-use crate::sources;
-use servobench_results::{
-    Finished, Folder, JournalError, Kept, Outcome, RESULTS, Results, Status, Suite, read_results,
-};
-use servobench_trace::verified_seal_of;
+use crate::sources::{self, is_stdin};
+use servobench_results::{Digest, Finished, Folder, JournalError, Kept, Outcome, Results, Suite};
+use servobench_scenario::root_of;
+use std::cell::RefCell;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A suite that can go on.
 pub(crate) struct Begun {
@@ -17,9 +23,11 @@ pub(crate) struct Begun {
     pub(crate) kept: Kept,
     /// The command that began it.
     pub(crate) command: Command,
+    /// Folder that relative paths of the command line of now start from.
+    pub(crate) here: PathBuf,
 }
 
-/// What is in a folder that is to be resumed.
+/// Content of a folder that is to be resumed.
 pub(crate) enum Found {
     Begun(Box<Begun>),
     /// Nothing is left to run.
@@ -31,54 +39,95 @@ pub(crate) fn suite_in(folder: &Path, now: &SuiteArgs) -> Result<Found, CliError
     if !folder.is_dir() {
         return Err(CliError::NothingToResume(folder.to_owned()));
     }
-    let absolute = std::path::absolute(folder).map_err(|error| CliError::Read { path: folder.to_owned(), error })?;
+    let unread = |path: &Path| {
+        let path = path.to_owned();
+        |error| CliError::Read { path, error }
+    };
+    let absolute = std::path::absolute(folder).map_err(unread(folder))?;
     let there = Folder::open(&absolute)?;
-    let counts = |one: &Finished| is_settled(one) && is_there(there.path(), one);
+    let again = RefCell::new(Vec::new());
+    let counts = |one: &Finished| {
+        let changed = changed_files(there.path(), &one.result);
+        let is_whole = changed.is_none();
+        again.borrow_mut().extend(changed);
+        is_settled(one) && is_whole
+    };
     let (kept, suite) = match Kept::resume(there.journal(), counts) {
         Ok(found) => found,
         Err(JournalError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
-            return complete(folder).map(Found::Complete);
+            return complete(folder, now.with.root.as_deref()).map(Found::Complete);
         }
         Err(error) => return Err(error.into()),
     };
     let Some(command) = args::of(&suite.command) else { return Err(CliError::NothingToResume(absolute)) };
-    let began = match &command {
-        Command::Run(began) => &began.suite,
-        Command::Sweep(began) => &began.suite,
+    let (began, scenarios) = match &command {
+        Command::Run(began) => (&began.suite, began.scenarios.clone()),
+        Command::Sweep(began) => (&began.suite, began.sweep.iter().cloned().collect()),
         _ => return Err(CliError::NothingToResume(absolute)),
     };
-    // Trust is what is given now: the journal is a file.
+    let here = std::env::current_dir().map_err(unread(Path::new(".")))?;
+    allowed(&absolute, &here, now, &suite.folder, &scenarios)?;
     if began.fmus.allow_unisolated_fmus && !now.fmus.allow_unisolated_fmus {
         return Err(CliError::TrustAgain);
     }
-    std::env::set_current_dir(&suite.folder).map_err(|error| CliError::Read { path: suite.folder.clone(), error })?;
+    if let (Some(root), None) = (&began.with.root, &now.with.root) {
+        return Err(CliError::RootAgain(root.clone()));
+    }
+    if began.junit.is_some() && now.junit.is_none() && !now.quiet {
+        say("no JUnit report is written: where it goes is said by `--junit` of this command line alone\n");
+    }
+    for what in again.into_inner().iter().filter(|_| !now.quiet) {
+        say(&format!("{what}: that is run again\n"));
+    }
+    std::env::set_current_dir(&suite.folder).map_err(unread(&suite.folder))?;
     if let Some(text) = &suite.standard_input {
         sources::give_stdin(text.clone());
     }
-    Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, command })))
+    Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, command, here })))
 }
 
-/// Results of a suite that has ended.
-fn complete(folder: &Path) -> Result<Results, CliError> {
-    let path = folder.join(RESULTS);
-    let text = read_results(&path).map_err(|_| CliError::NothingToResume(folder.to_owned()))?;
-    let results = Results::from_json(&text).map_err(|error| CliError::ReadResults { path, error })?;
-    if results.status == Status::Complete { Ok(results) } else { Err(CliError::NothingToResume(folder.to_owned())) }
+/// Refuses a journal by which something would be read that the command line of now does not let be read: the folder that paths start
+/// from and all scenarios are within `--root`; without it within the project of the current folder, or beside the folder of the results.
+fn allowed(results: &Path, here: &Path, now: &SuiteArgs, start: &Path, scenarios: &[PathBuf]) -> Result<(), CliError> {
+    let given = now.with.root.as_deref();
+    let unread = |error| CliError::Read { path: given.unwrap_or(here).to_owned(), error };
+    let mut roots = vec![root_of(here, given).map_err(unread)?];
+    if given.is_none() {
+        roots.extend(results.canonicalize().ok().and_then(|folder| folder.parent().map(Path::to_owned)));
+    }
+    let files = scenarios.iter().filter(|path| !is_stdin(path)).map(|path| start.join(path));
+    for path in std::iter::once(start.to_owned()).chain(files) {
+        // What is not there is not read.
+        let Ok(real) = path.canonicalize() else { continue };
+        if !roots.iter().any(|root| real.starts_with(root)) {
+            return Err(CliError::OutsideOfToday { folder: results.to_owned(), path: real, roots });
+        }
+    }
+    Ok(())
 }
 
-/// Whether the run has a verdict. One that could not be carried out is tried again: its process may have been ended from outside, or
+/// Error of a suite in `folder` that has become another one, with the differences that the runs that ended know of.
+pub(crate) fn other_suite(folder: &Path, suite: &Suite, kept: &Kept, root: Option<&Path>) -> CliError {
+    let mut found: Vec<String> = Vec::new();
+    let program = Digest::of(build_id::program().as_bytes());
+    if suite.program == program || suite.program == Digest::default() {
+        let runs: &dyn servobench_results::Runs = kept;
+        for run in runs.each().flatten() {
+            let changed =
+                changed_inputs(&run, root).into_iter().filter(|what| !found.contains(what)).collect::<Vec<_>>();
+            found.extend(changed);
+        }
+    } else {
+        found.push(format!("the program is another one ({} now)", build_id::program()));
+    }
+    if found.is_empty() {
+        found.push("a scenario that has no result yet, or its place in the suite, has changed".into());
+    }
+    CliError::OtherSuite { folder: folder.to_owned(), found: listed(found) }
+}
+
+/// True for a run that has a verdict. One that could not be carried out is tried again: its process may have been ended from outside, or
 /// the disk may have been full.
 fn is_settled(finished: &Finished) -> bool {
     finished.result.verdict != Outcome::Error
-}
-
-/// Whether every file that the run left is there, and its recording the one that was measured.
-fn is_there(folder: &Path, finished: &Finished) -> bool {
-    let run = &finished.result;
-    let is_whole = |name: &String| folder.join(name).is_file();
-    let is_own =
-        run.recording.as_ref().zip(run.recording_seal.as_ref()).is_none_or(|(name, seal)| {
-            verified_seal_of(folder.join(name)).is_ok_and(|found| found.as_ref() == Some(seal))
-        });
-    run.files.iter().all(is_whole) && is_own
 }

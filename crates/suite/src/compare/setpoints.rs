@@ -41,6 +41,7 @@ fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
         units: _,
         overrides: _,
         time_limit: _,
+        warnings: _,
     } = one;
     *base_rate == other.base_rate
         && *axis == other.axis

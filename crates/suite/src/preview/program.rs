@@ -2,7 +2,7 @@
 use super::{Doubt, Units};
 use crate::job::run_length;
 use servobench_metrics::{DisplayUnits, Limit, Name, Quantity, Scope};
-use servobench_scenario::{BusMode, Scenario, Step};
+use servobench_scenario::{Actuator, BusMode, Scenario, Step};
 use servobench_sim::Program;
 use servobench_trace::Move;
 
@@ -62,6 +62,11 @@ impl PlannedProgram {
 
     pub(super) fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
         let mut doubts = Vec::new();
+        if matches!(scenario.actuator, Actuator::Off) && !self.moves.is_empty() {
+            let moves = if self.moves.len() == 1 { "move: it is not" } else { "moves: none of them is" };
+            let message = format!("the drive is off, and the program has {} {moves} executed", self.moves.len());
+            doubts.push(Doubt::new("drive.enabled", message, "leave `enabled` out, or the moves"));
+        }
         let steps = scenario.program.iter().enumerate().filter_map(|(index, step)| match step {
             Step::Move(step) => Some((index, step)),
             Step::Wait(_) => None,
@@ -176,6 +181,17 @@ mod tests {
         }
         let own = MOVE.replace("move_to = \"0.3 m\"", "move_to = \"0.3 m\"\nlimits = { move_time = \"0.5 s\" }");
         assert_eq!(doubts(&own)[0].0, "program.1.limits.move_time");
+    }
+
+    #[test]
+    fn a_program_that_moves_an_axis_whose_drive_is_off_is_doubted() {
+        let off = format!("{MOVE}[drive]\nenabled = false\n")
+            .replace("kind = \"prescribed\"", "kind = \"ideal-source\"\nlimit = \"1 kN\"");
+        let found = doubts(&off);
+        let words = "the drive is off, and the program has 1 move: it is not executed";
+        assert_eq!(found, [("drive.enabled".to_owned(), words.to_owned())]);
+        let held = off.replace("move_to = \"0.3 m\"", "wait = \"1 s\"");
+        assert_eq!(doubts(&held), []);
     }
 
     #[test]

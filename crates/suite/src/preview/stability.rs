@@ -15,10 +15,10 @@ pub struct LoopStability {
 }
 
 impl LoopStability {
-    pub(super) fn of(scenario: &Scenario) -> Result<Self, BuildError> {
+    pub(super) fn of(scenario: &Scenario, depth: Depth) -> Result<Self, BuildError> {
         let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
         let speeds = if is_scheduled { Speeds::planned(scenario)? } else { None };
-        Ok(Self { analysis: analyse_stability(scenario, Depth::Boundaries, speeds.as_ref())?, is_scheduled })
+        Ok(Self { analysis: analyse_stability(scenario, depth, speeds.as_ref())?, is_scheduled })
     }
 
     /// How far each loop is from a boundary; or why that is not known.

@@ -6,9 +6,11 @@ use super::order::{Order, Task};
 use super::process::Worker;
 use crate::check::Objection;
 use crate::error::RunError;
-use crate::execute::{Interruption, Recorded, TimeLimit};
+use crate::execute::{Interruption, Recorded};
 use crate::job::Job;
+use crate::time_limit::TimeLimit;
 use servobench_metrics::EarlyEnd;
+use servobench_scenario::TimeBound;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -31,10 +33,10 @@ pub struct WorkerCommand {
 }
 
 /// What a run may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunLimits {
-    /// Time by the clock; a scenario may say less.
-    pub time: Option<Duration>,
+    /// Time by the clock; a scenario may say less. `None`: as the scenario says, otherwise a default.
+    pub time: Option<TimeBound>,
     /// Memory (B): of a recording, and of a worker.
     pub memory: u64,
 }
@@ -62,7 +64,7 @@ impl Workers {
     /// None, and no limits: an engine that needs a worker cannot be asked.
     #[must_use]
     pub const fn none() -> Self {
-        let limits = RunLimits { time: None, memory: u64::MAX };
+        let limits = RunLimits { time: Some(TimeBound::Unlimited), memory: u64::MAX };
         Self::new(WorkerCommand { program: PathBuf::new(), folder: PathBuf::new(), timeout: Duration::ZERO, limits })
     }
 
@@ -89,13 +91,13 @@ impl Workers {
     /// When a run of `job` is slow, by the clock: after a minute, or at half of its limit of time.
     #[must_use]
     pub fn slow(&self, job: &Job) -> Duration {
-        let limit = TimeLimit::of(job, self.limits());
+        let limit = TimeLimit::of(job, self.limits().time);
         limit.map_or(SLOW, |limit| SLOW.min(limit.time / 2))
     }
 
     /// Runs `job` in a worker process.
     pub(crate) fn run(&self, job: &Job, progress: &mut dyn FnMut(f64)) -> Result<Recorded, RunError> {
-        let limit = TimeLimit::of(job, self.limits());
+        let limit = TimeLimit::of(job, self.limits().time);
         let order =
             Order::new(job, Task::Run { time_limit: limit.map(|limit| limit.time), records_all: job.records_all() });
         let mut done = 0.0;

@@ -166,6 +166,11 @@ impl<'a> Wanted<'a> {
         self.entries.get(index).and_then(|entry| if let Entry::Run(run) = entry { Some(run) } else { None })
     }
 
+    /// Digest of all that the run at `index` is made of; that of nothing for a file that cannot be used.
+    pub(super) fn inputs(&self, index: usize) -> Digest {
+        self.run(index).map_or_else(Digest::default, |run| run.inputs)
+    }
+
     /// Names of the runs.
     pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
         let entries = self.entries.iter();
