@@ -130,7 +130,7 @@ fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
     let (one, two, out) = (work.path().join("one.toml"), work.path().join("two.toml"), work.path().join("out"));
     let output = servobench(&["compare", one.to_str().unwrap(), two.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 4, "{}", said(&output));
-    assert!(said(&output).contains("one failed: move_time"), "{}", said(&output));
+    assert!(said(&output).contains("one is out: move_time"), "{}", said(&output));
     let results = json(&fs::read(out.join("comparison.json")).unwrap());
     let runs = results["scenarios"].as_array().unwrap();
     assert_eq!((&runs[0]["verdict"], &runs[1]["verdict"]), (&"failed".into(), &"unjudged".into()));

@@ -113,6 +113,19 @@ pub struct RequirementResult {
     pub reasons: Vec<String>,
 }
 
+impl RequirementResult {
+    /// True of a requirement `name` that is broken, or lifted and would be: the run did not do what was requested, and its metrics cannot be
+    /// compared with those of other runs. Lifting `rings` is how swings after a stop are measured.
+    #[must_use]
+    pub fn is_not_met(&self, name: &str) -> bool {
+        match self.standing {
+            Standing::Broken => true,
+            Standing::Lifted => !self.reasons.is_empty() && name != "rings",
+            Standing::Met | Standing::NotAsked => false,
+        }
+    }
+}
+
 /// A fault that the scenario expects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {

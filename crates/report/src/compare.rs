@@ -1,11 +1,15 @@
 //! Runs side by side: a table, and what it says in words.
 //!
-//! Differences within one per cent are none, nor are those of rounding. A ratio of vibrations never stands alone: at which frequency and damping it
-//! holds, what the set-points make of the frequencies beside that one, and what it costs in time and torque.
+//! Differences that are of no concern, cannot be seen, or come by chance are none (`terms`). A run that failed takes no part in the
+//! conclusion (`standing`). A ratio of vibrations never stands alone: at which frequency and damping it holds, what the set-points make of the
+//! frequencies beside that one, and what it costs in time and torque.
+mod arrival;
 mod by_run;
 mod many;
 mod relation;
+mod standing;
 mod table;
+mod terms;
 mod words;
 
 use crate::bound_limits::bound_limits;
@@ -13,9 +17,10 @@ use crate::failures::lifted;
 use crate::text::wrapped;
 use relation::Relation;
 use servobench_metrics::Name;
+use servobench_results::RunResult;
 use servobench_results::printable;
-use servobench_results::{Outcome, RunResult};
 use servobench_trace::Move;
+use standing::Standing;
 
 /// A run under the name that it has in the comparison.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +31,18 @@ pub struct Compared<'a> {
     pub result: &'a RunResult,
     /// The moves of its set-point.
     pub moves: &'a [Move],
+    /// Its random numbers.
+    pub noise: Noise<'a>,
+}
+
+/// Random numbers of a run: noise of sensors, jitter of a bus or a task.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Noise<'a> {
+    /// None: the run is the same with any seed.
+    #[default]
+    None,
+    /// Some; the results with other seeds.
+    Seeds(&'a [RunResult]),
 }
 
 /// Two or more runs.
@@ -34,6 +51,10 @@ pub struct Comparison<'a> {
     runs: Vec<Compared<'a>>,
     /// Whether only their set-points differ.
     is_of_set_points: bool,
+    /// Lengths that are equal differ by this much at most (axis unit).
+    length: f64,
+    /// The metric in which they were made equal.
+    equal: Option<Name>,
 }
 
 /// Sizes below this (SI) are rounding: positions of the order of 1 m are known to 1e-16 m, and a picometre is nothing that
@@ -47,7 +68,20 @@ impl<'a> Comparison<'a> {
     /// Compares `runs`, of which only the set-points differ; the first is the one that the others are held against.
     #[must_use]
     pub const fn new(runs: Vec<Compared<'a>>) -> Self {
-        Self { runs, is_of_set_points: true }
+        Self { runs, is_of_set_points: true, length: 0.0, equal: None }
+    }
+
+    /// The same with lengths (axis unit) that are equal when they differ by no more than `length`: a part of the window, or one increment of
+    /// the encoder.
+    #[must_use]
+    pub fn with_equal_lengths(self, length: f64) -> Self {
+        Self { length, ..self }
+    }
+
+    /// The same of runs that were made equal in `metric`, which is then the one that is told.
+    #[must_use]
+    pub fn made_equal(self, metric: Option<Name>) -> Self {
+        Self { equal: metric, ..self }
     }
 
     /// The same of runs that differ in more than their set-points: nothing is said of what those would make alone.
@@ -63,15 +97,19 @@ impl<'a> Comparison<'a> {
         table::compared().any(in_two)
     }
 
-    /// What failed in which run, what is lifted there, and which limit of the drive bound in which run, in lines that fit
-    /// `width`; empty without any.
+    /// Which runs do not win and why, in lines that fit `width`; empty where all may.
     #[must_use]
-    pub fn failed(&self, width: usize) -> String {
-        let failed = self.runs.iter().filter(|run| run.result.verdict == Outcome::Failed);
-        let lines = failed.flat_map(|run| {
-            let reasons = run.result.reasons.iter();
-            reasons.flat_map(|reason| wrapped(&printable(&format!("{} failed: {reason}", run.label)), width))
+    pub fn out(&self, width: usize) -> String {
+        let lines = self.runs.iter().flat_map(|run| {
+            let reasons = run.why_out().into_iter();
+            reasons.flat_map(|reason| wrapped(&printable(&format!("{} is out: {reason}", run.label)), width))
         });
+        lines.map(|line| line + "\n").collect()
+    }
+
+    /// Requirements that are lifted and limits of the drive that bound, by run, in lines that fit `width`; empty without any.
+    #[must_use]
+    pub fn notes(&self, width: usize) -> String {
         let bound = self.runs.iter().flat_map(|run| {
             let limits = bound_limits(run.result);
             limits.into_iter().flat_map(|limit| wrapped(&format!("{}: {limit}", run.label), width))
@@ -80,7 +118,26 @@ impl<'a> Comparison<'a> {
             let lifted = lifted(run.result);
             lifted.into_iter().flat_map(|words| wrapped(&printable(&format!("{}: {words}", run.label)), width))
         });
-        lines.chain(lifted).chain(bound).map(|line| line + "\n").collect()
+        lifted.chain(bound).map(|line| line + "\n").collect()
+    }
+
+    /// The runs that did what was requested, whether or not they kept their limits.
+    fn sound(&self) -> Vec<Compared<'a>> {
+        self.runs.iter().filter(|run| run.standing() < Standing::Broken).copied().collect()
+    }
+
+    /// True of a run that may win.
+    fn is_in(run: &Compared<'_>) -> bool {
+        run.standing() == Standing::In
+    }
+
+    /// By which metric vibrations are compared: the one that was made equal; the amplitude of the mode when all ring in the same one;
+    /// otherwise peak-to-peak, which has the settling of the drive in it.
+    fn vibration(&self, runs: &[Compared<'_>]) -> Name {
+        match self.equal {
+            Some(metric @ (Name::ResidualVibrationAmplitude | Name::ResidualVibrationPp)) => metric,
+            _ => vibration_of(runs),
+        }
     }
 }
 
@@ -98,13 +155,13 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// By which metric vibrations are held against each other: the amplitude of the mode when all ring in the same one,
-/// otherwise peak-to-peak, which has the settling of the drive in it.
+/// The amplitude of the mode when all ring in the same one, otherwise peak-to-peak.
 fn vibration_of(runs: &[Compared<'_>]) -> Name {
     let value = |run: &Compared<'_>, name| run.metric(name).map(|(value, _)| value);
     let have_amplitudes = runs.iter().all(|run| value(run, Name::ResidualVibrationAmplitude).is_some());
     let frequencies: Vec<_> = runs.iter().map(|run| value(run, Name::ResidualVibrationFrequency)).collect();
-    let is_same = |two: &Option<f64>| frequencies[0].zip(*two).map(|(one, two)| Relation::of(one, two));
+    let first = frequencies.first().copied().flatten();
+    let is_same = |two: &Option<f64>| first.zip(*two).map(|(one, two)| Relation::of(one, two));
     if have_amplitudes && frequencies.iter().all(|two| is_same(two) == Some(Relation::Same)) {
         Name::ResidualVibrationAmplitude
     } else {
@@ -128,30 +185,36 @@ mod tests {
     use servobench_results::samples::{broken, jerk, short};
 
     #[test]
-    fn what_failed_is_said_of_the_run_that_failed() {
+    fn what_failed_is_told_of_the_run_that_failed() {
         let (jerk, slow) = (jerk(), short());
         let runs = vec![
-            Compared { label: "jerk", result: &jerk, moves: &[] },
-            Compared { label: "slow", result: &slow, moves: &[] },
+            Compared { label: "jerk", result: &jerk, moves: &[], noise: Noise::None },
+            Compared { label: "slow", result: &slow, moves: &[], noise: Noise::None },
         ];
-        insta::assert_snapshot!(Comparison::new(runs).failed(76), @r#"
-        slow failed: arrives: the load ended 200 mm short of 200 mm (window ±5 µm);
+        let comparison = Comparison::new(runs);
+        insta::assert_snapshot!(comparison.out(76), @r#"
+        slow is out: arrives: the load ended 200 mm short of 200 mm (window ±5 µm);
         effort limit bound for 1.99 s
-        slow failed: executed: `jog` was never executed: `home.Done` did not come
-        slow failed: expected, but did not come: 8611h of `drive` from 0.5 s on
-        slow: lifted: stable: the velocity loop has a pole outside the unit circle
-        slow: lifted: 8611h of `drive` from 0.5 s on
+        slow is out: executed: `jog` was never executed: `home.Done` did not come
+        slow is out: expected, but did not come: 8611h of `drive` from 0.5 s on
+        slow is out: stable: the velocity loop has a pole outside the unit circle
+        (lifted)
         "#);
-        let kept = vec![Compared { label: "jerk", result: &jerk, moves: &[] }; 2];
-        assert_eq!(Comparison::new(kept).failed(76), "");
+        assert_eq!(
+            comparison.notes(76),
+            "slow: lifted: stable: the velocity loop has a pole outside the unit circle\n\
+             slow: lifted: 8611h of `drive` from 0.5 s on\n"
+        );
+        let kept = vec![Compared { label: "jerk", result: &jerk, moves: &[], noise: Noise::None }; 2];
+        assert_eq!(Comparison::new(kept.clone()).out(76) + &Comparison::new(kept).notes(76), "");
     }
 
     #[test]
     fn runs_without_a_quantity_in_common_have_nothing_to_compare() {
         let (jerk, nothing) = (jerk(), broken());
         let of = |other| {
-            let one = Compared { label: "one", result: &jerk, moves: &[] };
-            Comparison::new(vec![one, Compared { label: "other", result: other, moves: &[] }])
+            let one = Compared { label: "one", result: &jerk, moves: &[], noise: Noise::None };
+            Comparison::new(vec![one, Compared { label: "other", result: other, moves: &[], noise: Noise::None }])
                 .has_something_to_compare()
         };
         assert!(of(&jerk) && !of(&nothing));
@@ -163,8 +226,8 @@ mod tests {
             servobench_results::samples::of_numbers("one", [1.3, 0.0, error, 1e-6, 39.0, 1.4e-15, 170.0, 60.0])
         });
         let runs = vec![
-            Compared { label: "one", result: &one, moves: &[] },
-            Compared { label: "two", result: &two, moves: &[] },
+            Compared { label: "one", result: &one, moves: &[], noise: Noise::None },
+            Compared { label: "two", result: &two, moves: &[], noise: Noise::None },
         ];
         let table = Comparison::new(runs).table(crate::style::Style::default());
         let row = table.lines().find(|line| line.starts_with("peak following error")).unwrap();

@@ -25,7 +25,7 @@ mod timing;
 mod verdict_table;
 
 pub use advice::{AdviceOptions, advice_json, advice_text};
-pub use compare::{Compared, Comparison};
+pub use compare::{Compared, Comparison, Noise};
 pub use denied::{Denied, denials};
 pub use error::ReportError;
 pub use fmu_table::fmu_table;

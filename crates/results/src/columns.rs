@@ -9,6 +9,8 @@ use servobench_metrics::Name;
 pub struct Columns {
     /// What came of each; `None`: it has not ended.
     pub outcomes: Vec<Option<Outcome>>,
+    /// Which of them did not meet a requirement, broken or lifted.
+    pub broken: Vec<bool>,
     /// Every metric that was measured of a run, in the order of tables.
     pub metrics: Vec<MetricColumn>,
 }
@@ -30,10 +32,11 @@ impl Columns {
     /// # Errors
     /// [`JournalError`], when a result cannot be read.
     pub fn of(runs: &dyn Runs, count: usize) -> Result<Self, JournalError> {
-        let mut columns = Self { outcomes: vec![None; count], metrics: Vec::new() };
+        let mut columns = Self { outcomes: vec![None; count], broken: vec![false; count], metrics: Vec::new() };
         for head in runs.heads().filter(|head| head.index < count) {
             let run = runs.result(head.index)?;
             columns.outcomes[head.index] = Some(run.verdict);
+            columns.broken[head.index] = run.not_met().next().is_some();
             for (name, metric) in &run.metrics {
                 let (Some(value), Ok(name)) = (metric.value, name.parse()) else { continue };
                 columns.of_metric(name, &metric.unit).values[head.index] = value;
@@ -65,6 +68,7 @@ mod tests {
         let expected = [time(&jerk), time(&snap)];
         let results = Results::new(vec![jerk, broken, snap]);
         let columns = Columns::of(&results, 4).unwrap();
+        assert_eq!(columns.broken, [false; 4]);
         assert_eq!(columns.outcomes[1..], [Some(Outcome::Error), Some(results.scenarios[2].verdict), None]);
         let found = &columns.metrics[0];
         assert_eq!((found.metric, found.unit.as_str()), (Name::MoveTime, "s"));

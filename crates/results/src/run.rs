@@ -207,6 +207,12 @@ impl RunResult {
         }
     }
 
+    /// Requirements that it did not meet, broken or lifted, and the reasons: with one of them it cannot be compared with other runs.
+    pub fn not_met(&self) -> impl Iterator<Item = (&str, &RequirementResult)> {
+        let all = self.requirements.iter().filter(|(name, requirement)| requirement.is_not_met(name));
+        all.map(|(name, requirement)| (name.as_str(), requirement))
+    }
+
     fn of(run: RunIdentity, recording: Option<&Recording>, metrics: &Metrics) -> Self {
         let events = recording.map(|recording| recording.events.as_slice()).unwrap_or_default();
         let log = recording.map(|recording| recording.log.as_slice()).unwrap_or_default();

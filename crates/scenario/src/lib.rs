@@ -33,6 +33,7 @@ mod parameters;
 mod place;
 mod points;
 mod quantity;
+mod random;
 mod reading;
 mod resolve;
 mod scenario;
@@ -59,6 +60,7 @@ pub use points::{
     Column, Counts, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points,
     read_points_in, read_velocities,
 };
+pub use random::Seed;
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
     InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc, Record, Requirements,

@@ -69,7 +69,8 @@ table! {
         /// Other keys that have the same value in each run: "measure.mode".
         also: OneOrMany<String> = (),
         /// Whether it is what the machine is like, which nobody chooses: what is chosen is then compared at its worst over these values. Only
-        /// in a grid; what is drawn is given in any case. Default: false.
+        /// in a grid; what is drawn is given in any case. Default: in the front alone for keys of `axis`, `motor` and `disturbance` and for
+        /// seeds; otherwise false.
         given: bool = (),
         /// The values that it takes one after the other.
         values: OneOrMany<Amount> = (),
@@ -271,8 +272,13 @@ fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> 
 /// With the keys that follow others, and those that are given.
 fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<Sweep, Reported> {
     for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
-        if let (Some(key), Some(true)) = (vary.key.given(), vary.given.optional()?) {
-            sweep = sweep.given(key);
+        let followers = vary.also.optional()?.map(|also| also.0.as_slice()).unwrap_or_default();
+        let is_of_the_machine =
+            |key: &String| is_of_the_machine(key) || followers.iter().any(|at| self::is_of_the_machine(&at.value));
+        match (vary.key.given(), vary.given.optional()?) {
+            (Some(key), Some(true)) => sweep = sweep.given(key),
+            (Some(key), None) if is_of_the_machine(key) => sweep = sweep.of_the_machine(key),
+            _ => {}
         }
         if let (Some(key), Some(also)) = (vary.key.given(), vary.also.optional()?) {
             let others: Vec<String> = also.0.iter().map(|at| at.value.clone()).collect();
@@ -281,6 +287,15 @@ fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<S
         }
     }
     Ok(sweep)
+}
+
+/// Tables of a scenario that say what the machine is like.
+const MACHINE: [&str; 3] = ["axis", "motor", "disturbance"];
+
+/// True of a key that is not chosen: the machine, its disturbances, the seed of its random numbers.
+fn is_of_the_machine(key: &str) -> bool {
+    let mut parts = key.split(['.', '[']);
+    parts.next().is_some_and(|table| MACHINE.contains(&table)) || key.rsplit('.').next() == Some("seed")
 }
 
 fn refuse(report: &mut Report, place: Span, error: &SweepError) -> Reported {

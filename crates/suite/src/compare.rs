@@ -12,7 +12,8 @@ pub use error::{CompareError, NotReached};
 pub use limits::limits_agree;
 pub use setpoints::{only_setpoints_differ, setpoints_have_closed_form};
 
-use crate::job::Job;
+use crate::job::{Job, Source};
+use crate::requirements::increment;
 use servobench_config::Choice as _;
 use servobench_scenario::Step;
 
@@ -27,6 +28,29 @@ pub fn comparable(jobs: &[Job]) -> Result<(), CompareError> {
     let (motion, other_motion) = (kind(one), kind(other));
     let (one, other) = (one.label().to_owned(), other.label().to_owned());
     Err(CompareError::Axes { one, motion, other, other_motion })
+}
+
+/// A part of the settling window within which lengths are equal: of no concern to whoever chose the window.
+const OF_A_WINDOW: f64 = 0.01;
+
+/// By how much lengths on these axes differ that are equal (axis unit): 1 % of the smallest settling window, or one increment of the encoder
+/// that closes the position loop, the coarsest of all.
+#[must_use]
+pub fn equal_length(jobs: &[Job]) -> f64 {
+    let windows = jobs.iter().filter_map(|job| job.scenario.measure.window);
+    let window = windows.reduce(f64::min).unwrap_or_default();
+    jobs.iter().map(|job| increment(&job.scenario)).fold(OF_A_WINDOW * window, f64::max)
+}
+
+/// `job` with the random numbers of `source`, which is its scenario with other seeds; its recording is not kept.
+#[must_use]
+pub fn reseeded(job: &Job, source: Source, id: String) -> Job {
+    let mut other = job.of_source(source, id);
+    if !job.durations().is_empty() {
+        slow(&mut other, job.durations().to_vec());
+    }
+    other.leave_recording_out();
+    other
 }
 
 /// Slows the moves of `job` to `durations` (s). Its limits were made for another set-point: it loses them.

@@ -38,6 +38,12 @@ impl Job {
         Self { id, scenario, text, engine, label: None, durations: Vec::new(), keeps_recording: true, wanted: None }
     }
 
+    /// The same of another scenario, called `id`; it is not slowed yet.
+    pub(crate) fn of_source(&self, source: Source, id: String) -> Self {
+        let Source { scenario, text } = source;
+        Self { id, scenario, text, durations: Vec::new(), ..self.clone() }
+    }
+
     /// From now on messages call it `label`: variants of one scenario have one name.
     pub fn call(&mut self, label: String) {
         self.label = Some(label);

@@ -17,8 +17,9 @@ pub mod worker;
 
 pub use check::{Objection, check, delays};
 pub use compare::{
-    CompareError, EqualError, EqualQuantity, Equalized, Measuring, NotReached, Slowed, comparable, equal_metric,
-    limits_agree, only_setpoints_differ, setpoints_have_closed_form, to_duration, to_equal, to_equal_duration,
+    CompareError, EqualError, EqualQuantity, Equalized, Measuring, NotReached, Slowed, comparable, equal_length,
+    equal_metric, limits_agree, only_setpoints_differ, reseeded, setpoints_have_closed_form, to_duration, to_equal,
+    to_equal_duration,
 };
 pub use engines::{EngineMissing, Engines};
 pub use error::RunError;

@@ -68,7 +68,7 @@ fn poles(report: &Report) -> Poles {
 }
 
 /// What the encoder that closes the position loop tells apart (axis unit); 0 for an ideal one, or none.
-fn increment(scenario: &Scenario) -> f64 {
+pub(crate) fn increment(scenario: &Scenario) -> f64 {
     let motor = match &scenario.actuator {
         Actuator::Pmsm { encoder, .. } | Actuator::IdealSource { encoder, .. } => encoder,
         Actuator::Prescribed | Actuator::Off => return 0.0,

@@ -1,6 +1,6 @@
 //! How much of its limits a run used, and the mode in which its load swings: what an advice is made of.
 use crate::execute::Run;
-use servobench_metrics::{Limit, Name, Standing};
+use servobench_metrics::{Limit, Name};
 use servobench_motion::Limits;
 use servobench_planner::Generator;
 use servobench_scenario::{AxisMechanics, Scenario, Step};
@@ -30,7 +30,7 @@ impl Run {
         let is_of_a_share = |limit: &Limit, in_move: Option<usize>| in_move.is_none() && limit.max.is_some();
         let verdict = &self.verdict;
         let is_sound = verdict.expected.iter().all(|expected| expected.met.is_some())
-            && !verdict.requirements.iter().any(|(_, result)| result.standing == Standing::Broken)
+            && !verdict.requirements.iter().any(|(name, result)| result.is_not_met(name.as_str()))
             && verdict.misses.iter().all(|miss| is_of_a_share(&miss.limit, miss.in_move) && miss.value.is_some());
         let time = value(if has_window { Name::MoveAndSettlingTime } else { Name::MoveTime });
         Usage { time, shares: limits.iter().filter_map(share).collect(), is_sound }

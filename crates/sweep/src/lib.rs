@@ -32,7 +32,7 @@ pub use cover::KeyColumn;
 pub use distribution::Distribution;
 pub use draws::{Drawn, Draws, Method};
 pub use error::SweepError;
-pub use pareto::front;
+pub use pareto::{front, front_apart};
 pub use proportion::Proportion;
 pub use quantile::Sample;
 pub use sensitivity::{End, Influence, Sensitivity};

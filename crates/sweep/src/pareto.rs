@@ -25,6 +25,22 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
+/// The places of [`front`] without those that another one on it beats when values are `equal` that are near to each other: no larger in
+/// either, and smaller in one. At least one is left.
+#[must_use]
+pub fn front_apart(points: &[(f64, f64)], equal: [impl Fn(f64, f64) -> bool; 2]) -> Vec<usize> {
+    let all = front(points);
+    let is_smaller = |one: f64, other: f64, k: usize| one < other && !equal[k](one, other);
+    let beats = |one: &usize, other: &usize| {
+        let ((x, y), (u, v)) = (points[*one], points[*other]);
+        let is_larger = is_smaller(u, x, 0) || is_smaller(v, y, 1);
+        !is_larger && (is_smaller(x, u, 0) || is_smaller(y, v, 1))
+    };
+    let apart: Vec<usize> = all.iter().filter(|one| !all.iter().any(|other| beats(other, one))).copied().collect();
+    // Where what is equal is not the same share everywhere, each may beat the next in turn.
+    if apart.is_empty() { all } else { apart }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -38,6 +54,17 @@ mod tests {
         assert_eq!(front(&[(0.0, -0.0), (-0.0, 0.0), (0.0, 1.0)]), [0, 1]);
         assert_eq!(front(&[(1.0, f64::INFINITY), (f64::NEG_INFINITY, f64::INFINITY)]), [1]);
         assert!(front(&[]).is_empty() && front(&[(nan, nan)]).is_empty());
+    }
+
+    #[test]
+    fn what_is_nearly_equal_is_not_a_choice() {
+        let near = |one: f64, other: f64| (one - other).abs() <= 0.01 * one.abs().min(other.abs());
+        // The second is as fast as the first and calmer; the third is slower and as calm.
+        let points = [(1.0, 5.0), (1.005, 1.0), (1.5, 0.995), (2.0, 0.5), (f64::INFINITY, 0.1)];
+        assert_eq!(front(&points), [0, 1, 2, 3, 4]);
+        assert_eq!(front_apart(&points, [near, near]), [1, 3, 4]);
+        assert_eq!(front_apart(&[(1.0, 1.0), (1.0, 1.0)], [near, near]), [0, 1], "none beats its equal");
+        assert!(front_apart(&[], [near, near]).is_empty());
     }
 
     /// Numbers of which many are equal.

@@ -24,7 +24,18 @@ impl Sample {
     /// The numbers among `values`; what is not finite was not measured and is left out. `None` where nothing is left.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        Self::sorted_of(values.into_iter().filter(|value| value.is_finite()).collect())
+    }
+
+    /// The same of times, of which an infinite one, of what is never reached, is later than all others and not left out. Mean and deviation
+    /// are then not numbers.
+    #[must_use]
+    pub fn of_times(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let is_time = |value: &f64| value.is_finite() || *value == f64::INFINITY;
+        Self::sorted_of(values.into_iter().filter(is_time).collect())
+    }
+
+    fn sorted_of(mut sorted: Vec<f64>) -> Option<Self> {
         sorted.sort_unstable_by(f64::total_cmp);
         let largest = sorted.first()?.abs().max(sorted.last()?.abs());
         // In parts of the largest, so that no sum and no square is beyond all numbers, and about the mean in a second pass.
@@ -77,6 +88,9 @@ impl Sample {
         let rank = partition(n, |below| (below + 1) as f64 <= h).max(1);
         let within = (h - rank as f64).clamp(0.0, 1.0);
         let (one, next) = (self.sorted[rank - 1], self.sorted[rank.min(n - 1)]);
+        if next.is_infinite() {
+            return if within > 0.0 { next } else { one };
+        }
         (one * (1.0 - within) + next * within).clamp(one, next)
     }
 

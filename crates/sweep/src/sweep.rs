@@ -46,6 +46,8 @@ pub struct Sweep {
     followers: Vec<(String, String)>,
     /// Axes that are given, and not chosen.
     pub(crate) given: Vec<String>,
+    /// Axes that are of the machine, and so given where combinations are chosen from.
+    pub(crate) machine: Vec<String>,
 }
 
 impl Sweep {
@@ -67,7 +69,7 @@ impl Sweep {
         let draws_of_each = draws.as_ref().map_or(1, |draws| draws.count() as usize);
         let points = combinations.checked_mul(draws_of_each).filter(|points| *points <= MOST_POINTS);
         let points = points.ok_or(SweepError::TooMany { most: MOST_POINTS })?;
-        Ok(Self { axes, arrangement, draws, points, followers: Vec::new(), given: Vec::new() })
+        Ok(Self { axes, arrangement, draws, points, followers: Vec::new(), given: Vec::new(), machine: Vec::new() })
     }
 
     /// With `followers`, which have the value of `key` in every run: the mode that is measured follows the frequency of the load.

@@ -1,5 +1,6 @@
 //! What the runs of a sweep gave.
 use crate::sweep::{Setting, Sweep};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a sweep gave: a row for each run, engines slowest, then combinations of the axes, then draws.
@@ -35,11 +36,46 @@ pub enum Outcome {
     Good,
     /// A limit is not kept.
     Failed,
+    /// A requirement is broken: the run did not do what was requested, and what it measured is not of the task.
+    Broken,
     /// Nothing can be said: the run was invalid, ended in an error, or did not take place.
     NoVerdict,
 }
 
+/// Metrics that are a time until something is reached.
+const TIMES: [&str; 4] = ["program_time", "move_and_settling_time", "settling_time", "move_time"];
+/// Those of them that a run lacks in which it is never reached.
+const SETTLED: usize = 3;
+
 impl<'a> Table<'a> {
+    /// The table with numbers that count. Those of a run without a verdict do not. A run that broke a requirement never arrives, and what else
+    /// it measured does not count: an axis that stands still has no vibration. A time of settling that other runs have is never where it is
+    /// missing: what did not settle is later than everything.
+    #[must_use]
+    pub fn counted(&self) -> Cow<'_, Self> {
+        let outcome = |row: usize| self.outcomes.get(row).copied().unwrap_or(Outcome::NoVerdict);
+        let columns = self.columns.iter().map(|column| {
+            let place = TIMES.iter().position(|name| *name == column.name);
+            let is_measured = |(row, value): (usize, &f64)| !value.is_nan() && outcome(row) != Outcome::NoVerdict;
+            let is_wanted = column.values.iter().enumerate().any(is_measured);
+            let values = column.values.iter().enumerate().map(|(row, value)| match (outcome(row), place) {
+                (Outcome::NoVerdict, _) | (Outcome::Broken, None) => f64::NAN,
+                (Outcome::Broken, Some(_)) if is_wanted => f64::INFINITY,
+                (Outcome::Good | Outcome::Failed, Some(place)) if place < SETTLED && is_wanted && value.is_nan() => {
+                    f64::INFINITY
+                }
+                _ => *value,
+            });
+            Column { name: column.name.clone(), unit: column.unit.clone(), values: values.collect() }
+        });
+        if self.outcomes.iter().all(|outcome| *outcome == Outcome::Good)
+            && !self.columns.iter().any(|column| column.values.iter().any(|value| value.is_nan()))
+        {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { columns: columns.collect(), outcomes: self.outcomes.clone(), ..*self })
+    }
+
     /// How many groups there are: engines times combinations of the axes.
     #[must_use]
     pub fn groups(&self) -> usize {
@@ -97,6 +133,29 @@ impl<'a> Table<'a> {
 mod tests {
     use super::*;
     use crate::{Arrangement, Axis, Distribution, Drawn, Draws, Method, Value};
+
+    #[test]
+    fn what_never_arrives_is_later_than_everything() {
+        let values = (0..4).map(|k| Value::Number(k.into(), String::new())).collect();
+        let sweep = Sweep::new(vec![Axis { key: "a".into(), values }], Arrangement::Grid, None).unwrap();
+        let column =
+            |name: &str, values: [f64; 4]| Column { name: name.into(), unit: String::new(), values: values.into() };
+        let outcomes = vec![Outcome::Good, Outcome::Failed, Outcome::Broken, Outcome::NoVerdict];
+        let columns = vec![
+            column("settling_time", [1.0, f64::NAN, 0.0, 0.0]),
+            column("move_time", [1.0, 2.0, 1.0, 1.0]),
+            column("residual_vibration_pp", [1.0, 2.0, 0.0, 0.0]),
+            column("program_time", [f64::NAN; 4]),
+        ];
+        let table = Table { sweep: &sweep, engines: &[], columns, outcomes };
+        let counted = table.counted();
+        let shown =
+            |k: usize| counted.columns[k].values.iter().map(|value| format!("{value}")).collect::<Vec<_>>().join(" ");
+        assert_eq!(shown(0), "1 inf inf NaN");
+        assert_eq!(shown(1), "1 2 inf NaN");
+        assert_eq!(shown(2), "1 2 NaN NaN");
+        assert_eq!(shown(3), "NaN NaN NaN NaN", "nothing is known of it");
+    }
 
     #[test]
     fn rows_are_engines_then_combinations_then_draws() {

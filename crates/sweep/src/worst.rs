@@ -1,4 +1,5 @@
 //! What is chosen, at the worst of what is given: the frequency of a load is not for the engineer to choose.
+use crate::axis::Axis;
 use crate::quantile::Sample;
 use crate::sweep::{Arrangement, Sweep};
 use crate::table::{Column, Outcome, Table};
@@ -23,33 +24,74 @@ impl Sweep {
         &self.given
     }
 
+    /// The same where the axis `key` is of the machine: it is shown as it is, and given where the best combinations are chosen from.
+    #[must_use]
+    pub fn of_the_machine(mut self, key: &str) -> Self {
+        if self.axes().iter().any(|axis| axis.key == key) && !self.given.iter().any(|given| given == key) {
+            self.machine.push(key.to_owned());
+        }
+        self
+    }
+
+    /// The axes of the machine that are not given anyway.
+    #[must_use]
+    pub fn machine_keys(&self) -> &[String] {
+        &self.machine
+    }
+
     /// What is chosen alone: the axes that are not given, without draws; `None` where nothing is given, or all of it.
     #[must_use]
     pub fn chosen(&self) -> Option<Self> {
-        let is_given = |key: &String| self.given.contains(key);
-        let axes: Vec<_> = self.axes().iter().filter(|axis| !is_given(&axis.key)).cloned().collect();
-        if self.given.is_empty() || axes.is_empty() {
+        if self.given.is_empty() {
+            return None;
+        }
+        let mut chosen = self.without(&self.given)?;
+        chosen.machine.clone_from(&self.machine);
+        Some(chosen)
+    }
+
+    /// The chosen axes alone where those of the machine are given, too; `None` where nothing is left, or where both go side by side.
+    #[must_use]
+    pub fn chosen_for_a_machine(&self) -> Option<Self> {
+        self.without(&[&self.given[..], &self.machine[..]].concat())
+    }
+
+    /// Without these axes and without draws.
+    fn without(&self, keys: &[String]) -> Option<Self> {
+        let axes: Vec<_> = self.axes().iter().filter(|axis| !keys.contains(&axis.key)).cloned().collect();
+        let parts = self.arrangement() == Arrangement::Zip && !keys.is_empty();
+        if axes.is_empty() || parts {
             return None;
         }
         // What is left of a grid is one.
-        Self::new(axes, Arrangement::Grid, None).ok()
+        Self::new(axes, self.arrangement(), None).ok()
     }
 }
 
 impl<'a> Table<'a> {
     /// A row for each engine and combination of `chosen`, which is [`Sweep::chosen`] of this table's sweep: of each metric the largest
     /// value over what is given, or of draws the largest of their 95 % quantiles. A row is good when all its runs are, of draws when 95 % of
-    /// each group are. A value is missing where one of those that it is the largest of is.
+    /// each group are. A value is missing where one of those that it is the largest of is, and never is larger than every time.
     #[must_use]
     pub fn at_worst(&self, chosen: &'a Sweep) -> Self {
-        let engines = self.engines.len().max(1);
-        let rows = engines * chosen.combinations();
+        self.worst_of(chosen, self.engines)
+    }
+
+    /// The same with a row for each combination of `chosen`, at its worst over the engines, too.
+    #[must_use]
+    pub fn at_worst_on_all_engines(&self, chosen: &'a Sweep) -> Self {
+        self.worst_of(chosen, &[])
+    }
+
+    fn worst_of(&self, chosen: &'a Sweep, engines: &'a [String]) -> Self {
+        let rows = engines.len().max(1) * chosen.combinations();
         let mut groups: Vec<Vec<usize>> = vec![Vec::new(); rows];
         for group in 0..self.groups() {
-            let engine = group / self.sweep.combinations();
+            let engine = if engines.is_empty() { 0 } else { group / self.sweep.combinations() };
             groups[engine * chosen.combinations() + self.choice(chosen, group)].push(group);
         }
-        let columns = self.columns.iter().map(|column| {
+        let counted = self.counted();
+        let columns = counted.columns.iter().map(|column| {
             let worst = |groups: &Vec<usize>| {
                 let values = groups.iter().map(|group| largest(self.values(column, *group)));
                 values.reduce(larger)
@@ -58,14 +100,20 @@ impl<'a> Table<'a> {
             Column { name: column.name.clone(), unit: column.unit.clone(), values }
         });
         let outcomes = groups.iter().map(|groups| self.worst_outcome(groups));
-        Table { sweep: chosen, engines: self.engines, columns: columns.collect(), outcomes: outcomes.collect() }
+        Table { sweep: chosen, engines, columns: columns.collect(), outcomes: outcomes.collect() }
     }
 
     /// Which combination of `chosen` group `group` is of.
     fn choice(&self, chosen: &Sweep, group: usize) -> usize {
         let places = self.sweep.places(self.combination(group));
-        let all = self.sweep.axes().iter().zip(places).filter(|(axis, _)| !self.sweep.given_keys().contains(&axis.key));
-        all.zip(chosen.axes()).fold(0, |index, ((_, place), axis)| index * axis.values.len() + place)
+        let is_chosen = |axis: &Axis| chosen.axes().iter().any(|other| other.key == axis.key);
+        let mut all = self.sweep.axes().iter().zip(places).filter(|(axis, _)| is_chosen(axis));
+        match chosen.arrangement() {
+            Arrangement::Zip => all.next().map_or(0, |(_, place)| place),
+            Arrangement::Grid => {
+                all.zip(chosen.axes()).fold(0, |index, ((_, place), axis)| index * axis.values.len() + place)
+            }
+        }
     }
 
     fn worst_outcome(&self, groups: &[usize]) -> Outcome {
@@ -75,6 +123,7 @@ impl<'a> Table<'a> {
             let needed = if runs > 1.0 { MOST } else { 1.0 };
             match () {
                 () if share(Outcome::NoVerdict) > 1.0 - needed => Outcome::NoVerdict,
+                () if share(Outcome::Broken) > 1.0 - needed => Outcome::Broken,
                 () if share(Outcome::Good) < needed => Outcome::Failed,
                 () => Outcome::Good,
             }
@@ -82,7 +131,8 @@ impl<'a> Table<'a> {
         let rank = |outcome: &Outcome| match outcome {
             Outcome::Good => 0,
             Outcome::Failed => 1,
-            Outcome::NoVerdict => 2,
+            Outcome::Broken => 2,
+            Outcome::NoVerdict => 3,
         };
         all.max_by_key(rank).unwrap_or(Outcome::NoVerdict)
     }
@@ -93,7 +143,7 @@ fn largest(values: &[f64]) -> f64 {
     match values {
         [value] => *value,
         values if values.iter().any(|value| value.is_nan()) => f64::NAN,
-        values => Sample::of(values.iter().copied()).map_or(f64::NAN, |sample| sample.quantile(MOST)),
+        values => Sample::of_times(values.iter().copied()).map_or(f64::NAN, |sample| sample.quantile(MOST)),
     }
 }
 
@@ -126,19 +176,22 @@ mod tests {
         let mut outcomes = vec![Outcome::Good; 24];
         outcomes[8] = Outcome::Failed;
         outcomes[13] = Outcome::NoVerdict;
+        outcomes[22] = Outcome::Broken;
         let engines = ["exact".to_owned(), "rapier".to_owned()];
-        let columns = vec![Column { name: "time".into(), unit: "s".into(), values }];
+        let columns = vec![Column { name: "move_time".into(), unit: "s".into(), values }];
         let table = Table { sweep: &sweep, engines: &engines, columns, outcomes };
         let worst = table.at_worst(&chosen);
         assert_eq!(worst.groups(), 8);
         let found: Vec<f64> = worst.columns[0].values.clone();
-        assert_eq!(
-            found[..7].iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
-            [100.0, 5.0, 10.0, 11.0, 16.0, 17.0, 22.0].map(f64::to_bits)
-        );
-        assert!(found[7].is_nan());
+        let finite = [100.0, 5.0, 10.0, 11.0, 16.0].map(f64::to_bits);
+        assert_eq!(found[..5].iter().map(|x| x.to_bits()).collect::<Vec<_>>(), finite);
+        // A run without a verdict has no number, one that broke a requirement never arrives.
+        assert!(found[5].is_nan() && found[6].is_infinite() && found[7].is_nan(), "{found:?}");
         let good = Outcome::Good;
-        assert_eq!(worst.outcomes, [good, good, Outcome::Failed, good, good, Outcome::NoVerdict, good, good]);
+        assert_eq!(
+            worst.outcomes,
+            [good, good, Outcome::Failed, good, good, Outcome::NoVerdict, Outcome::Broken, good]
+        );
     }
 
     #[test]

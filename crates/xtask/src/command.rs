@@ -4,7 +4,7 @@ use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 15] = [
+const COMMANDS: [(&str, &str); 16] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
@@ -17,6 +17,10 @@ const COMMANDS: [(&str, &str); 15] = [
     ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
     ("drill many", "run suites of up to 20 000 runs (SERVOBENCH_SWEEP: how many), and say what each costs"),
     ("drill long", "run ten minutes and 1e8 ticks, and say what memory they take"),
+    (
+        "drill several",
+        "compare and sweep axes of which one is bad (SERVOBENCH_SWEEP: how many), and read the conclusions",
+    ),
     ("drill sweep", "sweep 20 000 runs (SERVOBENCH_SWEEP: how many), and say how fast and with what memory"),
     (
         "drill advise",
@@ -56,6 +60,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["drill", "many"] => drill::many(&Workspace::find()?),
         ["drill", "long"] => drill::long(&Workspace::find()?),
         ["drill", "sweep"] => drill::sweep(&Workspace::find()?),
+        ["drill", "several"] => drill::several(&Workspace::find()?),
         ["drill", "advise"] => drill::advise(&Workspace::find()?),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),

@@ -6,6 +6,7 @@ mod long;
 mod many;
 mod measured;
 mod mutants;
+mod several;
 mod sweeps;
 
 pub(crate) use advice::run as advise;
@@ -13,6 +14,7 @@ pub(crate) use faults::run as faults;
 pub(crate) use inputs::run as inputs;
 pub(crate) use long::run as long;
 pub(crate) use many::run as many;
+pub(crate) use several::run as several;
 pub(crate) use sweeps::run as sweep;
 
 use crate::failure::Failure;

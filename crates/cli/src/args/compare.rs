@@ -36,6 +36,10 @@ pub(crate) struct CompareArgs {
     /// scenarios of the same names are reported and not judged again. May be given several times.
     #[arg(long, value_name = "FILE")]
     pub(crate) against: Vec<PathBuf>,
+    /// Seeds that each run with random numbers (noise, jitter) is made with: that of its file and the numbers after it. With fewer than 5 no
+    /// difference is told from chance.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 5)]
+    pub(crate) seeds: u32,
     /// Engine to use instead of the first scenario's.
     #[arg(long, value_name = "NAME", value_parser = engine())]
     pub(crate) engine: Option<EngineName>,

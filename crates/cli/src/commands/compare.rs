@@ -3,6 +3,7 @@ mod earlier;
 mod heading;
 mod labels;
 mod recording;
+mod seeds;
 mod slowing;
 mod variants;
 
@@ -18,12 +19,14 @@ use crate::progress::Progress;
 use crate::suite::deny;
 use crate::workers;
 use earlier::Earlier;
-use servobench_report::{Compared, Comparison};
+use servobench_report::{Compared, Comparison, Noise};
 use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult};
 use servobench_suite::{
-    Job, Run, RunError, check_warnings, comparable, execute, limits_agree, map_in_parallel, only_setpoints_differ,
+    Job, Run, RunError, check_warnings, comparable, equal_length, execute, limits_agree, map_in_parallel,
+    only_setpoints_differ,
     setpoints_have_closed_form,
 };
+use slowing::Slowing;
 use variants::Wanted;
 
 /// Runs the scenarios in their variants on one engine, says what differs, which wins by how much where that can be said, and writes one
@@ -63,27 +66,36 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     for (one, job) in wanted.iter_mut().zip(jobs) {
         one.job = job;
     }
-    let runs = carried_out(args, &wanted)?;
+    let of_seeds = seeds::jobs(&wanted);
+    let jobs: Vec<&Job> = wanted.iter().map(|one| &one.job).chain(of_seeds.iter().map(|(_, job)| job)).collect();
+    let mut runs = carried_out(args, &jobs)?;
+    let seeded = seeded(&wanted, &of_seeds, runs.split_off(wanted.len()));
+    let length = equal_length(&wanted.iter().map(|one| one.job.clone()).collect::<Vec<_>>());
 
     folder.remove(&former);
     recording::write(&out, &name, &wanted, &runs)?;
     let results = results(&name, &wanted, &runs);
-    let exit = results.iter().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
+    let judged = results.iter().chain(seeded.iter().flatten());
+    let exit = judged.fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
     let all = Results::new(results.clone());
-    let now = wanted.iter().zip(&results).zip(&runs).map(|((one, result), run)| Compared {
+    let now = wanted.iter().zip(&results).zip(&runs).zip(&seeded).map(|(((one, result), run), seeds)| Compared {
         label: &one.label,
         result,
         moves: &run.recording.moves,
+        noise: if one.job.scenario.seeds().is_empty() { Noise::None } else { Noise::Seeds(seeds) },
     });
-    let before = earlier.iter().map(|one| Compared { label: &one.label, result: &one.result, moves: &[] });
-    let now: Vec<Compared<'_>> = now.collect();
-    // Runs of before are reported and not judged again.
-    let failed = Comparison::new(now.clone()).failed(style().width);
-    let comparison = Comparison::new(now.into_iter().chain(before).collect());
+    // Of results of before there is one seed; whether a scenario of the same name had random numbers then is taken from that of now.
+    let before = earlier.iter().map(|one| {
+        let is_random = wanted.iter().any(|now| !now.job.scenario.seeds().is_empty());
+        let noise = if is_random { Noise::Seeds(&[]) } else { Noise::None };
+        Compared { label: &one.label, result: &one.result, moves: &[], noise }
+    });
+    let comparison = Comparison::new(now.chain(before).collect()).with_equal_lengths(length);
+    let comparison = comparison.made_equal(slowing.as_ref().and_then(Slowing::metric));
     let comparison = if has_closed_form { comparison } else { comparison.of_more_than_set_points() };
     let has_something = comparison.has_something_to_compare();
     let heading = heading::heading(args, &wanted, &earlier, slowing.as_ref());
-    let text = text_of(args, &comparison, [&heading, &failed], &name);
+    let text = text_of(args, &comparison, &heading, &name);
     let json = all.to_json()?;
     write_list(&out, &json)?;
     if !has_something {
@@ -117,14 +129,23 @@ fn results(name: &str, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
     each.collect()
 }
 
+/// Results of the runs with other seeds, for each run.
+fn seeded(wanted: &[Wanted], jobs: &[(usize, Job)], runs: Vec<Run>) -> Vec<Vec<RunResult>> {
+    let mut all: Vec<Vec<RunResult>> = vec![Vec::new(); wanted.len()];
+    for ((place, job), run) in jobs.iter().zip(runs) {
+        let identity = output::identity(job, Written::default());
+        all[*place].push(RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict));
+    }
+    all
+}
+
 /// Runs all of them; without one of them there is no comparison.
-fn carried_out(args: &CompareArgs, wanted: &[Wanted]) -> Result<Vec<Run>, CliError> {
-    let jobs: Vec<&Job> = wanted.iter().map(|one| &one.job).collect();
+fn carried_out(args: &CompareArgs, jobs: &[&Job]) -> Result<Vec<Run>, CliError> {
     let limits = workers::limits(args.time_limit, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&args.out, args.worker_timeout, limits)?);
     let progress = Progress::new(jobs.len(), false);
     let ready = |job: &&Job| ((), job.memory());
-    let ended = map_in_parallel(&jobs, workers::at_a_time(None, limits), ready, |job, ()| {
+    let ended = map_in_parallel(jobs, workers::at_a_time(None, limits), ready, |job, ()| {
         let ended = execute(job, &engines, &workers, &mut progress.of_run(&job.id, workers.slow(job)))
             .map_err(|broken| broken.error);
         progress.ended(&job.id, if ended.is_ok() { "done" } else { Outcome::Error.word() });
@@ -142,13 +163,16 @@ fn carried_out(args: &CompareArgs, wanted: &[Wanted]) -> Result<Vec<Run>, CliErr
     if failed.is_empty() { Ok(runs) } else { Err(CliError::Runs(failed)) }
 }
 
-fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, [heading, failed]: [&str; 2], recording: &str) -> String {
+/// Table, who is out, conclusion, notes.
+fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, heading: &str, recording: &str) -> String {
     let style = style();
+    let out = comparison.out(style.width);
     [
         heading.to_owned() + "\n\n",
         comparison.table(style) + "\n",
+        if out.is_empty() { out } else { out + "\n" },
         comparison.words(style.width) + "\n",
-        failed.to_owned(),
+        comparison.notes(style.width),
         format!("look at it: {}\n", command(&["view", &args.out.join(recording).to_string_lossy()])),
     ]
     .concat()

@@ -1,6 +1,6 @@
 //! The table of many runs: a row for each, columns in as many blocks as they need.
 use super::relation::Relation;
-use super::table::{Kind, LIMITS, ROWS, effort_word, is_smallest};
+use super::table::{Kind, LIMITS, ROWS, SMALLEST, effort_word, largest, verdict};
 use super::{Comparison, Value};
 use crate::style::{Ink, Style};
 use crate::text::{elided, widest};
@@ -61,7 +61,7 @@ impl Comparison<'_> {
                 table.push('\n');
             }
         }
-        table += &style.paint(Ink::Faint, "* smallest, by more than 1 %");
+        table += &style.paint(Ink::Faint, SMALLEST);
         table.push('\n');
         table
     }
@@ -70,13 +70,20 @@ impl Comparison<'_> {
         let limits = LIMITS.into_iter().enumerate().filter_map(|(k, (words, power))| {
             let unit = format!("{}/s{power}", self.axis_unit());
             let values: Vec<_> = self.runs.iter().map(|run| Some((run.limit(k)?, unit.as_str()))).collect();
-            column(words, Kind::Limit, &values)
+            column(words, (Kind::Limit, None), &values)
         });
         let metrics = ROWS.into_iter().filter_map(|(_, metric, kind)| {
             let values: Vec<_> = self.runs.iter().map(|run| run.metric(metric)).collect();
-            column(&effort_word(in_two_lines(metric), &values), kind, &values)
+            let smallest = self.ranks(metric, kind).smallest;
+            column(&effort_word(in_two_lines(metric), &values), (kind, smallest), &values)
         });
-        limits.chain(metrics).collect::<Vec<_>>().into_iter()
+        let verdicts = self.has_out().then(|| Column {
+            head: [String::new(), "verdict".to_owned(), String::new()],
+            cells: self.runs.iter().map(|run| verdict(run).to_owned()).collect(),
+        });
+        let program =
+            self.program().and_then(|(values, ranks)| column("program\ndone", (Kind::Time, ranks.smallest), &values));
+        limits.chain(program).chain(metrics).chain(verdicts).collect::<Vec<_>>().into_iter()
     }
 }
 
@@ -101,7 +108,7 @@ const fn in_two_lines(metric: Name) -> &'static str {
 }
 
 /// The column of `values`, unless no run has one, or it says nothing of the runs: limits and properties that are the same.
-fn column(words: &str, kind: Kind, values: &[Option<Value<'_>>]) -> Option<Column> {
+fn column(words: &str, (kind, smallest): (Kind, Option<usize>), values: &[Option<Value<'_>>]) -> Option<Column> {
     let (first, unit) = values.iter().flatten().next().copied()?;
     let is_same = |value: &Option<Value<'_>>| match (value, kind) {
         (None, _) => true,
@@ -114,14 +121,13 @@ fn column(words: &str, kind: Kind, values: &[Option<Value<'_>>]) -> Option<Colum
     // A single line stands next to the unit.
     let parted = if kind == Kind::Limit { words.rsplit_once(' ') } else { words.split_once('\n') };
     let (one, two) = parted.unwrap_or(("", words));
-    let largest = values.iter().flatten().fold(0.0, |largest: f64, (value, _)| largest.max(value.abs()));
-    let (symbol, scale) = Quantity::axis_unit(largest, unit);
-    let cells = values.iter().map(|value| match value {
+    let (symbol, scale) = Quantity::axis_unit(largest(values), unit);
+    let cells = values.iter().enumerate().map(|(k, value)| match value {
         None => "–".to_owned(),
+        Some((number, _)) if number.is_infinite() => "never".to_owned(),
         Some((_, other)) if *other != unit => "other unit".to_owned(),
         Some((number, _)) => {
-            let is_ranked = matches!(kind, Kind::Time | Kind::Size);
-            let mark = if is_ranked && is_smallest(*value, values) { "*" } else { "" };
+            let mark = if smallest == Some(k) { "*" } else { "" };
             let digits = if kind == Kind::Property { 4 } else { 3 };
             format!("{mark}{:.digits$}", Quantity::new(number / scale, ""))
         }
@@ -132,7 +138,7 @@ fn column(words: &str, kind: Kind, values: &[Option<Value<'_>>]) -> Option<Colum
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::Compared;
+    use crate::compare::{Compared, Noise};
     use servobench_results::RunResult;
     use servobench_results::samples::{jerk, lambrechts_move, of_numbers};
 
@@ -149,7 +155,7 @@ mod tests {
     #[test]
     fn eight_runs_are_rows_of_eighty_columns() {
         let all = eight();
-        let runs = all.iter().map(|(label, result)| Compared { label, result, moves: &[] });
+        let runs = all.iter().map(|(label, result)| Compared { label, result, moves: &[], noise: Noise::None });
         let table = Comparison::new(runs.collect()).table(Style::default());
         insta::assert_snapshot!(table, @r#"
                           move +  peak error,  vibration,    amplitude   peak    RMS
@@ -163,7 +169,7 @@ mod tests {
         ei        1.35      1.45         3.10       0.567        0.283    170   61.2
         2hump-ei  1.36      1.46         3.10       0.486        0.243    170   61.2
         3hump-ei  1.37      1.47         3.10       0.425        0.213    170   61.2
-        * smallest, by more than 1 %
+        * smallest, by more than what counts as equal
         "#);
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
@@ -173,17 +179,17 @@ mod tests {
         let (other, one) = (of_numbers("other", [1.3, 0.1, 3e-6, 1e-6, 17.5, 0.0021, 170.0, 61.2]), jerk());
         let (slow, fast) = ([lambrechts_move(3)], [lambrechts_move(4)]);
         let label = "a name that is longer than a column";
-        let mut runs = vec![Compared { label: "jerk", result: &one, moves: &slow }; 5];
+        let mut runs = vec![Compared { label: "jerk", result: &one, moves: &slow, noise: Noise::None }; 5];
         let same = Comparison::new(runs.clone()).table(Style::default());
         assert!(!same.contains("limit") && !same.contains("frequency"), "{same}");
-        runs[4] = Compared { label, result: &other, moves: &fast };
+        runs[4] = Compared { label, result: &other, moves: &fast, noise: Noise::None };
         let table = Comparison::new(runs).table(Style::default());
         assert!(table.contains("frequency") && table.contains("17.50") && !table.contains("limit of"), "{table}");
         assert!(table.contains("a name that…n a column"), "{table}");
         let mut slower = slow.clone();
         slower[0].limits[0] = Some(0.5);
-        let mut runs = vec![Compared { label: "jerk", result: &one, moves: &slow }; 5];
-        runs[1] = Compared { label: "slower", result: &one, moves: &slower };
+        let mut runs = vec![Compared { label: "jerk", result: &one, moves: &slow, noise: Noise::None }; 5];
+        runs[1] = Compared { label: "slower", result: &one, moves: &slower, noise: Noise::None };
         let table = Comparison::new(runs).table(Style::default());
         assert!(table.contains("limit of") && table.contains("velocity") && !table.contains("snap"), "{table}");
     }

@@ -1,14 +1,15 @@
 //! What a table of more than two runs says, in words.
 use super::relation::Relation;
 use super::table::MOST_COLUMNS;
+use super::terms::SEEDS;
 use super::words::mode;
-use super::{Compared, Value, force_or_torque, in_words, vibration_of};
+use super::{Compared, Comparison, Value, force_or_torque, in_words};
 use servobench_metrics::{Name, Quantity};
 
-/// Each quantity from the best run to the worst, then which of them are worth a choice.
-pub(super) fn sentences(runs: &[Compared<'_>]) -> Vec<String> {
+/// Each quantity of the runs that did what was requested, from the best to the worst; then which of those that may win are worth a choice.
+pub(super) fn sentences<'a>(comparison: &Comparison<'a>, runs: &[Compared<'a>]) -> Vec<String> {
     let unit = runs.iter().find_map(|run| run.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
-    let vibration = vibration_of(runs);
+    let vibration = comparison.vibration(runs);
     let ranked = [
         (format!("Residual vibration ({})", in_words(vibration)), vibration),
         ("Move".to_owned(), Name::MoveTime),
@@ -16,28 +17,44 @@ pub(super) fn sentences(runs: &[Compared<'_>]) -> Vec<String> {
         ("Peak following error".to_owned(), Name::FollowingErrorPeakLoad),
         (format!("RMS {}", force_or_torque(unit)), Name::TorqueRms),
     ];
-    let ranked = ranked.into_iter().filter_map(|(words, name)| ranking(&words, name, runs));
-    ranked.chain(ringing(runs)).chain(choice(runs, vibration)).collect()
+    let ranked = ranked.into_iter().filter_map(|(words, name)| {
+        let all: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.metric(name)?))).collect();
+        ranking(&words, all, runs.len())
+    });
+    // Of programs of more than one move the longest move does not say when they are done.
+    let program = runs.iter().any(|run| !run.is_one_move()).then(|| {
+        let all = runs.iter().filter_map(|run| Some((run.label, run.arrival()?)));
+        ranking("Program done after", all.filter(|(_, (time, _))| time.is_finite()).collect(), runs.len())
+    });
+    let ranked = ranked.chain(program.flatten());
+    ranked.chain(unsettled(runs)).chain(ringing(runs)).chain(choice(comparison)).collect()
 }
 
-/// The runs from the best to the worst; of many the first three and the last.
-fn ranking(words: &str, name: Name, runs: &[Compared<'_>]) -> Option<String> {
-    let mut ranked: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.metric(name)?))).collect();
+/// The runs from the best to the worst, with what was measured of them; of many the first three and the last.
+fn ranking(words: &str, mut ranked: Vec<(&str, Value<'_>)>, runs: usize) -> Option<String> {
     ranked.sort_by(|one, two| one.1.0.abs().total_cmp(&two.1.0.abs()));
     let (_, best) = *ranked.first()?;
     let (_, worst) = *ranked.last()?;
-    if ranked.len() == runs.len() && Relation::of(best.0, worst.0) == Relation::Same {
+    if ranked.len() == runs && Relation::of(best.0, worst.0) == Relation::Same {
         return Some(format!("{words}: all the same within 1 %, {}.", Quantity::new(best.0, best.1)));
     }
     let told = |one: &(&str, Value<'_>)| format!("{} {}", one.0, against(best.0, one.1));
     Some(match ranked.as_slice() {
-        [first, second, third, .., last] if runs.len() > MOST_COLUMNS && ranked.len() > MOST_COLUMNS => {
+        [first, second, third, .., last] if runs > MOST_COLUMNS && ranked.len() > MOST_COLUMNS => {
             let [least, most] = if best.1 == "s" { ["shortest", "longest"] } else { ["least", "most"] };
             let best = format!("{words}: {least} {}, then {} and {}", told(first), told(second), told(third));
             format!("{best}; {most} {}.", told(last))
         }
         all => format!("{words}: {}.", all.iter().map(told).collect::<Vec<_>>().join(", ")),
     })
+}
+
+/// Runs that do not settle, which are in none of the rankings of times with settling.
+fn unsettled(runs: &[Compared<'_>]) -> Option<String> {
+    let never = runs.iter().filter(|run| run.arrival().is_some_and(|(time, _)| time.is_infinite()));
+    let names: Vec<&str> = never.map(|run| run.label).collect();
+    let verb = if names.len() == 1 { "does" } else { "do" };
+    (!names.is_empty()).then(|| format!("{} {verb} not settle: later than all others.", listing(&names)))
 }
 
 /// `1.35 s (3.8 % longer)`
@@ -66,39 +83,56 @@ fn ringing(runs: &[Compared<'_>]) -> Option<String> {
     })
 }
 
-/// A run by its label, its vibration and its time.
-type Standing<'a> = (&'a str, f64, f64);
-
-/// Which runs are not beaten in vibration and time together by one of the others.
-fn choice<'a>(runs: &[Compared<'a>], vibration: Name) -> Option<String> {
-    let settles = runs.iter().all(|run| run.metric(Name::MoveAndSettlingTime).is_some());
-    let time = if settles { Name::MoveAndSettlingTime } else { Name::MoveTime };
-    let both = |run: &Compared<'a>| Some((run.label, run.metric(vibration)?.0.abs(), run.metric(time)?.0.abs()));
-    let all = runs.iter().map(both).collect::<Option<Vec<_>>>()?;
-    let beats = |one: &Standing<'a>, other: &Standing<'a>| {
-        let stands = [Relation::of(other.1, one.1), Relation::of(other.2, one.2)];
-        stands.iter().all(|relation| !relation.is_more()) && stands.iter().any(|relation| *relation != Relation::Same)
+/// Which runs of those that may win are not beaten in vibration and time together by one of the others.
+fn choice(comparison: &Comparison<'_>) -> Option<String> {
+    let runs: Vec<Compared<'_>> = comparison.runs.iter().filter(|run| Comparison::is_in(run)).copied().collect();
+    match runs.as_slice() {
+        [] => return Some("No run wins: all are out.".to_owned()),
+        [_] => return comparison.only_one_in(),
+        many if many.iter().any(Compared::has_unknown_noise) => return Some(within_noise(many)),
+        _ => {}
+    }
+    let vibration = comparison.vibration(&runs);
+    let places: Vec<usize> = (0..runs.len()).collect();
+    let mut stands = Vec::new();
+    for one in &runs {
+        let of =
+            |other: &Compared<'_>| Some([comparison.relation(vibration, one, other)?, comparison.arrival(one, other)?]);
+        stands.push(runs.iter().map(of).collect::<Option<Vec<_>>>()?);
+    }
+    let beats = |one: usize, other: usize| {
+        let [vibration, time] = stands[one][other];
+        !vibration.is_more() && !time.is_more() && !(vibration.is_equal() && time.is_equal())
     };
-    let (mut front, beaten): (Vec<&Standing<'a>>, Vec<&Standing<'a>>) =
-        all.iter().partition(|one| !all.iter().any(|other| beats(other, one)));
-    front.sort_by(|one, two| one.2.total_cmp(&two.2));
-    let names = |all: &[&Standing<'a>]| listing(&all.iter().map(|one| one.0).collect::<Vec<_>>());
-    let arrives = if settles { "is in position" } else { "arrives" };
+    let (mut front, beaten): (Vec<usize>, Vec<usize>) =
+        places.iter().partition(|one| !places.iter().any(|other| beats(*other, **one)));
+    let time = |place: &usize| runs[*place].arrival().map_or(f64::INFINITY, |(time, _)| time);
+    front.sort_by(|one, two| time(one).total_cmp(&time(two)));
+    let names = |all: &[usize]| listing(&all.iter().map(|place| runs[*place].label).collect::<Vec<_>>());
+    let arrives = if comparison.all_settle() && runs.iter().any(|run| run.metric(Name::SettlingTime).is_some()) {
+        "is in position"
+    } else {
+        "arrives"
+    };
+    let is_equal = |one: &usize, other: &usize| stands[*one][*other].iter().all(|relation| relation.is_equal());
+    let is_chance = stands.iter().flatten().flatten().any(|relation| *relation == Relation::Chance);
     match front.as_slice() {
         [] => None,
-        [winner] => Some(format!("{} wins: no other shakes its load less or {arrives} sooner.", winner.0)),
-        [first, .., last] if beaten.is_empty() && same(first, last) => {
-            Some("Between them there is nothing to choose.".to_owned())
+        [winner] => {
+            Some(format!("{} wins: no other leaves less residual vibration or {arrives} sooner.", runs[*winner].label))
         }
-        _ if beaten.is_empty() => Some(format!(
-            "Each that {arrives} sooner shakes its load more, from {} to {}: it is a choice.",
-            front[0].0,
-            front[front.len() - 1].0
+        all if beaten.is_empty() && all.iter().all(|one| all.iter().all(|other| is_equal(one, other))) => {
+            let noise = if is_chance { "Within noise there" } else { "Between them there" };
+            Some(format!("{noise} is nothing to choose."))
+        }
+        [first, .., last] if beaten.is_empty() => Some(format!(
+            "Each that {arrives} sooner leaves more residual vibration, from {} to {}: it is a choice.",
+            runs[*first].label, runs[*last].label
         )),
         _ => {
             let is = if beaten.len() == 1 { "is" } else { "are" };
             Some(format!(
-                "The choice is between {}; {} {is} beaten by one that shakes its load no more and {arrives} no later.",
+                "The choice is between {}; {} {is} beaten by one that leaves no more residual vibration and {arrives} no later.",
                 names(&front),
                 names(&beaten)
             ))
@@ -106,8 +140,15 @@ fn choice<'a>(runs: &[Compared<'a>], vibration: Name) -> Option<String> {
     }
 }
 
-fn same(one: &Standing<'_>, two: &Standing<'_>) -> bool {
-    Relation::of(one.1, two.1) == Relation::Same && Relation::of(one.2, two.2) == Relation::Same
+/// The conclusion of runs with random numbers that were not run with enough seeds.
+pub(super) fn within_noise(runs: &[Compared<'_>]) -> String {
+    let names: Vec<&str> = runs.iter().filter(|run| run.has_unknown_noise()).map(|run| run.label).collect();
+    let have = if names.len() == 1 { "has" } else { "have" };
+    format!(
+        "Within noise: {} {have} random numbers and fewer than {SEEDS} seeds, so that no run wins; --seeds {SEEDS} shows what is \
+         chance.",
+        listing(&names)
+    )
 }
 
 /// `one, two and three`
@@ -121,7 +162,7 @@ fn listing(names: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::compare::{Compared, Comparison};
+    use crate::compare::{Compared, Comparison, Noise};
     use servobench_results::samples::{jerk, of_numbers, snap};
 
     #[test]
@@ -129,9 +170,9 @@ mod tests {
         let (jerk, snap) = (jerk(), snap());
         let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
         let runs = vec![
-            Compared { label: "trapezoid", result: &trapezoid, moves: &[] },
-            Compared { label: "jerk", result: &jerk, moves: &[] },
-            Compared { label: "snap", result: &snap, moves: &[] },
+            Compared { label: "trapezoid", result: &trapezoid, moves: &[], noise: Noise::None },
+            Compared { label: "jerk", result: &jerk, moves: &[], noise: Noise::None },
+            Compared { label: "snap", result: &snap, moves: &[], noise: Noise::None },
         ];
         insta::assert_snapshot!(Comparison::new(runs).words(76), @r#"
         Residual vibration (amplitude of the mode): snap 105 nm, jerk 1.70 µm
@@ -141,7 +182,8 @@ mod tests {
         Peak following error: snap 730 nm, jerk 3.10 µm (4.2 × as much), trapezoid
         90.0 µm (120 × as much). RMS force: snap 60.0 N, trapezoid 60.3 N, jerk
         61.2 N (2.0 % more). The choice is between jerk and snap; trapezoid is
-        beaten by one that shakes its load no more and is in position no later.
+        beaten by one that leaves no more residual vibration and is in position no
+        later.
         "#);
     }
 
@@ -153,7 +195,7 @@ mod tests {
                 (*name, of_numbers(name, [*time, 0.0, 3e-6, *vibration, 39.0, 0.002, 170.0, 60.0]))
             })
             .collect();
-        let runs = all.iter().map(|(label, result)| Compared { label, result, moves: &[] });
+        let runs = all.iter().map(|(label, result)| Compared { label, result, moves: &[], noise: Noise::None });
         Comparison::new(runs.collect()).words(1000).trim_end().to_owned()
     }
 
@@ -177,7 +219,7 @@ mod tests {
         Peak following error: all the same within 1 %, 3.00 µm.
         RMS force: all the same within 1 %, 60.0 N.
         The load rings at 39.00 Hz (ζ = 0.0020).
-        The choice is between none, zv, zvd and zvdd; mzv, ei, 2hump-ei and 3hump-ei are beaten by one that shakes its load no more and is in position no later.
+        The choice is between none, zv, zvd and zvdd; mzv, ei, 2hump-ei and 3hump-ei are beaten by one that leaves no more residual vibration and is in position no later.
         "#);
     }
 
@@ -186,15 +228,15 @@ mod tests {
         let last = |numbers: &[(&str, f64, f64)]| conclusion(numbers).rsplit_once(". ").unwrap().1.to_owned();
         assert_eq!(
             last(&[("a", 1.0, 1e-6), ("b", 1.1, 2e-6), ("c", 1.2, 3e-6)]),
-            "a wins: no other shakes its load less or is in position sooner."
+            "a wins: no other leaves less residual vibration or is in position sooner."
         );
         assert_eq!(
             last(&[("a", 1.0, 3e-6), ("b", 1.1, 2e-6), ("c", 1.2, 1e-6)]),
-            "Each that is in position sooner shakes its load more, from a to c: it is a choice."
+            "Each that is in position sooner leaves more residual vibration, from a to c: it is a choice."
         );
         assert_eq!(
             last(&[("a", 1.0, 3e-6), ("b", 1.2, 3e-6), ("c", 1.2, 1e-6)]),
-            "The choice is between a and c; b is beaten by one that shakes its load no more and is in position no later."
+            "The choice is between a and c; b is beaten by one that leaves no more residual vibration and is in position no later."
         );
         assert_eq!(last(&[("a", 1.0, 1e-6); 3]), "Between them there is nothing to choose.");
     }

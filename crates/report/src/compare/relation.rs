@@ -3,7 +3,7 @@ use servobench_metrics::Quantity;
 use std::fmt;
 
 /// Differences below this share are none.
-const SAME: f64 = 0.01;
+pub(super) const SAME: f64 = 0.01;
 
 /// Size of the change from `one` to `two`, in per cent of `one`.
 pub(super) fn percent(one: f64, two: f64) -> Quantity<'static> {
@@ -19,13 +19,19 @@ pub(super) enum Relation {
     Less(f64),
     /// Larger: size over reference.
     More(f64),
+    /// Another one, and not told from chance: the runs have random numbers.
+    Chance,
 }
 
 impl Relation {
     /// How `size` stands to `reference`, by magnitude.
     pub(super) fn of(reference: f64, size: f64) -> Self {
         let (reference, size) = (reference.abs(), size.abs());
-        if (size - reference).abs() <= SAME * reference.max(size) {
+        // What is never reached is as late as what is never reached, and later than all else.
+        if size.is_infinite() && reference.is_infinite() {
+            return Self::Same;
+        }
+        if reference.is_finite() && size.is_finite() && (size - reference).abs() <= SAME * reference.max(size) {
             Self::Same
         } else if size < reference {
             Self::Less(reference / size)
@@ -34,8 +40,13 @@ impl Relation {
         }
     }
 
-    pub(super) fn is_more(self) -> bool {
+    pub(super) const fn is_more(self) -> bool {
         matches!(self, Self::More(_))
+    }
+
+    /// True where neither is known to be larger.
+    pub(super) const fn is_equal(self) -> bool {
+        matches!(self, Self::Same | Self::Chance)
     }
 }
 
@@ -44,6 +55,7 @@ impl fmt::Display for Relation {
         let number = |ratio: f64| Quantity::new(ratio, "");
         match *self {
             Self::Same => f.write_str("same"),
+            Self::Chance => f.write_str("within noise"),
             Self::Less(ratio) if !ratio.is_finite() => f.write_str("none left"),
             Self::More(ratio) if !ratio.is_finite() => f.write_str("none before"),
             Self::Less(ratio) if ratio < 2.0 => write!(f, "{:.2} % less", number(100.0 * (1.0 - 1.0 / ratio))),
@@ -70,6 +82,9 @@ mod tests {
             (1.0, 0.0, "none left"),
             (0.0, 1.0, "none before"),
             (0.0, 0.0, "same"),
+            (f64::INFINITY, f64::INFINITY, "same"),
+            (f64::INFINITY, 1.0, "none left"),
+            (1.0, f64::INFINITY, "none before"),
         ] {
             assert_eq!(Relation::of(one, two).to_string(), text, "{one} {two}");
         }

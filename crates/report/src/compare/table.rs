@@ -1,9 +1,10 @@
 //! The table.
 use super::relation::{Relation, percent};
-use super::{Comparison, Value, force_or_torque};
+use super::{Compared, Comparison, Standing, Value, force_or_torque};
 use crate::style::{Ink, Style};
 use crate::text::{elided, widest};
 use servobench_metrics::{Name, Quantity};
+use servobench_results::Outcome;
 
 /// How the last column of a row reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +51,7 @@ const CELL: usize = 11;
 /// `  +50.0 ms, +3.8 %` fits.
 const CHANGE: usize = 18;
 
-impl Comparison<'_> {
+impl<'a> Comparison<'a> {
     /// One row for each quantity that any run has; with two runs a column says how the second stands to the first,
     /// with more an asterisk marks the smallest. Of more than four runs each is a row.
     #[must_use]
@@ -67,17 +68,66 @@ impl Comparison<'_> {
         for (k, (label, power)) in LIMITS.into_iter().enumerate() {
             let unit = format!("{}/s{power}", self.axis_unit());
             let values: Vec<_> = self.runs.iter().map(|run| Some((run.limit(k)?, unit.as_str()))).collect();
-            row(&mut table, &format!("{label:name$}"), cell, Kind::Limit, &values);
+            row(&mut table, &format!("{label:name$}"), cell, (Kind::Limit, &Ranks::default()), &values);
         }
         for (label, metric, kind) in ROWS {
             let values: Vec<_> = self.runs.iter().map(|run| run.metric(metric)).collect();
-            row(&mut table, &format!("{:name$}", effort_word(label, &values)), cell, kind, &values);
+            let ranks = self.ranks(metric, kind);
+            row(&mut table, &format!("{:name$}", effort_word(label, &values)), cell, (kind, &ranks), &values);
+            if let Some((values, ranks)) = self.program().filter(|_| metric == Name::MoveAndSettlingTime) {
+                row(&mut table, &format!("{PROGRAM:name$}"), cell, (Kind::Time, &ranks), &values);
+            }
+        }
+        if self.has_out() {
+            let words = self.runs.iter().map(|run| format!("  {:>cell$}", verdict(run)));
+            table += &style.paint(Ink::Warning, &format!("{:name$}{}", "verdict", words.collect::<String>()));
+            table.push('\n');
         }
         if self.runs.len() > 2 {
-            table += &style.paint(Ink::Faint, "* smallest, by more than 1 %");
+            table += &style.paint(Ink::Faint, SMALLEST);
             table.push('\n');
         }
         table
+    }
+
+    /// True where a run is out.
+    pub(super) fn has_out(&self) -> bool {
+        self.runs.iter().any(|run| !Self::is_in(run))
+    }
+
+    /// When each program is done and how the runs stand in that, where one of them is more than a move.
+    pub(super) fn program(&self) -> Option<(Vec<Option<Value<'a>>>, Ranks)> {
+        if self.runs.iter().all(Compared::is_one_move) {
+            return None;
+        }
+        let values = self.runs.iter().map(Compared::arrival).collect();
+        Some((values, self.ranks_by(Compared::arrival, |one, other| self.arrival(one, other), self.runs.len() > 2)))
+    }
+
+    /// The runs against each other in `metric`. Runs that are out have no rank; two of which one is broken are not compared.
+    pub(super) fn ranks(&self, metric: Name, kind: Kind) -> Ranks {
+        let is_ranked = self.runs.len() > 2 && matches!(kind, Kind::Time | Kind::Size);
+        self.ranks_by(|run| run.metric(metric), |one, other| self.relation(metric, one, other), is_ranked)
+    }
+
+    fn ranks_by(
+        &self,
+        value: impl Fn(&Compared<'a>) -> Option<Value<'a>>,
+        relation: impl Fn(&Compared<'a>, &Compared<'a>) -> Option<Relation>,
+        is_ranked: bool,
+    ) -> Ranks {
+        let is_less = |one: &Compared<'a>, other: &Compared<'a>| {
+            relation(one, other).is_none_or(|relation| matches!(relation, Relation::Less(_)))
+        };
+        let runs = || self.runs.iter().enumerate().filter(|(_, run)| Self::is_in(run));
+        let smallest =
+            runs().find(|(k, one)| value(one).is_some() && runs().all(|(other, two)| other == *k || is_less(one, two)));
+        let smallest = smallest.map(|(k, _)| k).filter(|_| is_ranked);
+        let change = match self.runs.as_slice() {
+            [one, two] if [one, two].iter().all(|run| run.standing() < Standing::Broken) => relation(two, one),
+            _ => None,
+        };
+        Ranks { smallest, change }
     }
 
     /// Unit of the axis, as the residual vibration has it.
@@ -87,20 +137,49 @@ impl Comparison<'_> {
     }
 }
 
+/// Runs against each other in one quantity.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ranks {
+    /// The run that has less than each of the others.
+    pub(super) smallest: Option<usize>,
+    /// The second of two against the first.
+    change: Option<Relation>,
+}
+
+/// When the last target is reached for good.
+pub(super) const PROGRAM: &str = "program done";
+
+/// Meaning of an asterisk.
+pub(super) const SMALLEST: &str = "* smallest, by more than what counts as equal";
+
+/// The verdict of a run, in a word.
+pub(super) fn verdict(run: &Compared<'_>) -> &'static str {
+    match (run.standing(), run.result.verdict) {
+        (Standing::In, Outcome::Passed) => "passed",
+        (Standing::In, _) => "unjudged",
+        (Standing::Missed | Standing::Broken, _) => "out",
+    }
+}
+
+/// The largest of what is measured and reached.
+pub(super) fn largest(values: &[Option<Value<'_>>]) -> f64 {
+    let sizes = values.iter().flatten().map(|(value, _)| value.abs()).filter(|size| size.is_finite());
+    sizes.fold(0.0, f64::max)
+}
+
 /// One quantity of all runs, unless none has it: all with one prefix, with two runs how they stand to each other.
-fn row(table: &mut String, label: &str, cell: usize, kind: Kind, values: &[Option<Value<'_>>]) {
+fn row(table: &mut String, label: &str, cell: usize, (kind, ranks): (Kind, &Ranks), values: &[Option<Value<'_>>]) {
     if values.iter().all(Option::is_none) {
         return;
     }
-    let largest = values.iter().flatten().fold(0.0, |largest: f64, (value, _)| largest.max(value.abs()));
-    let is_ranked = values.len() > 2 && matches!(kind, Kind::Time | Kind::Size);
-    let cells = values.iter().map(|value| {
+    let largest = largest(values);
+    let cells = values.iter().enumerate().map(|(k, value)| {
         let text = value.map_or("–".into(), |(number, unit)| shown(kind, Quantity::new(number, unit), largest));
-        let mark = if is_ranked && is_smallest(*value, values) { "*" } else { "" };
+        let mark = if ranks.smallest == Some(k) { "*" } else { "" };
         format!("  {:>cell$}", format!("{mark}{text}"))
     });
     let change = match values {
-        [Some(one), Some(two)] => format!("  {}", beside(kind, *one, *two)),
+        [Some(one), Some(two)] => format!("  {}", beside((kind, ranks), *one, *two)),
         _ => String::new(),
     };
     *table += format!("{label}{}{change}", cells.collect::<String>()).trim_end();
@@ -109,6 +188,9 @@ fn row(table: &mut String, label: &str, cell: usize, kind: Kind, values: &[Optio
 
 /// Properties of the axis with more digits: they tell modes apart.
 fn shown(kind: Kind, quantity: Quantity<'_>, largest: f64) -> String {
+    if quantity.value.is_infinite() {
+        return "never".to_owned();
+    }
     if kind == Kind::Property { format!("{quantity:.4}") } else { quantity.beside(largest) }
 }
 
@@ -118,41 +200,37 @@ pub(super) fn effort_word(label: &str, values: &[Option<Value<'_>>]) -> String {
     label.replace("effort", force_or_torque(unit))
 }
 
-/// Whether `value` is smaller than all others by more than 1 %.
-pub(super) fn is_smallest(value: Option<Value<'_>>, all: &[Option<Value<'_>>]) -> bool {
-    let Some((value, _)) = value else { return false };
-    let not_smaller = all.iter().flatten().filter(|(other, _)| !(Relation::of(value, *other).is_more())).count();
-    not_smaller == 1
-}
-
-fn beside(kind: Kind, one: Value<'_>, two: Value<'_>) -> String {
+fn beside((kind, ranks): (Kind, &Ranks), one: Value<'_>, two: Value<'_>) -> String {
     match kind {
         _ if one.1 != two.1 => "other unit".into(),
         Kind::Property => String::new(),
         Kind::Limit if one.0.to_bits() == two.0.to_bits() => String::new(),
         Kind::Limit => "differs".into(),
-        Kind::Size => Relation::of(one.0, two.0).to_string(),
-        Kind::Time if Relation::of(one.0, two.0) == Relation::Same => "same".into(),
-        Kind::Time => {
-            let sign = if two.0 > one.0 { "+" } else { "-" };
-            let difference = Quantity::new((two.0 - one.0).abs(), one.1);
-            format!("{sign}{difference}, {sign}{:.2} %", percent(one.0, two.0))
-        }
+        Kind::Size | Kind::Time => match ranks.change {
+            None => String::new(),
+            Some(Relation::Less(_) | Relation::More(_)) if !(one.0.is_finite() && two.0.is_finite()) => String::new(),
+            Some(relation @ (Relation::Less(_) | Relation::More(_))) if kind == Kind::Time => {
+                let sign = if relation.is_more() { "+" } else { "-" };
+                let difference = Quantity::new((two.0 - one.0).abs(), one.1);
+                format!("{sign}{difference}, {sign}{:.2} %", percent(one.0, two.0))
+            }
+            Some(relation) => relation.to_string(),
+        },
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::Compared;
+    use crate::compare::{Compared, Noise};
     use servobench_results::samples::{jerk, lambrechts_move, of_numbers, snap};
 
     #[test]
     fn table_of_two() {
         let (jerk, snap) = (jerk(), snap());
         let runs = vec![
-            Compared { label: "jerk", result: &jerk, moves: &[] },
-            Compared { label: "snap", result: &snap, moves: &[] },
+            Compared { label: "jerk", result: &jerk, moves: &[], noise: Noise::None },
+            Compared { label: "snap", result: &snap, moves: &[], noise: Noise::None },
         ];
         let table = Comparison::new(runs).table(Style::default());
         insta::assert_snapshot!(table, @r#"
@@ -178,8 +256,8 @@ mod tests {
         let (third, mut fourth) = ([lambrechts_move(3)], [lambrechts_move(4)]);
         fourth[0].limits[0] = Some(0.5);
         let runs = vec![
-            Compared { label: "one", result: &one, moves: &third },
-            Compared { label: "two", result: &two, moves: &fourth },
+            Compared { label: "one", result: &one, moves: &third, noise: Noise::None },
+            Compared { label: "two", result: &two, moves: &fourth, noise: Noise::None },
         ];
         let table = Comparison::new(runs).table(Style::default());
         let row = |name: &str| {
@@ -199,9 +277,9 @@ mod tests {
         let (jerk, snap) = (jerk(), snap());
         let trapezoid = of_numbers("trapezoid", [1.2, 0.3, 90e-6, 41e-6, 38.985, 0.0021, 190.0, 60.3]);
         let runs = vec![
-            Compared { label: "trapezoid", result: &trapezoid, moves: &[] },
-            Compared { label: "jerk", result: &jerk, moves: &[] },
-            Compared { label: "snap", result: &snap, moves: &[] },
+            Compared { label: "trapezoid", result: &trapezoid, moves: &[], noise: Noise::None },
+            Compared { label: "jerk", result: &jerk, moves: &[], noise: Noise::None },
+            Compared { label: "snap", result: &snap, moves: &[], noise: Noise::None },
         ];
         let comparison = Comparison::new(runs);
         insta::assert_snapshot!(comparison.table(Style::default()), @r#"
@@ -215,7 +293,7 @@ mod tests {
           its damping ratio             0.002100     0.002100     0.002100
         peak force                         190 N        170 N        169 N
         RMS force                         60.3 N       61.2 N       60.0 N
-        * smallest, by more than 1 %
+        * smallest, by more than what counts as equal
         "#);
     }
 }

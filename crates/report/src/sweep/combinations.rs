@@ -158,7 +158,7 @@ fn verdicts(survey: &Survey<'_, '_>, groups: &[usize]) -> Cells {
     let word = |group: &usize| {
         let has = |outcome| survey.table.count_of(outcome, *group) > 0;
         match () {
-            () if has(Outcome::Failed) => "FAILED".to_owned(),
+            () if has(Outcome::Failed) || has(Outcome::Broken) => "FAILED".to_owned(),
             () if has(Outcome::Good) => "passed".to_owned(),
             () => "none".to_owned(),
         }
@@ -169,7 +169,7 @@ fn verdicts(survey: &Survey<'_, '_>, groups: &[usize]) -> Cells {
 /// A metric; of draws its median and what 95 % of them are within.
 fn metric(survey: &Survey<'_, '_>, column: usize, groups: &[usize]) -> Cells {
     let measure = Measure::of(&survey.table.columns[column]);
-    let spreads: Vec<Option<Spread>> = groups.iter().map(|group| survey.spread(column, *group)).collect();
+    let spreads: Vec<Option<Spread>> = groups.iter().map(|group| survey.with_never(column, *group)).collect();
     let cells = |pick: fn(&Spread) -> f64| -> Vec<String> {
         let cell = |spread: &Spread| elided(&measure.text(pick(spread)), NUMBER);
         spreads.iter().map(|spread| spread.as_ref().map_or("–".to_owned(), cell)).collect()

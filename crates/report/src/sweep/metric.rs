@@ -9,8 +9,8 @@ use servobench_results::printable;
 use servobench_sweep::{Column, Table};
 
 /// What stands for time, and what for vibration, the first that was measured.
-const TIME: [Name; 2] = [Name::MoveAndSettlingTime, Name::MoveTime];
-const VIBRATION: [Name; 2] = [Name::ResidualVibrationAmplitude, Name::ResidualVibrationPp];
+const TIME: [&str; 3] = ["program_time", Name::MoveAndSettlingTime.as_str(), Name::MoveTime.as_str()];
+const VIBRATION: [&str; 2] = [Name::ResidualVibrationAmplitude.as_str(), Name::ResidualVibrationPp.as_str()];
 
 /// Characters of a unit: `kg·m²/rad` fits.
 const UNIT: usize = 10;
@@ -25,11 +25,11 @@ pub(super) struct Metrics {
 impl Metrics {
     pub(super) fn of(table: &Table<'_>, options: &SweepOptions<'_>) -> Self {
         let named = |name: &str| table.columns.iter().position(|column| column.name == name);
-        let first = |names: [Name; 2]| {
-            names.into_iter().filter_map(|name| named(name.as_str())).find(|place| is_measured(&table.columns[*place]))
+        let first = |names: &[&str]| {
+            names.iter().filter_map(|name| named(name)).find(|place| is_measured(&table.columns[*place]))
         };
         let of = |asked: Option<&str>, names| asked.map_or_else(|| first(names), named);
-        Self { time: of(options.time, TIME), vibration: of(options.vibration, VIBRATION) }
+        Self { time: of(options.time, &TIME), vibration: of(options.vibration, &VIBRATION) }
     }
 
     /// The columns that were measured: time and vibration first, the others in their order.
@@ -85,6 +85,7 @@ impl Measure {
     /// A value as an engineer writes it.
     pub(super) fn text(&self, value: f64) -> String {
         match self.kind {
+            Kind::Metric if value.is_infinite() => "never".to_owned(),
             Kind::Share => percent(value),
             Kind::Key => format!("{} {}", rounded(value, 4), self.unit).trim_end().to_owned(),
             Kind::Metric => Quantity::new(value, &self.unit).to_string(),
@@ -96,6 +97,8 @@ impl Measure {
         let (low, high) = range(values).unwrap_or_default();
         let digits = Quantity::digits_apart(low, high);
         values.map(|value| match self.kind {
+            Kind::Metric if value.is_infinite() => "never".to_owned(),
+            Kind::Metric if value.is_nan() => "–".to_owned(),
             Kind::Metric => format!("{:.digits$}", Quantity::new(value, &self.unit)),
             Kind::Share | Kind::Key => self.text(value),
         })

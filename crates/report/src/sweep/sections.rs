@@ -5,7 +5,7 @@ use super::metric::{Measure, percent};
 use super::survey::{CONFIDENCE, MOST, Survey};
 use crate::style::{Ink, Style};
 use crate::text::{elided, widest};
-use servobench_sweep::{Influence, Sample, Sensitivity, Value};
+use servobench_sweep::{Influence, Outcome, Sample, Sensitivity, Value};
 
 /// Metrics whose sensitivities are told, and keys of each.
 const METRICS: usize = 4;
@@ -33,7 +33,7 @@ pub(super) fn quantiles(survey: &Survey<'_, '_>, style: Style) -> String {
         .iter()
         .zip(&measures)
         .filter_map(|(column, measure)| {
-            Some((measure, Sample::of(survey.table.columns[*column].values.iter().copied())?))
+            Some((measure, Sample::of_times(survey.table.columns[*column].values.iter().copied())?))
         })
         .collect();
     let rows: Vec<[String; 5]> = samples.iter().map(|(measure, sample)| cells(measure, sample)).collect();
@@ -146,23 +146,44 @@ fn beside(share: &str, text: &str, style: Style) -> String {
     lines.lines().enumerate().map(line).collect()
 }
 
-/// The combinations that no other one beats in time and vibration.
-pub(super) fn front(survey: &Survey<'_, '_>, style: Style) -> String {
+/// Nothing is chosen: why there is no front.
+pub(super) fn no_choice(survey: &Survey<'_, '_>, given: &[&str], style: Style) -> String {
+    if survey.dimensions.is_empty() || survey.metrics.time.is_none() || survey.metrics.vibration.is_none() {
+        return String::new();
+    }
+    let given = servobench_results::printable(&given.join(", "));
+    painted(&format!("Nothing to choose: {given} {} what the machine is", is_or_are(&given)), Ink::Heading, style)
+}
+
+fn is_or_are(given: &str) -> &'static str {
+    if given.contains(", ") || given == "the engines" { "are" } else { "is" }
+}
+
+/// The combinations that no other one beats in time and vibration, `at_worst` over what is given.
+pub(super) fn front(survey: &Survey<'_, '_>, at_worst: &str, seed: &str, style: Style) -> String {
     let (Some(time), Some(vibration)) = (survey.metrics.time, survey.metrics.vibration) else { return String::new() };
     let front = survey.front();
-    if survey.dimensions.is_empty() || front.is_empty() {
+    if survey.dimensions.is_empty() {
         return String::new();
+    }
+    if front.is_empty() {
+        let is_any_good = (0..survey.table.groups()).any(|group| !survey.is_marked(group));
+        let words = if is_any_good { "No combination has both numbers" } else { "No combination is left: all failed" };
+        return painted(words, Ink::Heading, style);
     }
     let measures = [time, vibration].map(|column| Measure::of(&survey.table.columns[column]));
     let [faster, calmer] = measures.each_ref().map(|measure| measure.name.as_str());
     let of = if survey.is_drawn { "medians of " } else { "" };
     let good = survey.of_good();
-    let heading = format!("No other combination{good} is smaller in both {of}{faster} and {calmer}");
+    let at_worst =
+        if at_worst.is_empty() { String::new() } else { format!(", {}", servobench_results::printable(at_worst)) };
+    let noise = if seed.is_empty() { "No" } else { "Within noise: no" };
+    let heading = format!("{noise} other combination{good} is smaller in both {of}{faster} and {calmer}{at_worst}");
     let mut text = String::new();
     text += &painted(&heading, Ink::Heading, style);
     for group in front.iter().take(FRONT) {
         let value = |measure: &Measure, column| {
-            let spread = survey.spread(column, *group);
+            let spread = survey.with_never(column, *group);
             format!("{:>NUMBER$}", spread.map_or("–".to_owned(), |spread| measure.text(spread.median)))
         };
         let numbers = format!("{}  {}", value(&measures[0], time), value(&measures[1], vibration));
@@ -189,17 +210,34 @@ pub(super) fn front(survey: &Survey<'_, '_>, style: Style) -> String {
 }
 
 /// What is to be known of the numbers above.
-pub(super) fn remarks(survey: &Survey<'_, '_>, style: Style) -> String {
-    let without = survey.without_verdict();
-    if without == 0 {
-        return String::new();
-    }
+pub(super) fn remarks(survey: &Survey<'_, '_>, seed: &str, style: Style) -> String {
     let of = survey.table.outcomes.len();
-    let mut text = format!("{without} of {of} runs have no verdict (invalid, ended in an error, or not run)");
-    text += if survey.is_judged {
-        "; they count as runs that do not keep all limits, and not in any other number"
-    } else {
-        "; they are not in any number"
-    };
-    painted(&text, Ink::Warning, style)
+    let runs = |count: usize| if count == 1 { "run" } else { "runs" };
+    let mut text = String::new();
+    let broken = survey.count_of(Outcome::Broken);
+    if broken > 0 {
+        let words = format!(
+            "{broken} of {of} {} broke a requirement: later than all others, and not in any other number",
+            runs(of)
+        );
+        text += &painted(&words, Ink::Warning, style);
+    }
+    let without = survey.count_of(Outcome::NoVerdict);
+    if without > 0 {
+        let end = if survey.is_judged {
+            "; they count as runs that do not keep all limits, and not in any other number"
+        } else {
+            "; they are not in any number"
+        };
+        let words = format!("{without} of {of} runs have no verdict (invalid, ended in an error, or not run){end}");
+        text += &painted(&words, Ink::Warning, style);
+    }
+    if !seed.is_empty() {
+        let words = format!(
+            "random numbers: differences may be chance; vary `{}` over at least 5 values",
+            servobench_results::printable(seed)
+        );
+        text += &painted(&words, Ink::Warning, style);
+    }
+    text
 }

@@ -7,6 +7,8 @@ use std::borrow::Cow;
 
 /// Confidence of every bound that is said.
 pub(super) const CONFIDENCE: f64 = 0.95;
+/// Values that differ by less, as a part of the smaller, are equal.
+const SAME: f64 = 0.01;
 /// The share that most machines are within.
 pub(super) const MOST: f64 = 0.95;
 
@@ -18,8 +20,10 @@ pub(super) struct Survey<'t, 'a> {
     pub(super) metrics: Metrics,
     /// Whether each group is several draws.
     pub(super) is_drawn: bool,
-    /// Whether runs are judged by limits.
+    /// True where runs are judged: they have limits, or one of them broke a requirement.
     pub(super) is_judged: bool,
+    /// Lengths that are equal differ by this much at most.
+    length: f64,
 }
 
 /// What a metric is in a group: of a single run its value, of draws what half of them, and all but a twentieth on either side, are within.
@@ -32,23 +36,33 @@ pub(super) struct Spread {
 
 impl<'t, 'a> Survey<'t, 'a> {
     pub(super) fn of(table: &'t Table<'a>, options: &SweepOptions<'_>) -> Self {
-        let table = judged_only(table);
+        let table = table.counted();
+        let is_broken = table.outcomes.contains(&Outcome::Broken);
         Self {
             dimensions: dimensions(&table),
             metrics: Metrics::of(&table, options),
             is_drawn: table.sweep.draws_of_each() > 1,
-            is_judged: options.judged,
+            is_judged: options.judged || is_broken,
+            length: options.equal_length,
             table,
         }
     }
 
-    /// What column `column` is in `group`; nothing where it was not measured.
+    /// Column `column` in `group`, as far as it can be drawn; `None` where it was not measured, or is never.
     pub(super) fn spread(&self, column: usize, group: usize) -> Option<Spread> {
+        let spread = self.with_never(column, group)?;
+        let finite = self.table.values(&self.table.columns[column], group).iter().copied().filter(|x| x.is_finite());
+        let high = if spread.high.is_finite() { spread.high } else { finite.fold(spread.median, f64::max) };
+        spread.median.is_finite().then_some(Spread { high, ..spread })
+    }
+
+    /// The same with times that are infinite since they are never reached.
+    pub(super) fn with_never(&self, column: usize, group: usize) -> Option<Spread> {
         let values = self.table.values(&self.table.columns[column], group);
         if let [value] = values {
-            return value.is_finite().then_some(Spread { low: *value, median: *value, high: *value });
+            return (!value.is_nan()).then_some(Spread { low: *value, median: *value, high: *value });
         }
-        let sample = Sample::of(values.iter().copied())?;
+        let sample = Sample::of_times(values.iter().copied())?;
         let [low, median, high] = [1.0 - MOST, 0.5, MOST].map(|share| sample.quantile(share));
         Some(Spread { low, median, high })
     }
@@ -62,17 +76,22 @@ impl<'t, 'a> Survey<'t, 'a> {
     /// Whether `group` is to be marked, since a run of it, of draws more than a twentieth, does not keep all limits.
     pub(super) fn is_marked(&self, group: usize) -> bool {
         let kept = self.kept(group);
-        self.is_judged && kept.trials() > 0 && kept.share() < if self.is_drawn { MOST } else { 1.0 }
+        kept.trials() > 0 && kept.share() < if self.is_drawn { MOST } else { 1.0 }
     }
 
-    /// What a mark means.
-    pub(super) const fn meaning_of_mark(&self) -> &'static str {
-        if self.is_drawn { "more than 5 % of the draws miss a limit" } else { "misses a limit" }
+    /// Meaning of a mark.
+    pub(super) fn meaning_of_mark(&self) -> &'static str {
+        match (self.is_drawn, self.count_of(Outcome::Broken) > 0) {
+            (true, false) => "more than 5 % of the draws miss a limit",
+            (true, true) => "more than 5 % of the draws failed",
+            (false, false) => "misses a limit",
+            (false, true) => "failed",
+        }
     }
 
-    /// How many runs have no verdict.
-    pub(super) fn without_verdict(&self) -> usize {
-        self.table.outcomes.iter().filter(|outcome| **outcome == Outcome::NoVerdict).count()
+    /// Number of runs that ended so.
+    pub(super) fn count_of(&self, of: Outcome) -> usize {
+        self.table.outcomes.iter().filter(|outcome| **outcome == of).count()
     }
 
     /// What `group` is, in words: `jerk 50 m/s3, order 4`.
@@ -81,23 +100,24 @@ impl<'t, 'a> Survey<'t, 'a> {
     }
 
     /// The groups that no other one beats in time and vibration, the fastest first; of draws by their medians. Those that are marked are not
-    /// among them, unless all are.
+    /// among them. Of nearly equal values none is the smaller.
     pub(super) fn front(&self) -> Vec<usize> {
-        let median = |column, group| self.spread(column, group).map_or(f64::NAN, |spread| spread.median);
+        let median = |column, group| self.with_never(column, group).map_or(f64::NAN, |spread| spread.median);
         let (Some(time), Some(vibration)) = (self.metrics.time, self.metrics.vibration) else { return Vec::new() };
-        let groups = 0..self.table.groups();
-        let only_good = self.is_front_of_good();
         let pair = |group| {
-            let is_out = only_good && self.is_marked(group);
+            let is_out = self.is_marked(group);
             if is_out { (f64::NAN, f64::NAN) } else { (median(time, group), median(vibration, group)) }
         };
-        servobench_sweep::front(&groups.map(pair).collect::<Vec<_>>())
+        let pairs: Vec<(f64, f64)> = (0..self.table.groups()).map(pair).collect();
+        let equal = |length: f64| {
+            move |one: f64, other: f64| (one - other).abs() <= length.max(SAME * one.abs().min(other.abs()))
+        };
+        servobench_sweep::front_apart(&pairs, [equal(0.0), equal(self.length)])
     }
 
-    /// Whether some groups are left out of the front since they miss limits.
+    /// True where groups are left out of the front since they failed.
     pub(super) fn is_front_of_good(&self) -> bool {
-        let marked = (0..self.table.groups()).filter(|group| self.is_marked(*group)).count();
-        (1..self.table.groups()).contains(&marked)
+        (0..self.table.groups()).any(|group| self.is_marked(group))
     }
 
     /// What the front is of.
@@ -114,23 +134,4 @@ impl<'t, 'a> Survey<'t, 'a> {
         let kept = self.kept(group);
         format!("{}, at least {}", percent(kept.share()), at_least(kept.at_least(CONFIDENCE)))
     }
-}
-
-/// The table without the numbers of runs that have no verdict: what a run that broke off has measured says nothing.
-fn judged_only<'t, 'a>(table: &'t Table<'a>) -> Cow<'t, Table<'a>> {
-    let is_out = |row: usize| table.outcomes.get(row).is_none_or(|outcome| *outcome == Outcome::NoVerdict);
-    let is_measured = |values: &[f64]| values.iter().enumerate().any(|(row, value)| value.is_finite() && is_out(row));
-    if !table.columns.iter().any(|column| is_measured(&column.values)) {
-        return Cow::Borrowed(table);
-    }
-    let mut table = table.clone();
-    let outcomes = &table.outcomes;
-    for column in &mut table.columns {
-        for (row, value) in column.values.iter_mut().enumerate() {
-            if outcomes.get(row).is_none_or(|outcome| *outcome == Outcome::NoVerdict) {
-                *value = f64::NAN;
-            }
-        }
-    }
-    Cow::Owned(table)
 }

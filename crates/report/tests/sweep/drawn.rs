@@ -4,8 +4,15 @@ use roxmltree::{Document, Node};
 use servobench_report::{SweepOptions, sweep_front, sweep_map};
 use servobench_sweep::{Arrangement, Axis, Outcome, Spacing, Table, Value};
 
-const OPTIONS: SweepOptions<'_> =
-    SweepOptions { title: "feed axis with a springy load", note: "", time: None, vibration: None, judged: true };
+const OPTIONS: SweepOptions<'_> = SweepOptions {
+    title: "feed axis with a springy load",
+    note: "",
+    time: None,
+    vibration: None,
+    judged: true,
+    equal_length: 0.0,
+    seed: "",
+};
 
 fn map(name: &str, table: &Table<'_>) -> String {
     shown(&format!("{name}-map.svg"), sweep_map(table, &OPTIONS).unwrap())

@@ -116,8 +116,15 @@ fn whatever_goes_in_what_comes_out_is_sound() {
                 for second in [*first, VALUES[(i + k + 1) % VALUES.len()]] {
                     let table = table(&sweep, engines, [*first, second]);
                     for judged in [true, false] {
-                        let options =
-                            SweepOptions { title: &long(), note: &long(), time: None, vibration: None, judged };
+                        let options = SweepOptions {
+                            title: &long(),
+                            note: &long(),
+                            time: None,
+                            vibration: None,
+                            judged,
+                            equal_length: 0.0,
+                            seed: &long(),
+                        };
                         let text = sweep_table(&table, Style::default(), &options);
                         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
                         assert!(!text.contains('\u{1b}') && !text.contains('\u{202e}'));

@@ -3,7 +3,8 @@ use crate::samples::{METRICS, Sample, jerk, mass, names, number, ringing, shown,
 use servobench_report::{Style, SweepOptions, sweep_table};
 use servobench_sweep::{Arrangement, Outcome, Table, Value};
 
-const OPTIONS: SweepOptions<'_> = SweepOptions { title: "", note: "", time: None, vibration: None, judged: true };
+const OPTIONS: SweepOptions<'_> =
+    SweepOptions { title: "", note: "", time: None, vibration: None, judged: true, equal_length: 0.0, seed: "" };
 
 fn words(name: &str, table: &Table<'_>, options: &SweepOptions<'_>) -> String {
     let text = shown(&format!("{name}.txt"), sweep_table(table, Style::default(), options));

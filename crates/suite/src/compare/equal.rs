@@ -121,7 +121,7 @@ pub struct Equalized {
 pub struct Slowed {
     /// How many times as long its moves last; 1 when it was not slowed.
     pub factor: f64,
-    /// What it has of the metric then (SI).
+    /// What it has of the metric then (SI); not a number of a run that broke a requirement at its own limits, which is left as it is.
     pub value: f64,
 }
 
@@ -131,10 +131,11 @@ const STEP: f64 = 0.05;
 const OF_A_LOBE: f64 = 0.099;
 
 /// Slows the moves of each job by one factor of its own, so that what is measured of it is not above `target` (SI), or that of the
-/// gentlest job at its own limits, and not below that by more than it can be met. A job that is slowed loses its limits.
+/// gentlest job at its own limits, and not below that by more than it can be met. A job that is slowed loses its limits. A job that breaks a
+/// requirement at its own limits is neither slowed nor the gentlest: an axis that never moves is gentle by not doing what was requested.
 ///
 /// # Errors
-/// [`CompareError::NotSlowable`], [`CompareError::NotMeasured`], [`CompareError::Nothing`], [`CompareError::NotReached`],
+/// [`CompareError::NoneSound`], [`CompareError::NotSlowable`], [`CompareError::NotMeasured`], [`CompareError::Nothing`], [`CompareError::NotReached`],
 /// [`CompareError::Plan`]; [`EqualError::Run`] for a run that could not be carried out.
 ///
 /// # Panics
@@ -149,18 +150,23 @@ pub fn to_equal(
     let mut making = Making { jobs, own: &own, measuring, runs: 0, wanted: &[] };
     let with_mode = [quantity.metrics(), &[Name::ResidualVibrationFrequency]].concat();
     making.wanted = if quantity == EqualQuantity::Vibration { &with_mode } else { quantity.metrics() };
-    let at_limits = making.measured(&(0..making.jobs.len()).map(|job| (job, 1.0)).collect::<Vec<_>>())?;
+    let all = making.measured(&(0..making.jobs.len()).map(|job| (job, 1.0)).collect::<Vec<_>>())?;
+    let sound: Vec<usize> = (0..all.len()).filter(|job| all[*job].is_sound).collect();
+    if sound.is_empty() {
+        return Err(CompareError::NoneSound { what: quantity.in_words() }.into());
+    }
+    let at_limits: Vec<&Metrics> = sound.iter().map(|job| &all[*job].metrics).collect();
     let metric = metric_of_all(quantity, &at_limits);
     let mut values = Vec::new();
-    for (job, metrics) in making.jobs.iter().zip(&at_limits) {
-        let found = metrics.get(metric).ok_or_else(|| not_measured(job, quantity, metric, metrics))?;
+    for (job, metrics) in sound.iter().zip(&at_limits) {
+        let found = metrics.get(metric).ok_or_else(|| not_measured(&making.jobs[*job], quantity, metric, metrics))?;
         values.push((found.value.abs(), found.unit.clone()));
     }
     let unit = values.first().map(|(_, unit)| unit.clone()).unwrap_or_default();
-    let least = values.iter().enumerate().min_by(|(_, one), (_, two)| one.0.total_cmp(&two.0));
+    let least = sound.iter().zip(&values).min_by(|(_, one), (_, two)| one.0.total_cmp(&two.0));
     let (gentlest, target) = match (target, least) {
         (Some(target), _) => (None, target),
-        (None, Some((index, (value, _)))) => (Some(index), *value),
+        (None, Some((job, (value, _)))) => (Some(*job), *value),
         (None, None) => (None, 0.0),
     };
     if target <= 0.0 {
@@ -169,17 +175,18 @@ pub fn to_equal(
         return Err(CompareError::Nothing { scenario, what, value, example: quantity.example(&unit) }.into());
     }
     let mut searches = Vec::new();
-    for (index, (value, _)) in values.iter().enumerate() {
+    for ((job, metrics), (value, _)) in sound.iter().zip(&at_limits).zip(&values) {
         let steps = if quantity == EqualQuantity::Vibration && *value > target {
-            Steps::Difference(making.step(index, &at_limits[index], quantity, metric)?)
+            Steps::Difference(making.step(*job, metrics, quantity, metric)?)
         } else {
             Steps::Ratio(STEP)
         };
         searches.push(Search::new(target, *value, steps));
     }
-    making.search(&mut searches, metric)?;
-    let mut slowed = Vec::new();
-    for ((search, (value, _)), job) in searches.iter().zip(&values).zip(making.jobs.iter()) {
+    making.search(&mut searches, &sound, metric)?;
+    let mut slowed = vec![Slowed { factor: 1.0, value: f64::NAN }; making.jobs.len()];
+    for ((search, (value, _)), index) in searches.iter().zip(&values).zip(&sound) {
+        let job = &making.jobs[*index];
         let text = |value| Quantity::new(value, &unit).to_string();
         let not_reached = || NotReached {
             scenario: job.label().to_owned(),
@@ -191,7 +198,7 @@ pub fn to_equal(
             example: quantity.example(&unit),
         };
         let found = search.found().ok_or_else(|| CompareError::NotReached(Box::new(not_reached())))?;
-        slowed.push(Slowed { factor: found.factor, value: found.value });
+        slowed[*index] = Slowed { factor: found.factor, value: found.value };
     }
     let runs = making.runs;
     for (slowed, (job, own)) in slowed.iter().zip(jobs.iter_mut().zip(&own)) {
@@ -203,7 +210,7 @@ pub fn to_equal(
 }
 
 /// The first metric of `quantity` that all have; its last where none is.
-fn metric_of_all(quantity: EqualQuantity, all: &[Metrics]) -> Name {
+fn metric_of_all(quantity: EqualQuantity, all: &[&Metrics]) -> Name {
     let metrics = quantity.metrics();
     let found = metrics.iter().find(|metric| all.iter().all(|metrics| metrics.get(**metric).is_some()));
     found.or(metrics.last()).copied().unwrap_or(Name::MoveTime)
@@ -224,6 +231,12 @@ fn times(own: &[f64], factor: f64) -> Vec<f64> {
     own.iter().map(|duration| duration * factor).collect()
 }
 
+/// Metrics of a run, and if it met its requirements.
+struct Measured {
+    metrics: Metrics,
+    is_sound: bool,
+}
+
 /// Runs that are made on the way.
 struct Making<'a> {
     jobs: &'a [Job],
@@ -237,14 +250,19 @@ struct Making<'a> {
 
 impl Making<'_> {
     /// What is measured of these jobs with their moves so many times as long, in that order.
-    fn measured(&mut self, wanted: &[(usize, f64)]) -> Result<Vec<Metrics>, EqualError> {
+    fn measured(&mut self, wanted: &[(usize, f64)]) -> Result<Vec<Measured>, EqualError> {
         let jobs: Vec<Job> = wanted.iter().map(|(job, factor)| self.slower(*job, *factor)).collect();
         let Measuring { engines, workers, limit, progress } = self.measuring;
         let ended = map_in_parallel(
             &jobs,
             *limit,
             |job| ((), job.memory()),
-            |job, ()| execute(job, engines, workers, &mut |_| {}).map(|run| run.metrics).map_err(|broken| broken.error),
+            |job, ()| {
+                let run = execute(job, engines, workers, &mut |_| {}).map_err(|broken| broken.error)?;
+                let requirements = &run.verdict.requirements;
+                let is_sound = !requirements.iter().any(|(name, result)| result.is_not_met(name.as_str()));
+                Ok(Measured { metrics: run.metrics, is_sound })
+            },
         );
         self.runs += jobs.len();
         progress(self.runs);
@@ -297,20 +315,20 @@ impl Making<'_> {
         }
     }
 
-    /// Goes on with all of them until each has ended.
-    fn search(&mut self, searches: &mut [Search], metric: Name) -> Result<(), EqualError> {
+    /// Continues with all of them, each of the job at its place in `jobs`, until each has ended.
+    fn search(&mut self, searches: &mut [Search], jobs: &[usize], metric: Name) -> Result<(), EqualError> {
         loop {
             let wanted: Vec<Vec<f64>> = searches.iter().map(Search::wanted).collect();
             let is_open = |search: &Search, factors: &Vec<f64>| search.found().is_none() && !factors.is_empty();
             if !searches.iter().zip(&wanted).any(|(search, factors)| is_open(search, factors)) {
                 return Ok(());
             }
-            let each = wanted.iter().enumerate();
-            let each = each.flat_map(|(job, factors)| factors.iter().map(move |factor| (job, *factor)));
+            let each = jobs.iter().zip(&wanted);
+            let each = each.flat_map(|(job, factors)| factors.iter().map(|factor| (*job, *factor)));
             let mut measured = self.measured(&each.collect::<Vec<_>>())?.into_iter();
             for (search, factors) in searches.iter_mut().zip(&wanted) {
                 let values = measured.by_ref().take(factors.len());
-                let values: Vec<_> = values.map(|metrics| metrics.get(metric).map(|found| found.value)).collect();
+                let values: Vec<_> = values.map(|run| run.metrics.get(metric).map(|found| found.value)).collect();
                 search.learn(factors, &values);
             }
         }

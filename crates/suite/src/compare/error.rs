@@ -74,6 +74,14 @@ pub enum CompareError {
         /// What may be written instead.
         example: &'static str,
     },
+    /// There is no run to make others equal to.
+    #[error(
+        "the {what} cannot be made equal: every run breaks a requirement at its own limits; `servobench run` reports which"
+    )]
+    NoneSound {
+        /// What is to be equal, in words.
+        what: &'static str,
+    },
     /// What is to be equal was not measured of a run.
     #[error("the {what} of `{scenario}` cannot be made equal: {metric} could not be measured, {why}{remedy}")]
     NotMeasured {

@@ -104,7 +104,7 @@ const PLAN: [(&str, May); 36] = [
     ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
     ("testkit", May::On(&[])),
-    ("xtask", May::On(&["fuzz"])),
+    ("xtask", May::On(&["fuzz", "testkit"])),
 ];
 
 /// One line per arrow that the plan does not have.

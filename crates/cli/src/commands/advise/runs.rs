@@ -18,6 +18,8 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+/// Start and factor of the hash of Fowler, Noll and Vo, by which a machine has its own seed.
+const FNV: (u64, u64) = (0xcbf2_9ce4_8422_2325, 0x0100_0000_01b3);
 /// Time from one word to the next.
 const PERIOD: Duration = Duration::from_secs(10);
 
@@ -142,9 +144,20 @@ impl<'a> Runs<'a> {
         settings
     }
 
+    /// Random numbers of a machine's own, so that what is promised of draws holds for any noise.
+    fn noise(&self, machine: &[f64]) -> Vec<String> {
+        let mixed = machine.iter().fold(FNV.0, |hash, value| (hash ^ value.to_bits()).wrapping_mul(FNV.1));
+        let seed = (mixed >> 32) as u32;
+        self.base.scenario.seeds().iter().map(|one| format!("{}={seed}", one.key)).collect()
+    }
+
     fn source(&self, point: &SetPoint, machine: &[f64]) -> Result<Source, Vec<String>> {
-        let mut overrides = self.args.with.overrides.clone();
-        for written in self.set_point(point).into_iter().chain(self.machine(machine)) {
+        let noise = self.noise(machine);
+        let key = |written: &str| written.split('=').next().unwrap_or_default().replace('[', ".").replace(']', "");
+        let is_seeded = |one: &Override| noise.iter().any(|other| key(other) == key(&one.to_string()));
+        let mut overrides: Vec<Override> =
+            self.args.with.overrides.iter().filter(|one| !is_seeded(one)).cloned().collect();
+        for written in self.set_point(point).into_iter().chain(self.machine(machine)).chain(noise) {
             overrides.push(written.parse::<Override>().map_err(|error| vec![format!("`{written}`: {error}")])?);
         }
         sources::varied(&self.args.scenario, &self.base.text, &overrides, self.root)

@@ -5,7 +5,7 @@ use crate::console::say;
 use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::workers;
-use servobench_metrics::Quantity;
+use servobench_metrics::{Name, Quantity};
 use servobench_report::{elided, wrapped};
 use servobench_results::printable;
 use servobench_scenario::metric_value;
@@ -93,6 +93,14 @@ pub(super) fn by_runs(
 }
 
 impl Slowing {
+    /// The metric in which runs are equal, where it is one that is measured.
+    pub(super) const fn metric(&self) -> Option<Name> {
+        match self {
+            Self::Metric(_, equalized) => Some(equalized.metric),
+            Self::Duration | Self::To(..) => None,
+        }
+    }
+
     /// On which terms, in a few words.
     pub(super) fn terms(&self) -> String {
         match self {
@@ -117,7 +125,11 @@ impl Slowing {
                 let value = format!("{:.5}", Quantity::new(*target, unit));
                 let words = format!("{metric} {value}, {of}; found by {runs} runs:");
                 let each = wanted.iter().zip(slowed).map(|(one, slowed)| {
-                    let words = format!("{}, {}", lasting(slowed.factor), reached(slowed.value, *target, unit));
+                    let words = if slowed.value.is_nan() {
+                        "left as it is: it breaks a requirement".to_owned()
+                    } else {
+                        format!("{}, {}", lasting(slowed.factor), reached(slowed.value, *target, unit))
+                    };
                     (one.label.as_str(), words)
                 });
                 format!("\n{}{}", wrapped(&words, width).join("\n"), lines(each))

@@ -1,5 +1,6 @@
 //! What is compared: scenario files, each in variants.
 use super::labels::labels;
+use super::seeds;
 use crate::args::{CompareArgs, Shapers, Variant};
 use crate::error::CliError;
 use crate::sources;
@@ -21,6 +22,8 @@ pub(super) struct Wanted {
     pub(super) variant: Option<(String, String)>,
     /// Index of its file among the scenarios.
     pub(super) file: usize,
+    /// The same with other seeds of its random numbers; empty where it has none.
+    pub(super) reseeded: Vec<Source>,
 }
 
 /// A variant of one file.
@@ -41,19 +44,22 @@ pub(super) fn wanted(args: &CompareArgs) -> Result<Vec<Wanted>, CliError> {
     let names: Vec<String> = files.iter().map(|source| printable(&source.scenario.name)).collect();
     let of_files = labels(&names.iter().map(String::as_str).collect::<Vec<_>>());
     let engine = args.engine.or_else(|| files.first().and_then(|source| source.scenario.engines.first().copied()));
-    let (mut all, mut of_all) = (Vec::new(), Vec::new());
+    let (mut all, mut of_all, mut seeds) = (Vec::new(), Vec::new(), Vec::new());
     let is_one = files.len() == 1;
     let mut said = HashSet::new();
     for (file, source) in files.into_iter().enumerate() {
         let variants = variants(args, &source.scenario)?;
         if variants.is_empty() {
+            seeds.push(seeds::reseeded(&source, args, &[]));
             all.push(source);
             of_all.push((of_files[file].clone(), None, file));
             continue;
         }
         let path = source.scenario.path.clone().unwrap_or_else(|| PathBuf::from("-"));
         for Shaped { name, overrides, words } in variants {
-            all.push(varied(&source, &path, args, &name, &overrides, &mut said)?);
+            let varied = varied(&source, &path, args, &name, &overrides, &mut said)?;
+            seeds.push(seeds::reseeded(&varied, args, &overrides));
+            all.push(varied);
             let name = printable(&name);
             let label = if is_one { name.clone() } else { format!("{} {name}", of_files[file]) };
             of_all.push((label, Some((name, words)), file));
@@ -69,12 +75,12 @@ pub(super) fn wanted(args: &CompareArgs) -> Result<Vec<Wanted>, CliError> {
         }
         unique.push(one);
     }
-    let jobs = jobs(all, &[engine.unwrap_or_default()]).into_iter().zip(unique).zip(of_all);
-    let wanted = jobs.map(|((mut job, label), (_, variant, file))| {
+    let jobs = jobs(all, &[engine.unwrap_or_default()]).into_iter().zip(unique).zip(of_all).zip(seeds);
+    let wanted = jobs.map(|(((mut job, label), (_, variant, file)), reseeded)| {
         if variant.is_some() {
             job.call(label.clone());
         }
-        Wanted { job, label, variant, file }
+        Wanted { job, label, variant, file, reseeded }
     });
     Ok(wanted.collect())
 }

@@ -41,10 +41,13 @@ pub(super) fn say_what_came(
         None => String::new(),
         Some(_) => format!("each at its worst over {}", points.sweep().given_keys().join(", ")),
     };
+    let seed = points.too_few_seeds().unwrap_or_default();
     let options = SweepOptions {
         title: points.description(),
         note: &at_worst,
         judged: points.is_judged(),
+        equal_length: points.equal_length(),
+        seed: &seed,
         ..SweepOptions::default()
     };
     let mut has_pictures = false;
@@ -74,12 +77,13 @@ pub(super) fn say_what_came(
 
 /// The runs as the crate of sweeps counts them, with the metrics that were asked for: others are limited, and in the files.
 fn table_of<'a>(points: &'a Points<'_>, engines: &'a [String], columns: Columns) -> Table<'a> {
-    let outcome = |outcome: Option<Ended>| match outcome {
+    let outcome = |(outcome, is_broken): (Option<Ended>, bool)| match outcome {
+        Some(outcome) if is_broken && (outcome.is_good() || outcome == Ended::Failed) => Outcome::Broken,
         Some(outcome) if outcome.is_good() => Outcome::Good,
         Some(Ended::Failed) => Outcome::Failed,
         Some(_) | None => Outcome::NoVerdict,
     };
-    let outcomes = columns.outcomes.into_iter().map(outcome).collect();
+    let outcomes = columns.outcomes.into_iter().zip(columns.broken).map(outcome).collect();
     let metrics = columns.metrics.into_iter().filter(|column| points.is_asked(column.metric));
     let columns = metrics.map(|of| Column { name: of.metric.to_string(), unit: of.unit, values: of.values }).collect();
     Table { sweep: points.sweep(), engines, columns, outcomes }

@@ -10,8 +10,8 @@ use servobench_config::Choice as _;
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
 use servobench_results::{Digest, Digester, Planned, RunIdentity, Unfinished, printable, printable_lines};
-use servobench_scenario::{LoadError, Override, Step, SweepRequest, load_sweep, root_of};
-use servobench_suite::{Job, Source, file_name};
+use servobench_scenario::{LoadError, Override, Seed, Step, SweepRequest, load_sweep, root_of};
+use servobench_suite::{Job, Source, equal_length, file_name};
 use servobench_sweep::Sweep;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -21,6 +21,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Combinations that are all read before anything runs; of more of them each value is read once.
 const MOST_CHECKED: usize = 1_000;
+
+/// Seeds that tell a difference from chance.
+const ENOUGH_SEEDS: usize = 5;
 
 /// The points of a sweep: on the first engine, then on the next one.
 pub(super) struct Points<'a> {
@@ -67,6 +70,25 @@ impl<'a> Points<'a> {
         let of_moves = |step: &Step| matches!(step, Step::Move(step) if !step.metric_limits.is_empty());
         let scenario = &self.base.scenario;
         !scenario.limits.is_empty() || scenario.program.iter().any(of_moves)
+    }
+
+    /// By how much vibrations differ that are equal (axis unit).
+    pub(super) fn equal_length(&self) -> f64 {
+        let engine = self.engines.first().copied().unwrap_or_default();
+        equal_length(&[Job::new(self.stem.clone(), self.base.clone(), engine)])
+    }
+
+    /// The seed of random numbers of the scenario that has too few values to tell a difference from chance; `None` where it has none, or where
+    /// one of them has enough.
+    pub(super) fn too_few_seeds(&self) -> Option<String> {
+        let seeds = self.base.scenario.seeds();
+        let has_enough = |seed: &Seed| {
+            let is_it = |key: &str| key.replace('[', ".").replace(']', "") == seed.key;
+            let axes = self.sweep().axes().iter().any(|axis| is_it(&axis.key) && axis.values.len() >= ENOUGH_SEEDS);
+            let drawn = self.sweep().draws().is_some_and(|draws| draws.keys().iter().any(|drawn| is_it(&drawn.key)));
+            axes || drawn
+        };
+        if seeds.iter().any(has_enough) { None } else { seeds.into_iter().next().map(|seed| seed.key) }
     }
 
     /// Whether a metric was asked for.
