@@ -137,3 +137,55 @@ fn a_limit_that_is_missed_in_a_comparison_ends_with_4_and_is_named() {
     assert!(runs.iter().all(|run| run["recording"] == "one-against-two.rrd"), "{results}");
     assert!(out.join("one-against-two.rrd").is_file());
 }
+
+/// A motor that friction holds leaves no vibration behind. It does not win by that, whichever comes first.
+#[test]
+fn an_axis_that_does_not_move_never_wins() {
+    let work = folder(&[("slide.toml", &SLIDE.replace("mass = \"20 kg\"", "mass = \"20 kg\"\ncoulomb = \"5 N\""))]);
+    let (slide, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    let (stuck, free) = ("stuck: motor.limit=2 N", "free: motor.limit=1 kN");
+    for variants in [[stuck, free], [free, stuck]] {
+        let output = compare(&out, &[slide.to_str().unwrap(), "--variant", variants[0], "--variant", variants[1]]);
+        assert_eq!(code(&output), 4, "{}", said(&output));
+        let text = String::from_utf8(output.stdout).unwrap();
+        fits(&text);
+        let (before, conclusion) =
+            text.split_once("free wins: the other one is out.").unwrap_or_else(|| panic!("{text}"));
+        assert!(before.contains("\nstuck is out: arrives: the load ended"), "{text}");
+        assert!(!conclusion.contains("is out"), "who is out stands before the conclusion: {text}");
+    }
+    // Nothing is made equal to it either.
+    let arguments = [slide.to_str().unwrap(), "--variant", stuck, "--variant", free, "--equal", "torque"];
+    let output = compare(&out, &arguments);
+    assert!(said(&output).contains("left as it is: it breaks a requirement"), "{}", said(&output));
+    assert!(said(&output).contains("that of free"), "{}", said(&output));
+}
+
+/// One machine is not better than itself, with any seed of its noise.
+#[test]
+fn of_one_machine_with_two_seeds_none_wins() {
+    let noisy =
+        SLIDE.replace("\"ideal-source\"", "\"ideal-source\"\nencoder = { step = \"0.1 um\", noise = \"0.5 um\" }");
+    let work = folder(&[("slide.toml", &noisy)]);
+    let (slide, out) = (work.path().join("slide.toml"), work.path().join("out"));
+    for (seeds, words) in [("5", "ithin noise"), ("1", "fewer than 5 seeds")] {
+        let variants = ["--variant", "a: ", "--variant", "b: motor.encoder.seed=7", "--seeds", seeds];
+        let output = compare(&out, &[&[slide.to_str().unwrap()], &variants[..]].concat());
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(!text.contains(" wins: "), "{text}");
+        assert!(text.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{text}");
+        assert_eq!(runs(&out, "comparison.json").len(), 2, "runs with other seeds are not among the results");
+    }
+}
+
+/// Two moves from rest to rest against one that blends them: the longest move of the second is longer, and it is done sooner.
+#[test]
+fn the_program_decides_and_not_its_longest_move() {
+    let work = tempfile::tempdir().unwrap();
+    let files = ["scenarios/plc/figure-3a.toml", "scenarios/plc/figure-3b.toml", "--engine", "exact"];
+    let (_, text) = compared(work.path(), &files);
+    assert!(text.contains("program done"), "{text}");
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("3b wins: in position sooner at equal vibration."), "{text}");
+}
