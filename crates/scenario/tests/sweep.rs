@@ -132,3 +132,24 @@ fn a_file_that_is_not_there_is_named() {
     let Err(LoadError::Read { path, .. }) = load_sweep(Path::new("no/such.toml")) else { panic!("it is there") };
     assert_eq!(path, Path::new("no/such.toml"));
 }
+
+/// A front is over what is chosen: the machine, its disturbances and seeds are given there unless the file says otherwise.
+#[test]
+fn the_machine_is_given_where_combinations_are_chosen() {
+    let vary = |key: &str, more: &str| format!("[[vary]]\nkey = \"{key}\"\n{more}values = [1, 2]\n");
+    let machine_keys = |text: &str| read(&format!("{HEAD}{text}")).sweep.machine_keys().to_vec();
+    for key in ["axis.load.mass", "motor.limit", "disturbance[0].force", "motor.encoder.seed", "bus.fault[0].seed"] {
+        assert_eq!(machine_keys(&vary(key, "")), [key]);
+        assert!(machine_keys(&vary(key, "given = false\n")).is_empty(), "{key}");
+        let given = read(&format!("{HEAD}{}", vary(key, "given = true\n"))).sweep;
+        assert!(given.machine_keys().is_empty() && given.given_keys() == [key], "{key}");
+    }
+    for key in ["setpoint.jerk", "drive.position.gain", "measure.mode", "program[0].move_to"] {
+        assert!(machine_keys(&vary(key, "")).is_empty(), "{key}");
+    }
+    assert_eq!(machine_keys(&vary("measure.mode", "also = \"axis.load.frequency\"\n")), ["measure.mode"]);
+    let sweep = read(&format!("{HEAD}{}{}", vary("axis.load.mass", ""), vary("setpoint.jerk", ""))).sweep;
+    let chosen = sweep.chosen_for_a_machine().unwrap();
+    assert_eq!(chosen.axes().iter().map(|axis| axis.key.as_str()).collect::<Vec<_>>(), ["setpoint.jerk"]);
+    assert!(sweep.chosen().is_none(), "tables have every combination");
+}
