@@ -1,5 +1,5 @@
 //! When a run has done its program: from t = 0 to the last target that is reached for good.
-use super::{Compared, Comparison, Value};
+use super::{Compared, Value};
 use servobench_metrics::Name;
 use servobench_results::RunResult;
 
@@ -45,12 +45,5 @@ impl<'a> Compared<'a> {
             [one] => one.start <= 0.0,
             _ => false,
         }
-    }
-}
-
-impl Comparison<'_> {
-    /// True where every run reaches its last target for good.
-    pub(super) fn all_settle(&self) -> bool {
-        self.runs.iter().all(|run| run.arrival().is_none_or(|(time, _)| time.is_finite()))
     }
 }

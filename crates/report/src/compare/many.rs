@@ -109,11 +109,9 @@ fn choice(comparison: &Comparison<'_>) -> Option<String> {
     let time = |place: &usize| runs[*place].arrival().map_or(f64::INFINITY, |(time, _)| time);
     front.sort_by(|one, two| time(one).total_cmp(&time(two)));
     let names = |all: &[usize]| listing(&all.iter().map(|place| runs[*place].label).collect::<Vec<_>>());
-    let arrives = if comparison.all_settle() && runs.iter().any(|run| run.metric(Name::SettlingTime).is_some()) {
-        "is in position"
-    } else {
-        "arrives"
-    };
+    let settles = |run: &Compared<'_>| run.arrival().is_none_or(|(time, _)| time.is_finite());
+    let has_window = runs.iter().any(|run| run.metric(Name::SettlingTime).is_some());
+    let arrives = if has_window && runs.iter().all(settles) { "is in position" } else { "arrives" };
     let is_equal = |one: &usize, other: &usize| stands[*one][*other].iter().all(|relation| relation.is_equal());
     let is_chance = stands.iter().flatten().flatten().any(|relation| *relation == Relation::Chance);
     match front.as_slice() {
