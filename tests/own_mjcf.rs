@@ -162,6 +162,7 @@ fn a_joint_at_the_end_of_its_range_is_an_event() {
         let first = position.iter().position(|position| *position > 0.37).expect("the end is reached");
         let event = recording.events.iter().find(|event| event.source == "mechanics").expect("an event");
         assert_eq!(event.message, "joint `carriage` is at the upper end of its range, 0.37 m");
+        assert_eq!(event.incident.as_ref().map(|mark| mark.name.as_str()), Some("end_stop"));
         assert!((event.start - first as f64 * H).abs() < H / 2.0, "{} {first}", event.start);
     }
 }

@@ -218,6 +218,12 @@ impl State {
         self.power.state()
     }
 
+    /// Whether a limit of the drive is active (bit 11 of the statusword).
+    #[must_use]
+    pub const fn is_limited(&self) -> bool {
+        self.statusword.has(StatusBit::InternalLimitActive)
+    }
+
     /// Mode that is active; `None` before the first one.
     #[must_use]
     pub const fn mode(&self) -> Option<Mode> {

@@ -93,6 +93,12 @@ impl<'a> Params<'a> {
         Ok(Self { cycle: cycle.ticks() as u64, delay: delay as usize, faults })
     }
 
+    /// From cycle to cycle (base ticks).
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
     /// The same bus, on which other things go wrong.
     #[must_use]
     pub const fn with_faults<'b>(&self, faults: &'b [BusFault]) -> Params<'b> {
@@ -151,6 +157,12 @@ pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle>
 }
 
 impl State {
+    /// Cycles that have happened.
+    #[must_use]
+    pub const fn cycles(&self) -> u64 {
+        self.number
+    }
+
     fn turn(&mut self, params: &Params<'_>, tick: Tick) -> Option<Cycle> {
         // The first cycle may be late, too.
         if self.next.is_none() && tick.0 < params.time_of(0) {

@@ -77,6 +77,12 @@ impl<'a> Params<'a> {
         Self { cycle: cycle.ticks() as u64, faults }
     }
 
+    /// From cycle to cycle by a clock that is right (base ticks).
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
     /// The same task, with which other things go wrong.
     #[must_use]
     pub const fn with_faults<'b>(&self, faults: &'b [TaskFault]) -> Params<'b> {
@@ -110,6 +116,14 @@ impl<'a> Params<'a> {
 pub struct State {
     number: u64,
     due: u64,
+}
+
+impl State {
+    /// Cycles that have run.
+    #[must_use]
+    pub const fn cycles(&self) -> u64 {
+        self.number
+    }
 }
 
 /// A cycle that runs.

@@ -100,6 +100,15 @@ pub enum Absence {
     /// One component more in the fit, and other modes come out.
     #[error("the motion after the profile is no sum of a few decaying modes")]
     Unconfirmed,
+    /// No drive that follows points has a buffer that could err.
+    #[error("the drive follows no points of a trajectory")]
+    NoPoints,
+    /// The metric is of a drive on a fieldbus.
+    #[error("no fieldbus tells what the drive limits")]
+    NoBus,
+    /// The scenario makes nothing wrong on its bus.
+    #[error("no `[[bus.fault]]` concerns the run")]
+    NoBusFault,
     /// Nothing oscillates where the scenario says that the mode is.
     #[error("no mode within {} % of {}", 100.0 * share, Quantity::new(*frequency, "Hz"))]
     NotThere {
@@ -114,7 +123,14 @@ impl Absence {
     /// Whether the axis just lacks what few axes have: nobody misses the metric who did not ask for it.
     #[must_use]
     pub fn is_of_rare_equipment(&self) -> bool {
-        matches!(self, Self::NoChannel { channel } if matches!(channel.presence(), Presence::WithInverter | Presence::WithLink))
+        match self {
+            Self::NoChannel { channel } => matches!(
+                channel.presence(),
+                Presence::WithInverter | Presence::WithLink | Presence::WithEndStops | Presence::WithThermalModel
+            ),
+            Self::NoPoints | Self::NoBus | Self::NoBusFault => true,
+            _ => false,
+        }
     }
 }
 
@@ -130,6 +146,8 @@ fn only_where(signal: Signal) -> &'static str {
         },
         (Presence::WithInverter, _) => "; only an inverter that is not ideal has losses",
         (Presence::WithLink, _) => "; only a link with a capacitor of its own changes",
+        (Presence::WithEndStops, _) => "; only an axis with `[axis.end_stops]` has it",
+        (Presence::WithThermalModel, _) => "; only a motor with `[motor.thermal]` warms up",
         _ => "",
     }
 }

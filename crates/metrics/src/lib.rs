@@ -11,6 +11,7 @@ mod compliance;
 mod display_unit;
 mod effort;
 mod extremes;
+mod incident;
 mod measure;
 mod metric;
 mod modal;
@@ -32,14 +33,15 @@ mod vibration;
 
 pub use absence::Absence;
 pub use display_unit::{DisplayUnit, DisplayUnits, digits};
+pub use incident::{Incident, note_incidents};
 pub use measure::{MEASURED_FROM, Question, measure, measure_only};
 pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
 pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Oscillation, Poles, REQUEST_KIND, Requirement,
-    RequirementResult, Rules, Standing, arrival_window, judge_requirements,
+    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation, Poles, REQUEST_KIND,
+    Requirement, RequirementResult, Rules, Standing, arrival_window, judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;
 pub use round::{round_above, round_below};

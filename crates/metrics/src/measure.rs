@@ -4,7 +4,7 @@ use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::name::Name;
 use crate::span::{Checked, Phase, phases};
 use crate::vibration::{Residual, Search};
-use crate::{compliance, effort, rounding, settling, tracking};
+use crate::{compliance, effort, incident, rounding, settling, tracking};
 use servobench_signals::Signal;
 use servobench_trace::Recording;
 
@@ -20,7 +20,7 @@ pub struct Question {
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
-pub const MEASURED_FROM: [Signal; 29] = [
+pub const MEASURED_FROM: [Signal; 30] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
@@ -47,6 +47,7 @@ pub const MEASURED_FROM: [Signal; 29] = [
     Signal::DisturbanceMotor,
     Signal::DisturbanceLoad,
     Signal::EffortEndStop,
+    Signal::TemperatureWinding,
     Signal::PowerInverter,
     Signal::VoltageDcLink,
     Signal::PowerBrake,
@@ -102,6 +103,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
     residual.note(&mut run, &checked);
     compliance::note(&mut run, &phases);
     effort::note(&mut run, &checked, &all);
+    incident::note(&mut run, &checked);
     let mut metrics = Metrics { run, moves };
     rounding::clear(&mut metrics, recording);
     metrics

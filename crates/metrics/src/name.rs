@@ -62,6 +62,8 @@ const CURRENT_RMS: Kind = Kind::Plain(&quantities::CURRENT_RMS);
 const VOLTAGE: Kind = Kind::Plain(&quantities::VOLTAGE_AMPLITUDE);
 const POWER: Kind = Kind::Plain(&quantities::POWER);
 const ENERGY: Kind = Kind::Plain(&quantities::ENERGY);
+const LOAD_EFFORT: Kind = Kind::Axis(&quantities::EFFORT);
+const TEMPERATURE: Kind = Kind::Plain(&quantities::TEMPERATURE);
 
 names! {
     MoveTime "move_time" Move TIME "1.35 s" "duration of the longest set-point profile",
@@ -103,6 +105,12 @@ names! {
     DcLinkMin "dc_link_min" Run VOLTAGE "280 V" "lowest voltage of the DC link",
     DcLinkMax "dc_link_max" Run VOLTAGE "400 V" "highest voltage of the DC link",
     BrakeEnergy "brake_energy" Run ENERGY "20 J" "energy that the brake resistor takes",
+    EndStopForcePeak "end_stop_force_peak" Run LOAD_EFFORT "0 N" "largest torque or force of the end stops on the load",
+    EndStopSpeed "end_stop_speed" Run VELOCITY "0 mm/s" "largest velocity with which the load meets an end stop",
+    WindingTemperaturePeak "winding_temperature_peak" Run TEMPERATURE "120 degC" "highest temperature of the winding",
+    BufferErrors "buffer_errors" Run RATIO "0" "errors that the trajectory buffer of the drive latches",
+    InternalLimitTime "internal_limit_time" Run TIME "0 s" "time in which a limit of the drive is active (bit 11)",
+    BusFaultCycles "bus_fault_cycles" Run RATIO "20" "frames and task cycles that a fault of the scenario concerns",
 }
 
 /// What a metric is of, and with it what a run must have so that it can be measured.

@@ -7,6 +7,7 @@ mod asked;
 mod bounds;
 mod execution;
 mod fault;
+mod harm;
 mod judge;
 mod oscillation;
 mod rules;
@@ -15,6 +16,7 @@ pub use arrival::arrival_window;
 pub use judge::judge_requirements;
 pub use rules::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
 
+use crate::incident::Incident;
 use serde::{Deserialize, Serialize};
 use servobench_signals::Signal;
 use std::fmt;
@@ -53,6 +55,7 @@ requirements! {
     Executed "executed" "every call of a function block is executed and ends without an error",
     NoFault "no_fault" "axis, drive and link have no fault but those that are expected",
     Stable "stable" "the loop is stable, and no oscillation grows or goes from limit to limit",
+    NoHarm "no_harm" "no harm comes to machine, motor or trajectory but what is expected",
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
 
@@ -60,7 +63,7 @@ requirements! {
 pub const REQUEST_KIND: (&str, &str) = ("request", "kind");
 
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [Signal; 13] = [
+pub const JUDGED_BY: [Signal; 14] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
@@ -74,6 +77,7 @@ pub const JUDGED_BY: [Signal; 13] = [
     Signal::DisturbanceMotor,
     Signal::DisturbanceLoad,
     Signal::EffortEndStop,
+    Signal::TemperatureWinding,
 ];
 
 impl fmt::Display for Requirement {
@@ -126,17 +130,29 @@ impl RequirementResult {
     }
 }
 
-/// A fault that the scenario expects.
+/// A fault or an incident that the scenario expects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
-    /// State or error code: `ErrorStop`, `8611h`, the `ErrorID` of a block.
-    pub fault: String,
-    /// Whose: `axis`, `drive`, `link`, or the name of a call.
-    pub who: String,
+    /// Which.
+    pub on: Occasion,
     /// From when on it may come (s).
     pub from: f64,
     /// Until when it must have come (s); infinite: by the end of the run.
     pub to: f64,
+}
+
+/// Occasions that can be expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Occasion {
+    /// A fault.
+    Fault {
+        /// State or error code: `ErrorStop`, `8611h`, the `ErrorID` of a block.
+        fault: String,
+        /// Whose: `axis`, `drive`, `link`, or the name of a call.
+        who: String,
+    },
+    /// An event that is an incident.
+    Event(Incident),
 }
 
 /// An expectation, and whether it was met.
@@ -149,7 +165,13 @@ pub struct Expected {
 }
 
 impl Expectation {
-    /// Whether a fault that comes at `time` (s) comes when it is expected.
+    /// True without a window of time: such an expectation excuses what comes at any time, as a lifted requirement does.
+    #[must_use]
+    pub fn is_wide_open(&self) -> bool {
+        self.from <= 0.0 && !self.to.is_finite()
+    }
+
+    /// Whether what comes at `time` (s) comes when it is expected.
     #[must_use]
     pub fn is_open_at(&self, time: f64) -> bool {
         (self.from..=self.to).contains(&time)
@@ -163,11 +185,21 @@ impl Expectation {
     }
 }
 
-/// `8611h of the drive`, with the window of time where there is one
+/// `8611h of the drive`, `the event end_stop`
+impl fmt::Display for Occasion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fault { fault, who } => write!(f, "{fault} of `{who}`"),
+            Self::Event(incident) => write!(f, "the event `{incident}`"),
+        }
+    }
+}
+
+/// The occasion, with the window of time where there is one
 impl fmt::Display for Expectation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { fault, who, from, to } = self;
-        write!(f, "{fault} of `{who}`")?;
+        let Self { on, from, to } = self;
+        write!(f, "{on}")?;
         match (*from > 0.0, to.is_finite()) {
             (false, false) => Ok(()),
             (true, false) => write!(f, " from {from} s on"),
@@ -178,12 +210,12 @@ impl fmt::Display for Expectation {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::synthetic::Build;
 
     /// A closed loop without anything special.
-    pub(super) const fn rules() -> Rules<'static> {
+    pub(crate) const fn rules() -> Rules<'static> {
         Rules {
             lifted: &[],
             expected: &[],
@@ -196,11 +228,12 @@ mod tests {
             poles: None,
             not_analysed: None,
             ended: None,
+            winding_limit: None,
         }
     }
 
-    pub(super) fn expecting(who: &str, fault: &str, from: f64, to: f64) -> Expectation {
-        Expectation { fault: fault.into(), who: who.into(), from, to }
+    pub(crate) fn expecting(who: &str, fault: &str, from: f64, to: f64) -> Expectation {
+        Expectation { on: Occasion::Fault { fault: fault.into(), who: who.into() }, from, to }
     }
 
     #[test]
@@ -265,6 +298,16 @@ mod tests {
             verdict.reasons().collect::<Vec<_>>(),
             ["expected, but did not come: 8611h of `drive` from 0.2 s to 0.6 s"]
         );
+    }
+
+    #[test]
+    fn an_expectation_without_a_window_of_time_is_wide_open() {
+        let infinite = f64::INFINITY;
+        for (from, to, wide) in [(0.0, infinite, true), (0.1, infinite, false), (0.0, 0.5, false), (0.1, 0.5, false)] {
+            let of_event = Expectation { on: Occasion::Event(Incident::EndStop), from, to };
+            assert_eq!(of_event.is_wide_open(), wide, "{of_event}");
+            assert_eq!(expecting("axis", "ErrorStop", from, to).is_wide_open(), wide);
+        }
     }
 
     #[test]

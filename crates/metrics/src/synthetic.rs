@@ -1,6 +1,6 @@
 //! Recordings with known answers, for the tests.
 use servobench_base::Rate;
-use servobench_trace::{About, Channel, ChannelSpec, Ending, Move, Recording};
+use servobench_trace::{About, Channel, ChannelSpec, Ending, Move, Recording, Signal};
 
 /// Builds a recording channel by channel.
 pub(crate) struct Build {
@@ -29,6 +29,13 @@ impl Build {
         let spec = ChannelSpec { name: name.as_ref().into(), unit: unit.into(), writer: "test".into(), rate };
         let values = (0..self.rows).map(|k| value(k as f64 * rate.period())).collect();
         self.recording.channels.push(Channel { spec, values });
+        self
+    }
+
+    /// Adds a signal with its changes.
+    pub(crate) fn signal(mut self, source: &str, name: &str, changes: &[(f64, &str)]) -> Self {
+        let changes = changes.iter().map(|(time, value)| (*time, (*value).to_owned())).collect();
+        self.recording.signals.push(Signal { source: source.into(), name: name.into(), changes });
         self
     }
 

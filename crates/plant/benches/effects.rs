@@ -73,6 +73,7 @@ fn f_thermal_model(bencher: Bencher<'_, '_>) {
         to_ambient: 1.1,
         winding_capacity: 60.0,
         housing_capacity: 900.0,
+        winding_limit: 155.0,
     };
     let temperature = Some(Temperature {
         reference: 20.0,

@@ -51,7 +51,7 @@ use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
 use table::{Solution, Tables};
-pub use temperature::{COPPER, Temperature, TemperatureParameter, Temperatures, ThermalNetwork};
+pub use temperature::{CLASS_F, COPPER, Temperature, TemperatureParameter, Temperatures, ThermalNetwork};
 pub(crate) use winding::{Span, Sums, Winding};
 
 servobench_config::parameters! {

@@ -1,7 +1,7 @@
 //! The parts of a run's result.
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use servobench_metrics::{Expectation, Expected, Limit, Metric, MetricSet, MoveMetrics, Quantity};
+use servobench_metrics::{Expectation, Expected, Incident, Limit, Metric, MetricSet, MoveMetrics, Occasion, Quantity};
 
 /// A metric.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,13 +35,18 @@ pub struct MoveResult {
     pub metrics: IndexMap<String, MetricResult>,
 }
 
-/// A fault that was expected.
+/// A fault or an incident that was expected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExpectedResult {
-    /// State or error code.
-    pub fault: String,
-    /// Whose.
-    pub who: String,
+    /// State or error code of a fault; left out of an incident.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
+    /// Whose fault; left out of an incident.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub who: Option<String>,
+    /// Name of the incident; left out of a fault.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub event: Option<String>,
     /// From when on it may come (s).
     pub from: f64,
     /// Until when it must have come (s); `null`: by the end of the run.
@@ -72,8 +77,12 @@ impl MetricResult {
 
 impl From<&Expected> for ExpectedResult {
     fn from(expected: &Expected) -> Self {
-        let Expected { expectation: Expectation { fault, who, from, to }, met } = expected.clone();
-        Self { fault, who, from, to: Some(to).filter(|to| to.is_finite()), met_at: met }
+        let Expected { expectation: Expectation { on, from, to }, met } = expected.clone();
+        let (fault, who, event) = match on {
+            Occasion::Fault { fault, who } => (Some(fault), Some(who), None),
+            Occasion::Event(incident) => (None, None, Some(incident.name().to_owned())),
+        };
+        Self { fault, who, event, from, to: Some(to).filter(|to| to.is_finite()), met_at: met }
     }
 }
 
@@ -81,8 +90,13 @@ impl ExpectedResult {
     /// What was expected, in words.
     #[must_use]
     pub fn words(&self) -> String {
-        let Self { fault, who, from, to, .. } = self.clone();
-        Expectation { fault, who, from, to: to.unwrap_or(f64::INFINITY) }.to_string()
+        let Self { fault, who, event, from, to, .. } = self.clone();
+        let incident = event.and_then(|name| Incident::from_name(&name));
+        let on = match incident {
+            Some(incident) => Occasion::Event(incident),
+            None => Occasion::Fault { fault: fault.unwrap_or_default(), who: who.unwrap_or_default() },
+        };
+        Expectation { on, from, to: to.unwrap_or(f64::INFINITY) }.to_string()
     }
 }
 

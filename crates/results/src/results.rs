@@ -245,7 +245,7 @@ mod tests {
     use serde_json::{Value, json};
     use servobench_base::{Rate, Severity};
     use servobench_metrics::{
-        Expectation, Expected, Limit, Name, Question, Requirement, RequirementResult, Standing, measure,
+        Expectation, Expected, Limit, Name, Occasion, Question, Requirement, RequirementResult, Standing, measure,
     };
     use servobench_trace::{About, Channel, ChannelSpec, Ending, Event, LogEntry, Move, Recording};
 
@@ -416,7 +416,11 @@ mod tests {
 
     #[test]
     fn an_expected_fault_judges_a_run() {
-        let expectation = Expectation { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: f64::INFINITY };
+        let expectation = Expectation {
+            on: Occasion::Fault { fault: "8611h".into(), who: "drive".into() },
+            from: 0.5,
+            to: f64::INFINITY,
+        };
         let of =
             |met| verdict_of((Standing::Met, vec![]), &[], vec![Expected { expectation: expectation.clone(), met }]);
         let (missing, came) = (of(None), of(Some(0.75)));

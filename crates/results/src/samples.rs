@@ -176,8 +176,14 @@ pub fn short() -> RunResult {
         ("executed", Standing::Broken, vec![jog.into()]),
         ("stable", Standing::Lifted, vec!["the velocity loop has a pole outside the unit circle".into()]),
     ]);
-    run.expected =
-        vec![ExpectedResult { fault: "8611h".into(), who: "drive".into(), from: 0.5, to: None, met_at: None }];
+    run.expected = vec![ExpectedResult {
+        fault: Some("8611h".into()),
+        who: Some("drive".into()),
+        event: None,
+        from: 0.5,
+        to: None,
+        met_at: None,
+    }];
     run.reasons = vec![
         format!("arrives: {short}"),
         format!("executed: {jog}"),

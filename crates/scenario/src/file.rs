@@ -29,7 +29,7 @@ pub(crate) use motor::{Motor, MotorKind};
 pub(crate) use motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
 pub(crate) use plc::{Call, CamSwitch, Condition, Plc, TrackOptions, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
-pub(crate) use requirements::{Expect, RequirementTable};
+pub(crate) use requirements::{Expect, ExpectedOn, RequirementTable};
 pub(crate) use sensors::{CurrentSensor, Encoder, EncoderKeys, LoadEncoder};
 pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 

@@ -91,6 +91,8 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         duration,
         has_bus: file.bus.span().is_some(),
         plc: plc.as_ref().and_then(Option::as_ref),
+        has_ends: axis.is_none_or(|axis| axis.end_stops.span().or(axis.mjcf.span()).is_some()),
+        warms_up: motor.is_none_or(|motor| motor.thermal.span().is_some()),
     };
     let requirements = requirements::resolve(file, &of_run, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));

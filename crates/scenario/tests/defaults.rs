@@ -131,6 +131,12 @@ share = 0.9
 speed = "3000 rpm"
 [motor.temperature]
 winding = "80 degC"
+[motor.thermal]
+ambient = "40 degC"
+to_housing = "0.6 K/W"
+to_ambient = "1.1 K/W"
+winding_capacity = "120 J/K"
+housing_capacity = "1.6 kJ/K"
 [drive]
 model = "servo-16khz"
 "#;

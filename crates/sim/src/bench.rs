@@ -16,7 +16,7 @@ use servobench_base::{Rate, Setpoint, Tick};
 use servobench_drive::measurement;
 use servobench_drive::unwrap::Unwrap;
 use servobench_fieldbus::LinkFault;
-use servobench_metrics::JUDGED_BY;
+use servobench_metrics::{JUDGED_BY, Occasion};
 use servobench_plant::{Chain, Encoder, EncoderState, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_signals::{
@@ -207,11 +207,10 @@ impl EncoderInput {
 /// Whether the link can have the faults that are expected of it.
 fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
     let available = || LinkFault::ALL.map(LinkFault::name);
-    let of_link = scenario.requirements.expected.iter().enumerate().filter(|(_, expected)| expected.who == "link");
-    for (index, expected) in of_link {
-        if !available().iter().any(|name| name.eq_ignore_ascii_case(&expected.fault)) {
-            let (fault, available) = (expected.fault.clone(), available().to_vec());
-            return Err(BuildError::NoSuchFault { index, fault, available });
+    for (index, expected) in scenario.requirements.expected.iter().enumerate() {
+        let Occasion::Fault { fault, who } = &expected.on else { continue };
+        if who == "link" && !available().iter().any(|name| name.eq_ignore_ascii_case(fault)) {
+            return Err(BuildError::NoSuchFault { index, fault: fault.clone(), available: available().to_vec() });
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
+use servobench_metrics::Incident;
 use servobench_plant::JointLimit;
 use servobench_trace::{Event, Recorder};
 
@@ -36,7 +37,8 @@ impl JointWatch {
         self.watches.resize_with(limits.len(), Watch::default);
         for (watch, limit) in self.watches.iter_mut().zip(limits) {
             watch.tick(t, (goes_on && limit.binds).then_some(0.0), recorder, |start, end, is_last| {
-                Event::new(start, end, MECHANICS, format!("{}{}", limit.text, Event::noted(is_last)))
+                let event = Event::new(start, end, MECHANICS, format!("{}{}", limit.text, Event::noted(is_last)));
+                event.incident(Incident::EndStop.name())
             });
         }
     }

@@ -10,6 +10,7 @@
 //! turns, when it is due, and the link makes the next frame; then the drive steps, when its position loop turns, with the frame
 //! that has arrived. Either way takes the delay of the bus.
 mod build;
+mod concerned;
 mod drive_profile;
 mod plc;
 mod program_cursor;
@@ -389,6 +390,8 @@ impl Network {
 
     /// Notes what is known at the end only.
     pub(crate) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
+        let of_bus = (&self.bus.0, &self.bus.1, &self.faults[..]);
+        concerned::note(of_bus, (&self.turns.0, &self.turns.1, &self.task_faults), self.tick, recorder);
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(delay).for_each(|made| recorder.note_move(made)),
             MotionTask::DriveProfile(way) => way.moves().moves(delay).for_each(|made| recorder.note_move(made)),

@@ -6,7 +6,7 @@ use crate::requirements::rules;
 use crate::time_limit::TimeLimit;
 use crate::worker::Workers;
 use servobench_isolation::Stopwatch;
-use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only};
+use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only, note_incidents};
 use servobench_plant::{Engine, MechanicsError};
 use servobench_scenario::Scenario;
 use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
@@ -75,13 +75,16 @@ pub fn execute(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Run, Box<Broken>> {
     let broken = |error, until_then| Box::new(Broken { error, until_then });
-    let (recording, interruption) = recorded(job, engines, workers, progress).map_err(|error| broken(error, None))?;
+    let (mut recording, interruption) =
+        recorded(job, engines, workers, progress).map_err(|error| broken(error, None))?;
     let (ended, failure) = match interruption {
         None => (None, None),
         Some(Interruption::Early(ended)) => (Some(ended), None),
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
-    let requirements = judge_requirements(&recording, &rules(&job.scenario, &recording, ended));
+    let rules = rules(&job.scenario, &recording, ended);
+    note_incidents(&mut recording, &rules);
+    let requirements = judge_requirements(&recording, &rules);
     let record = &job.scenario.record;
     let recording = selected(recording, &record.channels);
     let wanted = job.metrics();

@@ -24,7 +24,14 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         poles,
         not_analysed,
         ended,
+        winding_limit: winding_limit(&scenario.actuator),
     }
+}
+
+/// Highest temperature that the winding bears (°C), where it warms up.
+fn winding_limit(actuator: &Actuator) -> Option<f64> {
+    let Actuator::Pmsm { effects, .. } = actuator else { return None };
+    effects.temperature?.network.map(|network| network.winding_limit)
 }
 
 /// What the analysis of the linear loop of `scenario` says, its poles, and what is not in it. Where it is stable, its boundaries are

@@ -1,7 +1,7 @@
 //! Scenarios whose runs break a requirement, or come close to one, break what their first line says and nothing else.
-use servobench_metrics::Standing;
+use servobench_metrics::{Expectation, Incident, Occasion, Standing};
 use servobench_plant::{EngineName, Exact};
-use servobench_scenario::load;
+use servobench_scenario::{Scenario, load};
 use servobench_suite::{Engines, Source, Workers, execute, jobs};
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,64 @@ fn broken_of(path: &Path, channels: &[&str]) -> (Vec<&'static str>, Vec<String>)
         .filter(|(_, result)| result.standing == Standing::Broken)
         .map(|(name, _)| name.as_str());
     (names.collect(), run.verdict.reasons().collect())
+}
+
+/// Reasons for which the run of `path` fails when `change` has changed its scenario.
+fn reasons_of(path: &Path, change: impl FnOnce(&mut Scenario)) -> Vec<String> {
+    let mut loaded = load(path).unwrap_or_else(|error| panic!("{error}"));
+    change(&mut loaded.scenario);
+    let source = Source { scenario: loaded.scenario, text: std::fs::read_to_string(path).unwrap() };
+    let job = jobs(vec![source], &[EngineName::Exact]).remove(0);
+    let run =
+        execute(&job, &ENGINES, &Workers::none(), &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error));
+    run.verdict.reasons().collect()
+}
+
+fn expecting(incident: Incident, from: f64, to: f64) -> Expectation {
+    Expectation { on: Occasion::Event(incident), from, to }
+}
+
+/// The crash comes at 0.35 s: an expectation of another time excuses nothing, and does not come.
+#[test]
+fn an_expected_event_has_its_time() {
+    let path = folder().join("end-stop-crash.toml");
+    let reasons = |from, to| {
+        reasons_of(&path, |scenario| scenario.requirements.expected = vec![expecting(Incident::EndStop, from, to)])
+    };
+    assert_eq!(reasons(0.3, 0.4), [""; 0]);
+    let [harm, missing] = &reasons(1.0, 2.0)[..] else { panic!() };
+    assert!(harm.starts_with("no_harm: the load meets the positive end stop at 78"), "{harm}");
+    assert_eq!(missing, "expected, but did not come: the event `end_stop` from 1 s to 2 s");
+}
+
+/// In both files the contact is meant, or nobody's doing: no lift and no expectation keeps them green. Pressed at a stop in another
+/// state the axis comes to harm.
+#[test]
+fn a_contact_in_homing_or_without_power_is_none_that_harms() {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    for (name, from, to) in [("end-stop.toml", 0.1, 0.4), ("plc/home-on-block.toml", 0.5, 3.0)] {
+        let path = scenarios.join(name);
+        assert_eq!(reasons_of(&path, |_| {}), [""; 0], "{name}");
+        let expected = vec![expecting(Incident::EndStop, from, to)];
+        assert_eq!(reasons_of(&path, |scenario| scenario.requirements.expected = expected), [""; 0], "{name}");
+    }
+}
+
+/// A limit of the drive and a fault of the file are events that can be expected, and harm nothing.
+#[test]
+fn what_harms_nothing_can_be_expected_too() {
+    let plc = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/plc");
+    for (name, incident) in [("limit-switch.toml", Incident::InternalLimit), ("bus-jitter.toml", Incident::BusFault)] {
+        let whole = |incident| vec![expecting(incident, 0.0, f64::INFINITY)];
+        let path = plc.join(name);
+        let reasons = |incident| reasons_of(&path, |scenario| scenario.requirements.expected.extend(whole(incident)));
+        assert_eq!(reasons(incident), [""; 0], "{name}");
+        assert_eq!(
+            reasons(Incident::BufferOverflow),
+            ["expected, but did not come: the event `buffer_overflow`"],
+            "{name}"
+        );
+    }
 }
 
 /// Of those with FMUs the files are made by commands; they run as a suite of the program.

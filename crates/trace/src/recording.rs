@@ -145,6 +145,23 @@ pub struct Event {
     /// The limit that bound from `start` to `end`, where that is what happened.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<BoundLimit>,
+    /// The incident, where it is one that a scenario can expect.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub incident: Option<IncidentMark>,
+}
+
+/// An incident of a fixed list.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IncidentMark {
+    /// Name in the list: `end_stop`.
+    pub name: String,
+    /// Why it does no harm, where it does none: `in homing`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub excuse: Option<String>,
+    /// How many things it concerns, where they are counted: frames, cycles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
 }
 
 /// A limit of the machine that bound.
@@ -162,7 +179,14 @@ impl Event {
     /// Something that happened from `start` to `end` (s).
     #[must_use]
     pub fn new(start: f64, end: f64, source: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { start, end, source: source.into(), message: message.into(), limit: None }
+        Self { start, end, source: source.into(), message: message.into(), limit: None, incident: None }
+    }
+
+    /// The same event as the incident `name`.
+    #[must_use]
+    pub fn incident(mut self, name: &str) -> Self {
+        self.incident = Some(IncidentMark { name: name.into(), excuse: None, count: None });
+        self
     }
 
     /// The limit `name` bound from `start` to `end` (s).

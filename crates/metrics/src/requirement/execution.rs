@@ -1,6 +1,6 @@
 //! `executed`: every call of a function block is executed, comes to what it is for, and ends without an error.
 use super::rules::EarlyEnd;
-use super::{Expectation, Rules};
+use super::{Expectation, Occasion, Rules};
 use crate::quantity::Quantity;
 use servobench_trace::{Call, CallFate, Recording};
 
@@ -33,7 +33,8 @@ fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {
 /// When the error came that `expectation` expects of `call` (s).
 pub(super) fn fits(expectation: &Expectation, call: &Call) -> Option<f64> {
     let CallFate::Failed { time, id, .. } = call.fate else { return None };
-    let is_it = expectation.who == call.name && Expectation::code_of(&expectation.fault) == Some(id);
+    let Occasion::Fault { fault, who } = &expectation.on else { return None };
+    let is_it = *who == call.name && Expectation::code_of(fault) == Some(id);
     (is_it && expectation.is_open_at(time)).then_some(time)
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A fault of the drive stops the link, and either brings the axis to `ErrorStop`: while an expected fault lasts, one of a part
 //! behind it is its consequence.
-use super::{Expectation, Rules, execution};
+use super::{Expectation, Occasion, Rules, execution};
 use crate::quantity::Quantity;
 use servobench_trace::{Recording, Signal};
 
@@ -74,9 +74,8 @@ pub(super) fn met(expectation: &Expectation, faults: &[Occurrence], recording: &
 }
 
 fn is_it(expectation: &Expectation, fault: &Occurrence) -> bool {
-    expectation.who == fault.part.name()
-        && expectation.fault.eq_ignore_ascii_case(&fault.fault)
-        && expectation.is_open_at(fault.start)
+    let Occasion::Fault { fault: expected, who } = &expectation.on else { return false };
+    who == fault.part.name() && expected.eq_ignore_ascii_case(&fault.fault) && expectation.is_open_at(fault.start)
 }
 
 /// The faults that nobody expects; `None` where there is nothing that could have one.

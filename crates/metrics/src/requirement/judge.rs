@@ -1,6 +1,6 @@
 //! A recording against every requirement.
 use super::{
-    Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, execution, fault, oscillation,
+    Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, execution, fault, harm, oscillation,
 };
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
@@ -8,7 +8,7 @@ use servobench_trace::Recording;
 /// Reasons that are given for one requirement at most; one more says how many there are besides.
 const MOST_REASONS: usize = 5;
 
-/// Judges `recording`, of which every tick is to be there, by every requirement.
+/// Judges `recording`, of which every tick is to be there and the incidents are [noted](crate::note_incidents), by every requirement.
 #[must_use]
 pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     let faults = fault::occurrences(recording);
@@ -17,7 +17,7 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
         .iter()
         .map(|expectation| Expected {
             expectation: expectation.clone(),
-            met: fault::met(expectation, &faults, recording),
+            met: harm::met(expectation, recording).or_else(|| fault::met(expectation, &faults, recording)),
         })
         .collect();
     let standing = |requirement| {
@@ -26,6 +26,7 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
             Requirement::Executed => (execution::broken(recording, rules), true),
             Requirement::NoFault => (fault::broken(recording, rules, &faults), true),
             Requirement::Stable => (oscillation::broken(recording, rules), true),
+            Requirement::NoHarm => (harm::broken(recording, rules), true),
             // A run that diverged has no end that could be judged.
             Requirement::Bounded => (Some(bounds::broken(recording, rules)), !rules.has_diverged()),
         };

@@ -6,7 +6,7 @@ use super::{Expectation, Requirement};
 pub struct Rules<'a> {
     /// Requirements that the scenario lifts.
     pub lifted: &'a [Requirement],
-    /// Faults that belong to the run.
+    /// Faults and incidents that belong to the run.
     pub expected: &'a [Expectation],
     /// Half width of the window around a target in which the axis has arrived (axis unit); `None`: as
     /// [`arrival_window`](super::arrival_window) says.
@@ -28,6 +28,8 @@ pub struct Rules<'a> {
     pub not_analysed: Option<String>,
     /// Why the run ended before its end, if it did.
     pub ended: Option<EarlyEnd>,
+    /// Highest temperature that the winding bears (°C); `None` where it does not warm up.
+    pub winding_limit: Option<f64>,
 }
 
 /// What moves the axis.

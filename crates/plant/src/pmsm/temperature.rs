@@ -43,9 +43,13 @@ servobench_config::parameters! {
         WINDING_CAPACITY "heat capacity of the winding" = positive(Plain(&HEAT_CAPACITY), "120 J/K");
         /// Heat capacity of the housing, with the iron
         HOUSING_CAPACITY "heat capacity of the housing" = positive(Plain(&HEAT_CAPACITY), "1.6 kJ/K");
+        /// Highest temperature that the insulation of the winding bears: a winding that is hotter comes to harm
+        LIMIT "temperature limit of the winding" = temperature("130 degC");
     }
 }
 
+/// Highest temperature of a winding of insulation class F (°C): IEC 60085, thermal class 155.
+pub const CLASS_F: f64 = 155.0;
 /// Temperature coefficient of copper at 20 °C (1/K).
 pub const COPPER: f64 = 0.003_93;
 
@@ -86,6 +90,8 @@ pub struct ThermalNetwork {
     pub winding_capacity: f64,
     /// Of the housing (J/K).
     pub housing_capacity: f64,
+    /// Highest temperature that the winding bears (°C); it changes nothing.
+    pub winding_limit: f64,
 }
 
 impl Temperature {
@@ -104,6 +110,7 @@ impl Temperature {
             P::TO_AMBIENT.check_in_words(network.to_ambient)?;
             P::WINDING_CAPACITY.check_in_words(network.winding_capacity)?;
             P::HOUSING_CAPACITY.check_in_words(network.housing_capacity)?;
+            P::LIMIT.check_in_words(network.winding_limit)?;
         }
         let coldest = self.network.map_or(self.start.winding, |network| network.ambient.min(self.start.winding));
         for (name, factor) in [
@@ -149,7 +156,7 @@ const TERMS: i32 = 8;
 impl ThermalSteps {
     /// Steps of `h` (s): the series of a short part, doubled until it is the step (as in [`maps`](super::maps)).
     pub(super) fn new(network: &ThermalNetwork, h: f64) -> Self {
-        let ThermalNetwork { ambient, to_housing, to_ambient, winding_capacity, housing_capacity } = *network;
+        let ThermalNetwork { ambient, to_housing, to_ambient, winding_capacity, housing_capacity, .. } = *network;
         let slope = [
             [-1.0 / (to_housing * winding_capacity), 1.0 / (to_housing * winding_capacity)],
             [1.0 / (to_housing * housing_capacity), -(1.0 / to_housing + 1.0 / to_ambient) / housing_capacity],

@@ -83,6 +83,8 @@ table! {
         to_ambient: f64 = TemperatureParameter::TO_AMBIENT,
         winding_capacity: f64 = TemperatureParameter::WINDING_CAPACITY,
         housing_capacity: f64 = TemperatureParameter::HOUSING_CAPACITY,
+        /// (docs/requirements.md, `no_harm`); default: 155 °C, that of insulation class F.
+        limit: f64 = TemperatureParameter::LIMIT,
     }
 }
 

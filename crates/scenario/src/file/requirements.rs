@@ -1,7 +1,8 @@
-//! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults that belong to it.
+//! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults and incidents that belong to it.
 use crate::diagnostic::Report;
 use crate::field::Field;
 use crate::nearest::suggestion;
+use crate::simple::OneOf;
 use crate::source::At;
 use crate::table::{object_schema, table};
 use crate::tree::{Node, Value};
@@ -9,7 +10,7 @@ use serde_json::{Value as Json, json};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::TIME;
 use servobench_config::{not_negative, positive};
-use servobench_metrics::Requirement;
+use servobench_metrics::{Incident, Requirement};
 
 /// The requirements that the file names, each with whether it holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,16 +47,30 @@ impl Field for RequirementTable {
     }
 }
 
+servobench_config::choices! {
+    /// Kinds of `[[expect]]`.
+    pub(crate) enum ExpectedOn default Fault {
+        /// `fault` of `who`
+        Fault = "fault",
+        /// an incident: `event`
+        Event = "event",
+    }
+}
+
 table! {
-    /// A fault that belongs to the run: when it comes it breaks no requirement, and a run in which it does not come fails.
-    /// What follows from it for the other parts of the axis is expected with it: a fault of the drive or the link brings the
-    /// axis to `ErrorStop`. Blocks that end in `Error` are expected each by itself.
-    pub(crate) struct Expect requires ["fault", "who"] {
+    /// A fault or an incident that belongs to the run: when it comes it breaks no requirement, and a run in which it does not come
+    /// fails. What follows from a fault for the other parts of the axis is expected with it: a fault of the drive or the link brings
+    /// the axis to `ErrorStop`. Blocks that end in `Error`, and incidents, are expected each by itself.
+    pub(crate) struct Expect {
+        /// What is expected; default: "fault".
+        on: ExpectedOn = OneOf,
         /// State or error code: "ErrorStop" of the axis, the code of the drive (603Fh) as in "8611h", the name of the
         /// link's fault as in "positive limit switch", the `ErrorID` of a call as in "2002h".
         fault: String = (),
         /// Whose fault: "axis", "drive", "link", or the name of a call.
         who: String = (),
+        /// Which incident, with `on = "event"`.
+        event: Incident = OneOf,
         /// From when on it may come; default: the beginning.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Until when it must have come; default: the end of the run.

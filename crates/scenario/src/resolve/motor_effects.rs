@@ -11,7 +11,7 @@ use servobench_base::Coordinate;
 use servobench_base::Dq;
 use servobench_files::FileRole;
 use servobench_plant::pmsm::{
-    self, COPPER, Effects, FluxData, FluxMap, Saturation, Temperature, Temperatures, ThermalNetwork,
+    self, CLASS_F, COPPER, Effects, FluxData, FluxMap, Saturation, Temperature, Temperatures, ThermalNetwork,
 };
 use std::f64::consts::TAU;
 
@@ -143,6 +143,7 @@ fn network(given: &file::Thermal) -> Result<ThermalNetwork, Reported> {
         to_ambient: the(&given.to_ambient)?,
         winding_capacity: the(&given.winding_capacity)?,
         housing_capacity: the(&given.housing_capacity)?,
+        winding_limit: or(&given.limit, CLASS_F)?,
     })
 }
 

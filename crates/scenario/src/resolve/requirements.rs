@@ -1,11 +1,14 @@
 //! `[requirements]` and `[[expect]]`.
 use crate::diagnostic::Report;
+use crate::field::Slot;
 use crate::file;
 use crate::file::File;
 use crate::nearest::suggestion;
 use crate::scenario::{Plc, Requirements};
 use crate::source::At;
-use servobench_metrics::Expectation;
+use crate::source::Span;
+use file::ExpectedOn;
+use servobench_metrics::{Expectation, Incident, Occasion};
 
 /// What the expectations need to know of the rest of the file.
 pub(super) struct Known<'a> {
@@ -13,6 +16,10 @@ pub(super) struct Known<'a> {
     pub(super) duration: Option<f64>,
     pub(super) has_bus: bool,
     pub(super) plc: Option<&'a Plc>,
+    /// Whether the travel has ends: `[axis.end_stops]`, or those of joints in a model of the user's own.
+    pub(super) has_ends: bool,
+    /// Whether the motor has a thermal model.
+    pub(super) warms_up: bool,
 }
 
 /// What the run is held to.
@@ -26,12 +33,59 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     Some(Requirements { lifted, expected })
 }
 
-fn expectation(given: &At<file::Expect>, known: &Known<'_>, report: &mut Report) -> Option<Expectation> {
-    let At { value: given, .. } = given;
-    let (fault, who) = (given.fault.at()?, given.who.at()?);
+fn expectation(
+    At { value: given, span }: &At<file::Expect>,
+    known: &Known<'_>,
+    report: &mut Report,
+) -> Option<Expectation> {
+    let on = match given.on.optional().ok()?.copied().unwrap_or_default() {
+        ExpectedOn::Fault => {
+            foreign(&[("event", given.event.span())], "with `on = \"event\"`", report);
+            fault(given, *span, known, report)?
+        }
+        ExpectedOn::Event => {
+            foreign(&[("fault", given.fault.span()), ("who", given.who.span())], "with `on = \"fault\"`", report);
+            Occasion::Event(needed(&given.event, "event", *span, report)?.value)
+        }
+    };
+    if let Occasion::Event(incident) = on
+        && let Some(help) = known.rules_out(incident)
+    {
+        report.error(*span, format!("`{incident}` cannot come"), help);
+    }
+    let (from, to) = (given.from.given().copied().unwrap_or(0.0), given.to.given().copied().unwrap_or(f64::INFINITY));
+    if let (true, Some(span)) = (to <= from, given.to.span()) {
+        report.error(span, format!("`to` is {to} s and `from` {from} s: there is no time between"), "");
+    }
+    if let (Some(duration), Some(span)) = (known.duration.filter(|duration| from >= *duration), given.from.span()) {
+        report.error(span, format!("the run is over by then: it lasts {duration} s"), "");
+    }
+    Some(Expectation { on, from, to })
+}
+
+/// Reports keys that say nothing here.
+fn foreign(keys: &[(&str, Option<Span>)], where_they_belong: &str, report: &mut Report) {
+    for (key, span) in keys {
+        if let Some(span) = span {
+            report.error(*span, format!("`{key}` goes {where_they_belong}"), "leave it out, or change `on`");
+        }
+    }
+}
+
+/// A key that this kind of expectation needs.
+fn needed<'a, T>(slot: &'a Slot<T>, key: &str, span: Span, report: &mut Report) -> Option<&'a At<T>> {
+    if matches!(slot, Slot::Absent) {
+        report.error(span, format!("missing `{key}` in `expect`"), "");
+    }
+    slot.at()
+}
+
+fn fault(given: &file::Expect, span: Span, known: &Known<'_>, report: &mut Report) -> Option<Occasion> {
+    let (fault, who) = (needed(&given.fault, "fault", span, report), needed(&given.who, "who", span, report));
+    let (fault, who) = (fault?, who?);
     if !known.has_bus {
         let help = "give a `[bus]`, or leave `[[expect]]` out";
-        report.error(given.span, "without a fieldbus axis, drive and link have no faults", help);
+        report.error(span, "without a fieldbus axis, drive and link have no faults", help);
     }
     let calls = || known.plc.into_iter().flat_map(|plc| &plc.calls).map(|call| call.name.as_str());
     let parts = ["axis", "drive", "link"];
@@ -55,12 +109,25 @@ fn expectation(given: &At<file::Expect>, known: &Known<'_>, report: &mut Report)
     if let Some(help) = objection {
         report.error(fault.span, format!("\"{}\" is no fault of `{}`", fault.value, who.value), help);
     }
-    let (from, to) = (given.from.given().copied().unwrap_or(0.0), given.to.given().copied().unwrap_or(f64::INFINITY));
-    if let (true, Some(span)) = (to <= from, given.to.span()) {
-        report.error(span, format!("`to` is {to} s and `from` {from} s: there is no time between"), "");
+    Some(Occasion::Fault { fault: fault.value.clone(), who: who.value.clone() })
+}
+
+impl Known<'_> {
+    /// Remedy where the axis lacks what an incident needs.
+    const fn rules_out(&self, incident: Incident) -> Option<&'static str> {
+        match incident {
+            Incident::EndStop if !self.has_ends => Some("give `[axis.end_stops]`, or leave `[[expect]]` out"),
+            Incident::WindingTemperature if !self.warms_up => Some("give `[motor.thermal]`, or leave `[[expect]]` out"),
+            Incident::MissingPoint
+            | Incident::BufferOverflow
+            | Incident::BufferUnderflow
+            | Incident::InternalLimit
+            | Incident::BusFault
+                if !self.has_bus =>
+            {
+                Some("give a `[bus]`, or leave `[[expect]]` out")
+            }
+            _ => None,
+        }
     }
-    if let (Some(duration), Some(span)) = (known.duration.filter(|duration| from >= *duration), given.from.span()) {
-        report.error(span, format!("the run is over by then: it lasts {duration} s"), "");
-    }
-    Some(Expectation { fault: fault.value.clone(), who: who.value.clone(), from, to })
 }

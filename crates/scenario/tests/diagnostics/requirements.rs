@@ -1,7 +1,7 @@
 //! What is said of requirements and of expected faults.
 use crate::calls::said;
 use crate::{AXIS, mistakes, strings};
-use servobench_metrics::{Expectation, Requirement};
+use servobench_metrics::{Expectation, Incident, Occasion, Requirement};
 use servobench_scenario::parse;
 
 /// The axis with `tables` at its end.
@@ -95,8 +95,8 @@ fn an_expected_fault_is_one_that_there_can_be() {
 fn an_expectation_without_a_time_holds_for_the_whole_run() {
     let text = crate::calls::text("[[expect]]\nfault = \"8611h\"\nwho = \"drive\"\n");
     let scenario = parse("axis.toml", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-    let (fault, who) = ("8611h".into(), "drive".into());
-    assert_eq!(scenario.requirements.expected, [Expectation { fault, who, from: 0.0, to: f64::INFINITY }]);
+    let on = Occasion::Fault { fault: "8611h".into(), who: "drive".into() };
+    assert_eq!(scenario.requirements.expected, [Expectation { on, from: 0.0, to: f64::INFINITY }]);
 }
 
 #[test]
@@ -107,4 +107,40 @@ fn optional_calls_are_marked() {
     assert_eq!(optional, [false, true]);
     let [errors, _] = said("[[call]]\nblock = \"MC_Reset\"\noptional = 1\n");
     assert_eq!(errors, strings(&["3:12: `optional` must be true or false, got 1"]));
+}
+
+#[test]
+fn an_expected_event_is_one_of_the_list_that_the_axis_can_have() {
+    let known = ["end_stop", "winding_temperature", "missing_point", "buffer_overflow", "buffer_underflow"];
+    let bus = "[[expect]]\non = \"event\"\nevent = \"buffer_overflow\"\nfrom = \"0.1 s\"\nto = \"0.2 s\"\n";
+    let text = crate::calls::text(bus);
+    let scenario = parse("axis.toml", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+    let on = Occasion::Event(Incident::BufferOverflow);
+    assert_eq!(scenario.requirements.expected, [Expectation { on, from: 0.1, to: 0.2 }]);
+    let ends = "1:1: `end_stop` cannot come; give `[axis.end_stops]`, or leave `[[expect]]` out";
+    let warmth = "1:1: `winding_temperature` cannot come; give `[motor.thermal]`, or leave `[[expect]]` out";
+    for (keys, expected) in [
+        ("on = \"event\"\nevent = \"internal_limit\"", vec![]),
+        ("on = \"fault\"\nfault = \"8611h\"\nwho = \"drive\"", vec![]),
+        ("on = \"event\"\nevent = \"end_stop\"", vec![ends.to_owned()]),
+        ("on = \"event\"\nevent = \"winding_temperature\"", vec![warmth.to_owned()]),
+        ("on = \"event\"", vec!["1:1: missing `event` in `expect`".into()]),
+        (
+            "event = \"buffer_overflow\"",
+            vec![
+                "1:1: missing `fault` in `expect`".into(),
+                "1:1: missing `who` in `expect`".into(),
+                "2:9: `event` goes with `on = \"event\"`; leave it out, or change `on`".into(),
+            ],
+        ),
+        (
+            "on = \"event\"\nevent = \"buffer_overflow\"\nwho = \"drive\"",
+            vec!["4:7: `who` goes with `on = \"fault\"`; leave it out, or change `on`".into()],
+        ),
+    ] {
+        assert_eq!(expecting(keys), expected, "{keys}");
+    }
+    let [wrong] = &expecting("on = \"event\"\nevent = \"end_stops\"")[..] else { panic!() };
+    assert!(wrong.contains("did you mean `end_stop`?"), "{wrong}");
+    assert!(known.iter().all(|name| Incident::from_name(name).is_some()));
 }

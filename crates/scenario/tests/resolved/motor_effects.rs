@@ -76,6 +76,7 @@ housing_capacity = "1.6 kJ/K"
         to_ambient: 1.1,
         winding_capacity: 120.0,
         housing_capacity: 1600.0,
+        winding_limit: 155.0,
     };
     let expected = Effects {
         cogging,

@@ -55,6 +55,7 @@ pub(super) struct Signals {
     power: Watched<PowerState>,
     mode: Watched<Option<Mode>>,
     drive_fault: Watched<Option<device::Fault>>,
+    internal_limit: Watched<bool>,
     buffer: Watched<u32>,
     /// The words in which a master reads the buffer, where it sends points: 2011h and 2012h.
     words: Option<(Watched<usize>, Watched<u32>)>,
@@ -69,6 +70,7 @@ impl Signals {
             power: Watched::new("drive", "state", recorder),
             mode: Watched::new("drive", "mode", recorder),
             drive_fault: Watched::new("drive", "fault", recorder),
+            internal_limit: Watched::new("drive", "internal_limit", recorder),
             buffer: Watched::new("drive", "buffer", recorder),
             words: sends_points.then(|| {
                 (Watched::new("drive", "buffer_free", recorder), Watched::new("drive", "buffer_status", recorder))
@@ -84,6 +86,7 @@ impl Signals {
         self.drive_fault.note(t, drive.fault(), recorder, |fault| {
             fault.map_or("none".into(), |fault| format!("{:04X}h", fault.code()))
         });
+        self.internal_limit.note(t, drive.is_limited(), recorder, word);
         self.buffer.note(t, drive.buffer_status() >> 24 & ERRORS, recorder, latched);
         if let Some((free, status)) = &mut self.words {
             free.note(t, drive.buffer_free(), recorder, |points| points.to_string());

@@ -119,6 +119,7 @@ const WARMING: Temperature = Temperature {
         to_ambient: 1.13,
         winding_capacity: 0.4,
         housing_capacity: 9.0,
+        winding_limit: 155.0,
     }),
 };
 

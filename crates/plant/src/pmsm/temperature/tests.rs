@@ -6,6 +6,7 @@ const NETWORK: ThermalNetwork = ThermalNetwork {
     to_ambient: 1.13,
     winding_capacity: 118.0,
     housing_capacity: 1_640.0,
+    winding_limit: 155.0,
 };
 
 /// Rises above the surroundings after `t` (s) at constant losses from rest: A = V·diag(λ)·V⁻¹ by hand.

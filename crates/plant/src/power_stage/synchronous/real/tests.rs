@@ -47,6 +47,7 @@ fn every_effect() -> pmsm::Effects {
                 to_ambient: 1.1,
                 winding_capacity: 6.0,
                 housing_capacity: 90.0,
+                winding_limit: 155.0,
             }),
         }),
     }
