@@ -39,6 +39,12 @@ impl Build {
         self
     }
 
+    /// Sets the requests of the task: from which time (s) on it makes which kind.
+    pub(crate) fn requests(self, changes: &[(f64, &str)]) -> Self {
+        let (source, name) = crate::requirement::REQUEST_KIND;
+        self.signal(source, name, changes)
+    }
+
     /// Sets the moves.
     pub(crate) fn moves(mut self, moves: impl IntoIterator<Item = Move>) -> Self {
         self.recording.moves = moves.into_iter().collect();
