@@ -40,8 +40,9 @@ pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation, Poles, REQUEST_KIND,
-    Requirement, RequirementResult, Rules, Standing, arrival_window, judge_requirements,
+    Deflection, Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation, Poles,
+    REQUEST_KIND, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances, arrival_window,
+    judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;
 pub use round::{round_above, round_below};

@@ -5,16 +5,28 @@
 mod arrival;
 mod asked;
 mod bounds;
+mod deflection;
+mod effort;
 mod execution;
 mod fault;
+mod following;
 mod harm;
 mod judge;
 mod oscillation;
+mod phases;
 mod rules;
+mod servo;
+mod standing;
+mod stopping;
+mod stretch;
+mod task;
+mod velocity;
 
 pub use arrival::arrival_window;
+pub use deflection::Deflection;
 pub use judge::judge_requirements;
-pub use rules::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
+pub use rules::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules, Tolerances};
+pub use servo::Servo;
 
 use crate::incident::Incident;
 use serde::{Deserialize, Serialize};
@@ -51,8 +63,13 @@ macro_rules! requirements {
 }
 
 requirements! {
-    Arrives "arrives" "the last target of each sequence of moves is reached",
-    Executed "executed" "every call of a function block is executed and ends without an error",
+    Follows "follows" "the load goes along with the positions that are requested",
+    Arrives "arrives" "the load rests at each target",
+    Stands "stands" "the axis stands before its first motion",
+    Velocity "velocity" "the load has each velocity that is requested and held",
+    Effort "effort" "the motor gives each torque or force that is requested",
+    Stopped "stopped" "the axis comes to rest after each stop",
+    Executed "executed" "every motion and every call is executed and ends without an error",
     NoFault "no_fault" "axis, drive and link have no fault but those that are expected",
     Stable "stable" "the loop is stable, and no oscillation grows or goes from limit to limit",
     NoHarm "no_harm" "no harm comes to machine, motor or trajectory but what is expected",
@@ -215,14 +232,17 @@ pub(crate) mod tests {
     use crate::synthetic::Build;
 
     /// A closed loop without anything special.
-    pub(crate) const fn rules() -> Rules<'static> {
+    pub(crate) fn rules() -> Rules<'static> {
         Rules {
             lifted: &[],
             expected: &[],
             window: None,
             increment: 0.0,
-            modulo: None,
             transmission: 1.0,
+            bus_unit: 0.0,
+            servo: None,
+            deflection: Deflection::default(),
+            tolerances: Tolerances::default(),
             driven: Driven::ByLoops,
             linear_loop: LinearLoop::Stable,
             poles: None,

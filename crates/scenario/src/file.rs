@@ -29,7 +29,7 @@ pub(crate) use motor::{Motor, MotorKind};
 pub(crate) use motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, Thermal};
 pub(crate) use plc::{Call, CamSwitch, Condition, Plc, TrackOptions, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
-pub(crate) use requirements::{Expect, ExpectedOn, RequirementTable};
+pub(crate) use requirements::{Expect, ExpectedOn, RequirementTable, Tolerance};
 pub(crate) use sensors::{CurrentSensor, Encoder, EncoderKeys, LoadEncoder};
 pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 
@@ -89,6 +89,8 @@ table! {
         measure: Measures = (),
         /// What the run is held to beside its limits, each unless it is `false`.
         requirements: RequirementTable = (),
+        /// How far off the request the axis may be.
+        tolerance: Tolerance = (),
         /// Faults that belong to the run; `[[expect]]` for each.
         expect: Many<Expect> = (),
         /// Limits by metric: the largest allowed magnitude, or a range `{ min = …, max = … }`.

@@ -1,4 +1,6 @@
 //! From a scenario to what its run is held to beside its limits.
+mod axle;
+
 use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
 use servobench_scenario::{Actuator, Feedback, Scenario};
 use servobench_sim::{Analysis, MasterLoop, NotAnalysed, Speeds, analyse_stability};
@@ -13,8 +15,11 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         expected: &scenario.requirements.expected,
         window: scenario.measure.window,
         increment: increment(scenario),
-        modulo: scenario.axis.modulo,
         transmission: scenario.axis.transmission,
+        bus_unit: scenario.bus.as_ref().map_or(0.0, |bus| bus.units.axis.abs() / f64::from(bus.units.drive)),
+        servo: axle::servo(scenario),
+        deflection: axle::deflection(scenario),
+        tolerances: scenario.requirements.tolerances,
         driven: match scenario.actuator {
             Actuator::Prescribed => Driven::Exactly,
             Actuator::Off => Driven::Not,

@@ -1,251 +1,213 @@
-//! `arrives`: the last target of each sequence of moves is reached.
+//! `arrives`: the load rests at each target.
 //!
-//! Moves that follow each other without a pause are one sequence. When its last one ends at rest, the load (of a motor that
-//! follows its set-point exactly: the motor) has to stand at its target: the mean over the last tenth of the time before the
-//! next sequence, or the end of the run, is within the window. Ringing about the target is judged by limits.
-use super::Rules;
+//! In each rest that is long enough for the loop to come to rest, and in that in which the run ends, the mean of the load is at the
+//! target, over whole cycles where it swings ([`Task`](super::task::Task)). Ringing about the target is judged by limits and by
+//! `rings`.
 use super::rules::Driven;
+use super::task::{Piece, ROUNDING, Task};
 use crate::quantity::Quantity;
-use crate::span::{Phase, phases};
-use servobench_signals::{PerLimit, Signal};
 use servobench_trace::{Ending, Recording};
 
-/// The default window is the distance of the move by this.
-const PART_OF_MOVE: f64 = 1e-3;
-/// It is at least so many increments of the encoder.
-const INCREMENTS: f64 = 10.0;
-/// Differences of positions say nothing about so small a part of them; it is the window of a move over no distance.
-const ROUNDING: f64 = 1e-12;
-/// The mean is over the last one of so many parts of the time after the profile.
-const REST: usize = 10;
-/// A pause is longer than so many periods of the rows.
-const PAUSE: f64 = 1.5;
+/// The default window is the distance of the way by this.
+const PART_OF_WAY: f64 = 1e-3;
+/// It is at least so many increments of the encoder, or units of the bus.
+const RESOLUTIONS: f64 = 10.0;
+/// Where the window is larger than the tolerance, so many of them are left.
+const LEAST_RESOLUTIONS: f64 = 2.0;
+/// The largest share of the way by which deflection explains an error, and by which a loop that has had too little time is off.
+const OF_WAY: f64 = 0.1;
 
-/// Half width of the window in which a move over `distance` has arrived, unless the scenario says it: a thousandth of the
-/// distance, and at least ten increments of the encoder that closes the position loop (all in the axis unit).
+/// Half width of the window in which a load has arrived after a way over `distance`, unless the scenario gives one: a thousandth of the
+/// distance, and at least ten times the `resolution`: an increment of the encoder that closes the position loop, or a unit of the bus
+/// (all in the axis unit).
 #[must_use]
-pub fn arrival_window(distance: f64, increment: f64) -> f64 {
-    (PART_OF_MOVE * distance.abs()).max(INCREMENTS * increment)
+pub fn arrival_window(distance: f64, resolution: f64) -> f64 {
+    (PART_OF_WAY * distance.abs()).max(RESOLUTIONS * resolution)
 }
 
-/// Why targets are not reached; `None` where no move ends at a target.
-pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
-    let (channel, body) = match rules.driven {
-        Driven::ByLoops => (Signal::LoadPosition, "load"),
-        Driven::Exactly => (Signal::MotorPosition, "motor"),
-        Driven::Not => return None,
-    };
-    let phases = phases(recording);
-    let period = recording.rate.period();
-    let ends_a_sequence = |k: usize| {
-        let next = recording.moves.get(k + 1);
-        next.is_none_or(|next| next.start > recording.moves[k].end + PAUSE * period)
-    };
-    let arriving =
-        phases.iter().enumerate().filter(|(k, phase)| phase.made.ending == Ending::AtRest && ends_a_sequence(*k));
-    let positions = recording.channel(channel);
-    let mut asked = false;
-    let mut reasons = Vec::new();
-    for (_, phase) in arriving {
-        asked = true;
-        let reason = match positions {
-            Some(positions) => miss(recording, positions, phase, rules, body),
-            None => Some(format!("`{channel}` is not recorded: nobody can tell whether the {body} arrived")),
-        };
-        reasons.extend(reason);
-    }
-    asked.then_some(reasons)
-}
-
-/// How a target was missed.
-fn miss(recording: &Recording, positions: &[f64], phase: &Phase<'_>, rules: &Rules<'_>, body: &str) -> Option<String> {
-    let made = phase.made;
-    let unit = recording.about.axis_unit.as_str();
-    let quantity = |value: f64| Quantity::new(value, unit);
-    let last = recording.time_of(recording.len().saturating_sub(1));
-    if made.end > last + recording.rate.period() / 2.0 {
-        let (end, last) = (Quantity::new(made.end, "s"), Quantity::new(last, "s"));
-        return Some(format!("the run ends at {last}, before `{}` does at {end}", made.label));
-    }
-    // The move may end between the last two rows.
-    let rows = if phase.after.is_empty() {
-        phase.after.start.saturating_sub(1)..phase.after.start
-    } else {
-        phase.after.clone()
-    };
-    let count = rows.len().div_ceil(REST);
-    let rest = positions.get(rows.end.saturating_sub(count)..rows.end).unwrap_or_default();
-    if rest.is_empty() {
-        return Some(format!("nothing was recorded after `{}`", made.label));
-    }
-    let error = rest.iter().map(|x| nearest(made.to - x, rules.modulo)).sum::<f64>() / rest.len() as f64;
-    let distance = made.to - made.from;
-    let rounding = ROUNDING * made.from.abs().max(made.to.abs());
-    let window = rules.window.unwrap_or_else(|| arrival_window(distance, rules.increment).max(rounding));
-    if error.abs() <= window {
+/// Why targets are not reached; `None` where there is none.
+pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
+    if task.rules.driven == Driven::Not {
         return None;
     }
-    let side = if error * distance >= 0.0 { "short of" } else { "beyond" };
-    let bound = bound_time(recording, made.start, recording.time_of(rows.end - 1));
-    Some(format!(
-        "the {body} ended {} {side} {} (window ±{}){bound}",
-        quantity(error.abs()),
-        quantity(made.to),
-        quantity(window)
-    ))
-}
-
-/// `error`, on a modulo axis the shorter way round.
-fn nearest(error: f64, modulo: Option<f64>) -> f64 {
-    modulo.map_or(error, |modulo| error - modulo * (error / modulo).round())
-}
-
-/// Which limit of the drive bound for the longest time from `start` to `end` (s), as the end of a sentence.
-fn bound_time(recording: &Recording, start: f64, end: f64) -> String {
-    let PerLimit { voltage, current, effort } = PerLimit::NAMES;
-    let limits = [effort, current, voltage];
-    let bound = limits.map(|limit| {
-        let binding =
-            recording.events.iter().filter(|event| event.limit.as_ref().is_some_and(|bound| bound.name == limit));
-        let time: f64 = binding.map(|event| (event.end.min(end) - event.start.max(start)).max(0.0)).sum();
-        (limit, time)
-    });
-    let longest = bound.into_iter().reduce(|one, two| if two.1 > one.1 { two } else { one });
-    match longest {
-        Some((limit, time)) if time > 0.0 => format!("; {limit} bound for {}", Quantity::new(time, "s")),
-        _ => String::new(),
+    let unfinished: Vec<String> = unfinished(task.recording).into_iter().collect();
+    let mut rests = task.pieces.iter().filter(|(piece, _)| matches!(piece, Piece::Rest { .. })).peekable();
+    if rests.peek().is_none() && unfinished.is_empty() {
+        return None;
     }
+    Some(
+        unfinished
+            .into_iter()
+            .chain(rests.filter_map(|(piece, rest)| {
+                let Piece::Rest { way, is_short } = *piece else { return None };
+                if task.is_excused(&rest.rows) {
+                    return None;
+                }
+                let last = rest.rows.end - 1;
+                let target = task.rows.as_ref()?.request[last];
+                let deflection = &task.rules.deflection;
+                let gives_way = deflection.droop(task.disturbance)
+                    + deflection.elastic
+                    + deflection.elastic_per_effort * task.on_load;
+                let of_loop = rest.response_off.abs();
+                let of_loop = if is_short { of_loop.min(OF_WAY * way) } else { of_loop };
+                let least = (LEAST_RESOLUTIONS * task.rules.resolution()).max(ROUNDING * target.abs());
+                let bound = task.window(way).min(task.rules.tolerances.arrives * way).max(least)
+                    + of_loop
+                    + gives_way.min(OF_WAY * way);
+                let off = rest.load_off;
+                        (off.is_nan() || off.abs() > bound).then(|| {
+                    let row = rest.rows.start;
+                    format!(
+                        "the load rests {} from {} at {}{} (window ±{}){}",
+                        task.length(off.abs()),
+                        task.length(target),
+                        task.time(last),
+                        task.within(row),
+                        task.length(bound),
+                        task.bound_by(&rest.rows)
+                    )
+                })
+            }))
+            .collect(),
+    )
+}
+
+/// A move of which the run does not see the end.
+fn unfinished(recording: &Recording) -> Option<String> {
+    let last = recording.time_of(recording.len().saturating_sub(1));
+    let mut to_targets = recording.moves.iter().filter(|made| made.ending == Ending::AtRest);
+    let cut = to_targets.find(|made| made.end > last + recording.rate.period() / 2.0)?;
+    let (end, last) = (Quantity::new(cut.end, "s"), Quantity::new(last, "s"));
+    Some(format!("the run ends at {last}, before `{}` does at {end}", cut.label))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::requirement::tests::rules;
+    use crate::requirement::{Deflection, Rules};
     use crate::synthetic::{Build, planned};
-    use servobench_trace::{Event, Move};
+    use core::f64::consts::TAU;
+    use servobench_signals::Signal;
+    use servobench_trace::Event;
 
-    /// One move from 0 to 0.2 m in 0.5 s, of 1 s recorded at 1 kHz; the load is at `load(t)`.
+    /// A move from 0 to 0.2 m in 0.5 s, then a rest to 1 s, at 1 kHz; the load is at `load(t)`.
     fn one_move(load: impl Fn(f64) -> f64) -> Recording {
+        let x = |t: f64| 0.2 * t.min(0.5) / 0.5;
         Build::new(1000, 1001)
+            .channel(Signal::RequestPosition, "m", x)
+            .channel(Signal::RequestVelocity, "m/s", |t| if t < 0.5 { 0.4 } else { 0.0 })
             .channel(Signal::LoadPosition, "m", load)
-            .channel(Signal::MotorPosition, "m", |_| 0.2)
+            .requests(&[(0.0, "follow"), (0.5, "rest")])
             .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
             .finish()
     }
 
+    fn found(recording: &Recording, rules: &Rules<'_>) -> Vec<String> {
+        broken(&Task::of(recording, rules, &[])).unwrap_or_default()
+    }
+
     #[test]
-    fn a_load_that_stops_short_says_by_how_much_and_what_held_it() {
+    fn a_load_that_rests_elsewhere_says_where_and_what_held_it() {
         let mut recording = one_move(|_| 0.15);
-        for (start, end) in [(0.1, 0.3), (0.9, 5.0)] {
-            recording.events.push(Event::bound(start, end, "velocity loop", "effort limit", false));
-        }
-        let rules = rules();
-        let broken = broken(&recording, &rules).unwrap();
-        assert_eq!(broken, ["the load ended 50.0 mm short of 200 mm (window ±200 µm); effort limit bound for 300 ms"]);
+        recording.events.push(Event::bound(0.95, 5.0, "velocity loop", "effort limit", false));
+        assert_eq!(
+            found(&recording, &rules()),
+            [
+                "the load rests 50.0 mm from 200 mm at 1.00 s in `move to 0.2 m` (window ±200 µm); effort limit bound for 51.0 ms"
+            ]
+        );
+        assert_eq!(found(&one_move(|_| f64::NAN), &rules()).len(), 1, "what is not a number has not arrived");
     }
 
-    /// From 0.2 m to 0.2 m: a thousandth of nothing would be no window.
+    /// The scenario's window, at most 5 % of the way, or a thousandth of it and ten increments or units of the bus.
     #[test]
-    fn a_move_over_no_distance_arrives_but_for_rounding() {
-        for (off, arrives) in [(0.0, true), (1e-15, true), (1e-12, false)] {
-            let mut recording = one_move(|_| 0.2 + off);
-            recording.moves = vec![planned(0.0, 0.0, 0.2, 0.2).made()];
-            let found = broken(&recording, &rules()).unwrap();
-            assert_eq!(found.is_empty(), arrives, "{off}: {found:?}");
-        }
-    }
-
-    /// The window is met inclusively, and a rounding beyond it is a miss.
-    #[test]
-    fn the_window_is_inclusive() {
-        let window = Some(5e-6);
-        for (beyond, arrives) in [(0.0, true), (4.9e-6, true), (-4.9e-6, true), (5.1e-6, false), (-5.1e-6, false)] {
-            let recording = one_move(|t| if t < 0.9 { 0.0 } else { 0.2 + beyond });
-            let found = broken(&recording, &Rules { window, ..rules() }).unwrap();
-            assert_eq!(found.is_empty(), arrives, "{beyond}: {found:?}");
-        }
-        let recording = one_move(|_| 0.3);
-        let found = broken(&recording, &Rules { window, ..rules() }).unwrap();
-        assert_eq!(found, ["the load ended 100 mm beyond 200 mm (window ±5.00 µm)"]);
-        let nan = one_move(|_| f64::NAN);
-        assert_eq!(broken(&nan, &rules()).unwrap().len(), 1, "what is no number has not arrived");
-    }
-
-    /// Without a window it is a thousandth of the distance, or ten increments of the encoder if that is more.
-    #[test]
-    fn the_default_window_follows_from_move_and_encoder() {
-        for (beyond, increment, arrives) in
-            [(1.9e-4, 0.0, true), (2.1e-4, 0.0, false), (2.1e-4, 3e-5, true), (3.1e-4, 3e-5, false)]
-        {
-            let recording = one_move(|_| 0.2 + beyond);
-            let found = broken(&recording, &Rules { increment, ..rules() }).unwrap();
-            assert_eq!(found.is_empty(), arrives, "{beyond} {increment}: {found:?}");
+    fn the_window_is_that_of_the_scenario_but_never_the_way() {
+        for (window, increment, bus_unit, bound) in [
+            (None, 0.0, 0.0, 2e-4),
+            (None, 3e-5, 0.0, 3e-4),
+            (None, 0.0, 4e-5, 4e-4),
+            (Some(5e-6), 1e-9, 0.0, 5e-6),
+            (Some(0.2), 0.0, 0.0, 0.01),
+            (Some(0.2), 6e-3, 0.0, 12e-3),
+        ] {
+            for side in [1.0, -1.0] {
+                let rules = Rules { window, increment, bus_unit, ..rules() };
+                let found = |part: f64| found(&one_move(|_| 0.2 + side * part * bound), &rules);
+                assert_eq!(found(0.99), [""; 0], "{window:?} {increment} {bus_unit}");
+                assert_eq!(found(1.01).len(), 1, "{window:?} {increment} {bus_unit}");
+            }
         }
     }
 
     #[test]
-    fn a_ringing_load_has_arrived_where_its_mean_has() {
-        // Forty periods in the last tenth.
-        let recording = one_move(|t| 0.2 + 1e-3 * (2.0 * core::f64::consts::PI * 400.0 * t).sin());
-        assert_eq!(broken(&recording, &rules()).unwrap(), [""; 0]);
+    fn deflection_explains_a_tenth_of_the_way() {
+        let deflection = Deflection { elastic: 1e-3, ..Deflection::default() };
+        let rules = Rules { deflection, ..rules() };
+        assert_eq!(found(&one_move(|_| 0.1989), &rules), [""; 0]);
+        assert_eq!(found(&one_move(|_| 0.1987), &rules).len(), 1);
+        let soft = Rules { deflection: Deflection { elastic: 1.0, ..deflection }, ..rules };
+        assert_eq!(found(&one_move(|_| 0.181), &soft), [""; 0]);
+        assert_eq!(found(&one_move(|_| 0.179), &soft).len(), 1);
+    }
+
+    /// 7 Hz end in the middle of a cycle, and decay by 3 1/s: their last tenth is far off the target, their cycles are not.
+    #[test]
+    fn a_ringing_load_has_arrived_where_its_cycles_have() {
+        let ringing = |off: f64| {
+            one_move(move |t| {
+                0.2 + off + if t < 0.5 { 0.0 } else { 0.02 * (TAU * 7.0 * t).sin() * (-3.0 * (t - 0.5)).exp() }
+            })
+        };
+        let rules = Rules { window: Some(1e-3), ..rules() };
+        assert_eq!(found(&ringing(0.0), &rules), [""; 0]);
+        assert_eq!(found(&ringing(3e-3), &rules).len(), 1);
+    }
+
+    #[test]
+    fn a_rest_in_the_middle_is_judged_as_the_last_one_is() {
+        let stop = |pause: f64| {
+            let x =
+                move |t: f64| if t < 0.5 + pause { 0.4 * t.min(0.5) } else { (0.2 - 0.4 * (t - 0.5 - pause)).max(0.0) };
+            let recording = Build::new(1000, 3001)
+                .channel(Signal::RequestPosition, "m", x)
+                .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
+                .channel(Signal::LoadPosition, "m", move |t| x(t).min(0.19))
+                .requests(&[(0.0, "follow"), (0.5, "rest"), (0.5 + pause, "follow"), (1.0 + pause, "rest")])
+                .finish();
+            found(&recording, &rules()).len()
+        };
+        assert_eq!(stop(0.1), 1);
+        assert_eq!(stop(0.01), 0, "too short for any loop: `follows` judges it");
     }
 
     #[test]
     fn a_run_that_ends_before_its_move_does_not_arrive() {
-        let recording = Build::new(1000, 401)
-            .channel(Signal::LoadPosition, "m", |_| 0.2)
-            .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
-            .finish();
-        let found = broken(&recording, &rules()).unwrap();
-        assert_eq!(found, ["the run ends at 400 ms, before `move to 0.2 m` does at 500 ms"]);
-        // Its end may lie on the last row.
-        let recording = Build::new(1000, 501)
-            .channel(Signal::LoadPosition, "m", |_| 0.2)
-            .moves([planned(0.0, 0.5, 0.0, 0.2).made()])
-            .finish();
-        assert_eq!(broken(&recording, &rules()).unwrap(), [""; 0]);
-    }
-
-    /// Of moves in a sequence only the last one counts; of those that are aborted or pass their target none does.
-    #[test]
-    fn what_is_not_to_come_to_rest_is_not_asked() {
-        let recording = |ending, gap: f64| {
-            let first = Move { ending, ..planned(0.0, 0.3, 0.0, 0.9).made() };
-            Build::new(1000, 1001)
-                .channel(Signal::LoadPosition, "m", |_| 0.2)
-                .moves([first, planned(0.3 + gap, 0.6, 0.9, 0.2).made()])
-                .finish()
-        };
-        for (ending, gap, misses) in
-            [(Ending::AtRest, 0.0, 0), (Ending::AtRest, 0.1, 1), (Ending::Aborted, 0.0, 0), (Ending::InMotion, 0.1, 0)]
-        {
-            let found = broken(&recording(ending, gap), &rules()).unwrap();
-            assert_eq!(found.len(), misses, "{ending:?}, {gap}: {found:?}");
+        for (rows, is_kept) in [(401, false), (501, true)] {
+            let mut recording = Build::new(1000, rows)
+                .channel(Signal::RequestPosition, "m", |t| 0.4 * t)
+                .channel(Signal::RequestVelocity, "m/s", |_| 0.4)
+                .channel(Signal::LoadPosition, "m", |t| 0.4 * t)
+                .requests(&[(0.0, "follow"), (0.5, "rest")])
+                .finish();
+            recording.moves = vec![planned(0.0, 0.5, 0.0, 0.2).made()];
+            let all: &[&str] =
+                if is_kept { &[] } else { &["the run ends at 400 ms, before `move to 0.2 m` does at 500 ms"] };
+            assert_eq!(found(&recording, &rules()), all);
         }
-        let mut endless = recording(Ending::AtRest, 0.0);
-        endless.moves.iter_mut().for_each(|made| made.ending = Ending::InMotion);
-        assert_eq!(broken(&endless, &rules()), None);
-        assert_eq!(broken(&recording(Ending::AtRest, 0.1), &Rules { driven: Driven::Not, ..rules() }), None);
     }
 
     #[test]
-    fn a_prescribed_motor_is_judged_on_its_own_side() {
-        let recording = one_move(|_| 0.1);
-        assert_eq!(broken(&recording, &Rules { driven: Driven::Exactly, ..rules() }).unwrap(), [""; 0]);
-    }
-
-    #[test]
-    fn a_modulo_axis_may_stand_a_turn_away() {
-        let recording = one_move(|_| 0.2 + 3.0 * 0.7);
-        assert_eq!(broken(&recording, &Rules { modulo: Some(0.7), ..rules() }).unwrap(), [""; 0]);
-        assert_eq!(broken(&recording, &Rules { modulo: Some(0.69), ..rules() }).unwrap().len(), 1);
-    }
-
-    #[test]
-    fn what_is_not_recorded_does_not_pass() {
-        let recording = Build::new(1000, 1001)
-            .channel(Signal::MotorPosition, "m", |_| 0.2)
-            .moves([planned(0.0, 0.5, 0.0, 0.2).made()]);
-        assert_eq!(broken(&recording.finish(), &rules()).unwrap().len(), 1);
+    fn without_a_target_nothing_is_asked() {
+        let asked = |recording: &Recording, driven| {
+            let rules = Rules { driven, ..rules() };
+            broken(&Task::of(recording, &rules, &[])).is_some()
+        };
+        assert!(!asked(&one_move(|_| 0.0), Driven::Not));
+        assert!(asked(&one_move(|_| 0.0), Driven::Exactly), "the load of a prescribed motor arrives too");
+        let mut standing = one_move(|_| 0.0);
+        (standing.signals, standing.moves) = (Vec::new(), Vec::new());
+        assert!(!asked(&standing, Driven::ByLoops));
     }
 }

@@ -1,26 +1,53 @@
 //! `executed`: every call of a function block is executed, comes to what it is for, and ends without an error.
-use super::rules::EarlyEnd;
-use super::{Expectation, Occasion, Rules};
+use super::phases::RequestPhase;
+use super::rules::{Driven, EarlyEnd};
+use super::task::Task;
+use super::{Expectation, Occasion};
 use crate::quantity::Quantity;
-use servobench_trace::{Call, CallFate, Recording};
+use servobench_base::RequestKind;
+use servobench_trace::{Call, CallFate};
 
-/// Why calls are not as they should be; `None` where there are none.
-pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
+/// Why the program is not executed; `None` where there is nothing to execute.
+pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
+    let Task { recording, rules, .. } = task;
     let gave_up = match &rules.ended {
         Some(EarlyEnd::GaveUp(reason)) => Some(reason.clone()),
         Some(EarlyEnd::Diverged { .. }) | None => None,
     };
-    if recording.calls.is_empty() && gave_up.is_none() {
+    let unpowered = unpowered(task);
+    if recording.calls.is_empty() && gave_up.is_none() && unpowered.is_empty() {
         return None;
     }
-    let wrong = recording.calls.iter().filter(|call| !call.is_optional).filter_map(|call| wrong(call, rules.expected));
-    Some(gave_up.into_iter().chain(wrong).collect())
+    let wrong = recording.calls.iter().filter_map(|call| wrong(call, rules.expected));
+    Some(gave_up.into_iter().chain(wrong).chain(unpowered).collect())
+}
+
+/// Motions without power: of a drive that is off, and those that a loss of power ended which no expected fault explains.
+fn unpowered(task: &Task<'_>) -> Vec<String> {
+    let moves =
+        |phase: &&RequestPhase| matches!(phase.kind, RequestKind::Follow | RequestKind::Velocity | RequestKind::Effort);
+    if task.rules.driven == Driven::Not {
+        let first = task.phases.iter().find(moves);
+        return first
+            .map(|phase| format!("a motion is requested at {}, and the drive is off", task.time(phase.rows.start)))
+            .into_iter()
+            .collect();
+    }
+    let followed = task.phases.windows(2).filter(|pair| moves(&&pair[0]) && pair[1].kind == RequestKind::Nothing);
+    followed
+        .filter(|pair| !task.is_excused(&pair[0].rows))
+        .map(|pair| {
+            let row = pair[1].rows.start;
+            format!("the power is lost at {} in a motion{}", task.time(row), task.within(row))
+        })
+        .collect()
 }
 
 fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {
     let Call { name, block, .. } = call;
     match &call.fate {
         CallFate::Executed => None,
+        CallFate::NeverExecuted(_) | CallFate::Unfinished(_) if call.is_optional => None,
         CallFate::NeverExecuted(why) => Some(why.clone()),
         CallFate::Unfinished(why) => Some(format!("`{name}` ({block}) did not come to its end: {why}")),
         CallFate::Failed { .. } if expected.iter().any(|expectation| fits(expectation, call).is_some()) => None,
@@ -42,7 +69,13 @@ pub(super) fn fits(expectation: &Expectation, call: &Call) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::requirement::tests::{expecting, rules};
+    use crate::requirement::{Expected, Rules};
     use crate::synthetic::Build;
+    use servobench_trace::Recording;
+
+    fn found(recording: &Recording, rules: &Rules<'_>, expected: &[Expected]) -> Option<Vec<String>> {
+        broken(&Task::of(recording, rules, expected))
+    }
 
     fn recording(fates: &[(bool, CallFate)]) -> Recording {
         let mut recording = Build::new(1000, 11).finish();
@@ -73,7 +106,7 @@ mod tests {
             (false, CallFate::Unfinished("its `Done` did not become TRUE".into())),
         ]);
         assert_eq!(
-            broken(&recording, &rules()).unwrap(),
+            found(&recording, &rules(), &[]).unwrap(),
             [
                 "`call_1` was not executed: `home.Done` did not become TRUE",
                 "`call_2` ended in Error 2002h at 250 ms: the axis has no reference",
@@ -83,9 +116,17 @@ mod tests {
     }
 
     #[test]
-    fn optional_calls_may_fail_and_expected_errors_may_come() {
-        let optional = recording(&[(true, failed()), (true, CallFate::NeverExecuted(String::new()))]);
-        assert_eq!(broken(&optional, &rules()).unwrap(), [""; 0]);
+    fn optional_calls_need_not_start_and_expected_errors_may_come() {
+        let optional = recording(&[
+            (true, CallFate::NeverExecuted(String::new())),
+            (true, CallFate::Unfinished(String::new())),
+            (true, failed()),
+        ]);
+        assert_eq!(
+            found(&optional, &rules(), &[]).unwrap(),
+            ["`call_2` ended in Error 2002h at 250 ms: the axis has no reference"],
+            "what was started is not refused without a word"
+        );
         for (who, fault, from, to, is_expected) in [
             ("call_0", "2002h", 0.0, f64::INFINITY, true),
             ("call_0", "2002h", 0.25, 0.25, true),
@@ -95,16 +136,37 @@ mod tests {
             ("call_1", "2002h", 0.0, f64::INFINITY, false),
         ] {
             let expected = [expecting(who, fault, from, to)];
-            let found = broken(&recording(&[(false, failed())]), &Rules { expected: &expected, ..rules() }).unwrap();
+            let rules = Rules { expected: &expected, ..rules() };
+            let found = found(&recording(&[(false, failed())]), &rules, &[]).unwrap();
             assert_eq!(found.is_empty(), is_expected, "{expected:?}: {found:?}");
         }
     }
 
     #[test]
     fn a_program_without_calls_has_nothing_to_execute_unless_it_gave_up() {
-        assert_eq!(broken(&recording(&[]), &rules()), None);
+        assert_eq!(found(&recording(&[]), &rules(), &[]), None);
         let ended = Some(EarlyEnd::GaveUp("`jog` was not executed within 2 s".into()));
-        let found = broken(&recording(&[]), &Rules { ended, ..rules() }).unwrap();
+        let found = found(&recording(&[]), &Rules { ended, ..rules() }, &[]).unwrap();
         assert_eq!(found, ["`jog` was not executed within 2 s"]);
+    }
+
+    #[test]
+    fn a_motion_without_power_is_not_executed() {
+        let moving =
+            |changes: &[(f64, &str)]| Build::new(1000, 1001).channel("time", "s", |t| t).requests(changes).finish();
+        let off = Rules { driven: Driven::Not, ..rules() };
+        let program = moving(&[(0.0, "stand"), (0.1, "follow"), (0.4, "rest")]);
+        assert_eq!(found(&program, &off, &[]).unwrap(), ["a motion is requested at 100 ms, and the drive is off"]);
+        assert_eq!(found(&moving(&[(0.0, "stand")]), &off, &[]), None);
+        assert_eq!(found(&program, &rules(), &[]), None);
+        for (ends, is_found) in [("nothing", true), ("stand", false), ("rest", false)] {
+            let lost = moving(&[(0.0, "stand"), (0.1, "velocity"), (0.3, ends)]);
+            let words = found(&lost, &rules(), &[]);
+            let all: &[&str] = if is_found { &["the power is lost at 300 ms in a motion"] } else { &[] };
+            assert_eq!(words.unwrap_or_default(), all);
+            let came = |at| [Expected { expectation: expecting("drive", "3220h", 0.0, 1.0), met: Some(at) }];
+            assert_eq!(found(&lost, &rules(), &came(0.3)), None);
+            assert_eq!(found(&lost, &rules(), &came(0.5)).is_some(), is_found);
+        }
     }
 }

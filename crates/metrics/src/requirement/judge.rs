@@ -1,6 +1,8 @@
 //! A recording against every requirement.
+use super::task::Task;
 use super::{
-    Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, execution, fault, harm, oscillation,
+    Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, effort, execution, fault, following,
+    harm, oscillation, standing, stopping, velocity,
 };
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
@@ -20,10 +22,16 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
             met: harm::met(expectation, recording).or_else(|| fault::met(expectation, &faults, recording)),
         })
         .collect();
+    let task = Task::of(recording, rules, &expected);
     let standing = |requirement| {
         let (broken, may_be_lifted) = match requirement {
-            Requirement::Arrives => (arrival::broken(recording, rules), true),
-            Requirement::Executed => (execution::broken(recording, rules), true),
+            Requirement::Follows => (following::broken(&task), true),
+            Requirement::Arrives => (arrival::broken(&task), true),
+            Requirement::Stands => (standing::broken(&task), true),
+            Requirement::Velocity => (velocity::broken(&task), true),
+            Requirement::Effort => (effort::broken(&task), true),
+            Requirement::Stopped => (stopping::broken(&task), true),
+            Requirement::Executed => (execution::broken(&task), true),
             Requirement::NoFault => (fault::broken(recording, rules, &faults), true),
             Requirement::Stable => (oscillation::broken(recording, rules), true),
             Requirement::NoHarm => (harm::broken(recording, rules), true),
@@ -43,6 +51,7 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     };
     let requirements: Vec<(Requirement, RequirementResult)> =
         Requirement::ALL.iter().map(|requirement| (*requirement, standing(*requirement))).collect();
+    drop(task);
     let is_met =
         requirements.iter().any(|(name, result)| *name == Requirement::Stable && result.standing == Standing::Met);
     let not_analysed = rules.not_analysed.iter().filter(|_| is_met);

@@ -77,7 +77,15 @@ mod tests {
     #[test]
     fn a_phase_lasts_while_the_kind_is_the_same() {
         let recording = Build::new(1000, 1000)
-            .requests(&[(0.0, "stand"), (0.1, "follow"), (0.2, "follow"), (0.4, "rest"), (0.4002, "velocity"), (2.0, "nothing")])
+            .channel("time", "s", |t| t)
+            .requests(&[
+                (0.0, "stand"),
+                (0.1, "follow"),
+                (0.2, "follow"),
+                (0.4, "rest"),
+                (0.4002, "velocity"),
+                (2.0, "nothing"),
+            ])
             .finish();
         let found: Vec<_> = request_phases(&recording).into_iter().map(|phase| (phase.kind, phase.rows)).collect();
         assert_eq!(
@@ -97,8 +105,7 @@ mod tests {
     fn turning_points_are_those_of_the_request() {
         let values: Vec<f64> = (0..1600).map(|k| (TAU * f64::from(k) / 1000.0).cos()).collect();
         assert_eq!(between_turning_points(&values, &(0..1600), 0.01), [0..500, 500..1000, 1000..1500, 1500..1600]);
-        let rippled: Vec<f64> =
-            values.iter().enumerate().map(|(k, x)| x + 1e-3 * (k as f64).sin()).collect();
+        let rippled: Vec<f64> = values.iter().enumerate().map(|(k, x)| x + 1e-3 * (k as f64).sin()).collect();
         assert_eq!(between_turning_points(&rippled, &(0..1600), 0.01).len(), 4);
         assert_eq!(between_turning_points(&values, &(0..1600), 3.0), [0..1600]);
         assert_eq!(between_turning_points(&[2.0; 9], &(3..9), 0.0), [3..9]);

@@ -1,4 +1,6 @@
 //! What a judgement needs to know besides the recording.
+use super::deflection::Deflection;
+use super::servo::Servo;
 use super::{Expectation, Requirement};
 
 /// What a judgement of requirements needs to know besides the recording.
@@ -14,10 +16,16 @@ pub struct Rules<'a> {
     /// One increment of the encoder that closes the position loop or, if that is wider, the error of its signals within a period (axis
     /// unit); 0 for an ideal one.
     pub increment: f64,
-    /// Period of a modulo axis (axis unit).
-    pub modulo: Option<f64>,
     /// Axis coordinate per motor coordinate.
     pub transmission: f64,
+    /// One unit of the positions on the bus (axis unit); 0 without a bus.
+    pub bus_unit: f64,
+    /// The linear rigid loop, where there is one that is known.
+    pub servo: Option<Servo>,
+    /// By how much efforts displace the axis.
+    pub deflection: Deflection,
+    /// How far off what is requested the axis may be.
+    pub tolerances: Tolerances,
     /// What moves the axis.
     pub driven: Driven,
     /// What the analysis of the linear loop found.
@@ -30,6 +38,25 @@ pub struct Rules<'a> {
     pub ended: Option<EarlyEnd>,
     /// Highest temperature that the winding bears (°C); `None` where it does not warm up.
     pub winding_limit: Option<f64>,
+}
+
+/// How far off what is requested the axis may be, as shares.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// Of the way of the response: how far from it the load may be.
+    pub follows: f64,
+    /// Of the way to a target: the largest window around it.
+    pub arrives: f64,
+    /// Of a velocity that is held.
+    pub velocity: f64,
+    /// Of an effort.
+    pub effort: f64,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Self { follows: 0.25, arrives: 0.05, velocity: 0.05, effort: 0.05 }
+    }
 }
 
 /// What moves the axis.
@@ -87,6 +114,16 @@ pub enum EarlyEnd {
 }
 
 impl Rules<'_> {
+    /// The oscillation that fades last.
+    pub(super) fn oscillation(&self) -> Option<Oscillation> {
+        self.poles.and_then(|poles| poles.oscillating)
+    }
+
+    /// The coarser of the increment of the encoder and the unit of the bus (axis unit).
+    pub(super) const fn resolution(&self) -> f64 {
+        self.increment.max(self.bus_unit)
+    }
+
     pub(crate) const fn has_diverged(&self) -> bool {
         matches!(self.ended, Some(EarlyEnd::Diverged { .. }))
     }

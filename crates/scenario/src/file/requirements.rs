@@ -8,7 +8,7 @@ use crate::table::{object_schema, table};
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
 use servobench_config::Kind::Plain;
-use servobench_config::quantities::TIME;
+use servobench_config::quantities::{RATIO, TIME};
 use servobench_config::{not_negative, positive};
 use servobench_metrics::{Incident, Requirement};
 
@@ -75,5 +75,19 @@ table! {
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Until when it must have come; default: the end of the run.
         to: f64 = positive(Plain(&TIME), "0.6 s"),
+    }
+}
+
+table! {
+    /// How far off the request the axis may be, as shares.
+    pub(crate) struct Tolerance {
+        /// From the response of its loops, of the way between two turning points; default: 0.25.
+        follows: f64 = positive(Plain(&RATIO), "0.25"),
+        /// From a target, of the way to it, where the window is not smaller; default: 0.05.
+        arrives: f64 = positive(Plain(&RATIO), "0.05"),
+        /// From a velocity that is held, of it; default: 0.05.
+        velocity: f64 = positive(Plain(&RATIO), "0.05"),
+        /// From an effort, of it; default: 0.05.
+        effort: f64 = positive(Plain(&RATIO), "0.05"),
     }
 }

@@ -8,7 +8,7 @@ use crate::scenario::{Plc, Requirements};
 use crate::source::At;
 use crate::source::Span;
 use file::ExpectedOn;
-use servobench_metrics::{Expectation, Incident, Occasion};
+use servobench_metrics::{Expectation, Incident, Occasion, Tolerances};
 
 /// What the expectations need to know of the rest of the file.
 pub(super) struct Known<'a> {
@@ -30,7 +30,19 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
         Some(all) => all.0.iter().map(|one| expectation(one, known, report)).collect::<Option<_>>()?,
         None => Vec::new(),
     };
-    Some(Requirements { lifted, expected })
+    let tolerances = tolerances(file.tolerance.optional().ok()?);
+    Some(Requirements { lifted, expected, tolerances })
+}
+
+fn tolerances(given: Option<&file::Tolerance>) -> Tolerances {
+    let default = Tolerances::default();
+    let Some(given) = given else { return default };
+    Tolerances {
+        follows: given.follows.given().copied().unwrap_or(default.follows),
+        arrives: given.arrives.given().copied().unwrap_or(default.arrives),
+        velocity: given.velocity.given().copied().unwrap_or(default.velocity),
+        effort: given.effort.given().copied().unwrap_or(default.effort),
+    }
 }
 
 fn expectation(

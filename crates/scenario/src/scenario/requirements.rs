@@ -1,5 +1,5 @@
 //! What a run is held to beside its limits.
-use servobench_metrics::{Expectation, Requirement};
+use servobench_metrics::{Expectation, Requirement, Tolerances};
 
 /// What a run is held to beside its limits: every requirement but those that are lifted.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -8,4 +8,6 @@ pub struct Requirements {
     pub lifted: Vec<Requirement>,
     /// The faults that belong to the run.
     pub expected: Vec<Expectation>,
+    /// How far off the request the axis may be.
+    pub tolerances: Tolerances,
 }

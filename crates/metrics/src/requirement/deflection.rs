@@ -1,0 +1,67 @@
+//! Where an axis may be although its loops do as they should: efforts displace it, springs give way, friction sticks.
+
+/// By how much efforts displace an axis that is controlled as it should be. Efforts are in the motor's coordinate, positions in that of
+/// the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deflection {
+    /// Effort that no program asks for: bias, dry friction, and what is not modelled.
+    pub effort: f64,
+    /// The most that the drive gives; infinite without a limit. What disturbs the axis by more is not held by any loop.
+    pub max_effort: f64,
+    /// Position error per effort of loops without integral: r/(k_p·K).
+    pub per_effort: f64,
+    /// Velocity error per effort of a velocity loop without integral, r/k_p; 0 with one.
+    pub velocity_per_effort: f64,
+    /// Whether a loop has an integral, which takes the error away in time.
+    pub has_integral: bool,
+    /// Deflection of the springs between motor and load at rest: bias and friction of what is behind each, by its stiffness.
+    pub elastic: f64,
+    /// That per acceleration (s²): the mass behind each spring by its stiffness.
+    pub elastic_per_acceleration: f64,
+    /// That per effort on the load, in the load's coordinate.
+    pub elastic_per_effort: f64,
+    /// Friction of the load's side by stiffness, within which the load sticks.
+    pub stick: f64,
+    /// Deviation from rest at the start.
+    pub initial: f64,
+}
+
+impl Default for Deflection {
+    /// A rigid axis that nothing displaces.
+    fn default() -> Self {
+        Self {
+            effort: 0.0,
+            max_effort: f64::INFINITY,
+            per_effort: 0.0,
+            velocity_per_effort: 0.0,
+            has_integral: true,
+            elastic: 0.0,
+            elastic_per_acceleration: 0.0,
+            elastic_per_effort: 0.0,
+            stick: 0.0,
+            initial: 0.0,
+        }
+    }
+}
+
+impl Deflection {
+    /// Position error of loops without integral while `disturbance` acts too.
+    pub(super) fn explained(&self, disturbance: f64) -> f64 {
+        self.per_effort * (self.effort + disturbance).min(self.max_effort)
+    }
+
+    /// That of the `disturbance` alone.
+    pub(super) fn explained_alone(&self, disturbance: f64) -> f64 {
+        self.per_effort * disturbance.min(self.max_effort)
+    }
+
+    /// That which stays: none with an integral.
+    pub(super) fn droop(&self, disturbance: f64) -> f64 {
+        if self.has_integral { 0.0 } else { self.explained(disturbance) }
+    }
+
+    /// Velocity error that stays while `disturbance` acts.
+    pub(super) fn velocity_droop(&self, disturbance: f64) -> f64 {
+        self.velocity_per_effort * (self.effort + disturbance).min(self.max_effort)
+    }
+}

@@ -1,0 +1,148 @@
+//! `follows`: between two turning points of the request the load goes as the linear loop would.
+use super::rules::Driven;
+use super::task::{Piece, Task};
+
+/// Shares of the span of the response: of the way itself, and the most that window and deflection add.
+const OF_WINDOW: f64 = 0.5;
+const OF_DEFLECTION: f64 = 0.25;
+/// Increments of the encoder that are added.
+const INCREMENTS: f64 = 10.0;
+
+/// Why the load does not follow; `None` where no position is wanted of it.
+pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
+    let mut ways = task.pieces.iter().filter(|(piece, _)| *piece == Piece::Way).peekable();
+    ways.peek().filter(|_| task.rules.driven != Driven::Not)?;
+    let acceleration = task.requested_acceleration();
+    let deflection = &task.rules.deflection;
+    let elastic = deflection.elastic
+        + deflection.elastic_per_acceleration * acceleration
+        + deflection.elastic_per_effort * task.on_load;
+    // What a disturbance does on the way an integral takes away afterwards.
+    let gives_way = elastic + deflection.droop(task.disturbance).max(deflection.explained_alone(task.disturbance));
+    let left = ways.filter(|(_, way)| !task.is_excused(&way.rows)).filter_map(|(_, way)| {
+        let span = way.span();
+        let share = task.rules.tolerances.follows * span;
+        let bound = share.max(task.window(span).min(OF_WINDOW * span))
+            + gives_way.min(OF_DEFLECTION * span)
+            + INCREMENTS * task.rules.increment;
+        let (off, row) = way.worst;
+        (off.is_nan() || off > bound).then(|| {
+            format!(
+                "the load is {} from where the loop would bring it at {}{}: more than {} on a way of {}{}",
+                task.length(off),
+                task.time(row),
+                task.within(row),
+                task.length(bound),
+                task.length(span),
+                task.bound_by(&way.rows)
+            )
+        })
+    });
+    Some(left.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::tests::{expecting, rules};
+    use crate::requirement::{Deflection, Expected, Rules, Servo};
+    use crate::synthetic::{Build, planned};
+    use servobench_signals::Signal;
+    use servobench_trace::{Event, Recording};
+
+    /// Out to 0.2 m and back in a second without a rest; the load is at `load(x)` where the request is `x`.
+    fn there_and_back(load: impl Fn(f64) -> f64) -> Recording {
+        let x = |t: f64| 0.4 * t.min(1.0 - t.min(1.0));
+        Build::new(1000, 2001)
+            .channel(Signal::RequestPosition, "m", x)
+            .channel(Signal::RequestVelocity, "m/s", |t| {
+                if t < 0.5 {
+                    0.4
+                } else if t < 1.0 {
+                    -0.4
+                } else {
+                    0.0
+                }
+            })
+            .channel(Signal::LoadPosition, "m", |t| load(x(t)))
+            .requests(&[(0.0, "follow"), (1.0, "rest")])
+            .moves([planned(0.0, 0.5, 0.0, 0.2).made(), planned(0.5, 1.0, 0.2, 0.0).made()])
+            .finish()
+    }
+
+    fn found(recording: &Recording, rules: &Rules<'_>, expected: &[Expected]) -> Vec<String> {
+        broken(&Task::of(recording, rules, expected)).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_load_that_stays_is_named_on_each_way_with_what_held_it() {
+        let mut recording = there_and_back(|_| 0.0);
+        recording.events.push(Event::bound(0.1, 0.4, "velocity loop", "effort limit", false));
+        assert_eq!(
+            found(&recording, &rules(), &[]),
+            [
+                "the load is 200 mm from where the loop would bring it at 499 ms in `move to 0.2 m`: more than 49.9 mm on a way of 200 mm; effort limit bound for 300 ms",
+                "the load is 200 mm from where the loop would bring it at 500 ms in `move to 0 m`: more than 49.9 mm on a way of 200 mm",
+            ]
+            .map(str::to_owned)
+        );
+        assert_eq!(found(&there_and_back(|x| x), &rules(), &[]), [""; 0]);
+        assert_eq!(found(&there_and_back(|_| f64::NAN), &rules(), &[]).len(), 2);
+    }
+
+    /// A quarter of the way, and the window of a thousandth; what deflection explains comes on top, up to another quarter.
+    #[test]
+    fn the_bound_is_a_quarter_of_the_way_and_what_is_explained() {
+        let behind = |share: f64, deflection: Deflection| {
+            found(&there_and_back(|x| (1.0 - share) * x), &Rules { deflection, ..rules() }, &[]).is_empty()
+        };
+        let rigid = Deflection::default();
+        assert!(behind(0.24, rigid) && !behind(0.26, rigid));
+        let droops = Deflection { effort: 3.0, per_effort: 0.01, has_integral: false, ..rigid };
+        assert!(behind(0.39, droops) && !behind(0.41, droops));
+        assert!(!behind(0.26, Deflection { has_integral: true, ..droops }));
+        assert!(
+            behind(0.49, Deflection { elastic: 1.0, ..rigid }) && !behind(0.51, Deflection { elastic: 1.0, ..rigid })
+        );
+    }
+
+    /// A loop of 3 1/s without feedforward is far behind its request, and turns before that does: it is not held to the request.
+    #[test]
+    fn a_slow_loop_is_held_to_its_own_response() {
+        let soft = Servo {
+            gain: 3.0,
+            position_integral_time: None,
+            velocity_feedforward: 0.0,
+            bandwidth: 125.0,
+            reference_weight: 1.0,
+            integral_time: None,
+            inertia_feedforward: 0.0,
+            viscous: 0.0,
+            viscous_feedforward: 0.0,
+        };
+        let soft = Rules { servo: Some(soft), ..rules() };
+        // Closed form of x' = 3·(r − x), r = 0.4·t up to 0.5 s.
+        let slow = |t: f64| 0.4 * t - 0.4 / 3.0 * (1.0 - (-3.0 * t).exp());
+        let request = |t: f64| 0.4 * t.min(0.5);
+        let build = |load: &dyn Fn(f64) -> f64| {
+            Build::new(1000, 501)
+                .channel(Signal::RequestPosition, "m", request)
+                .channel(Signal::RequestVelocity, "m/s", |_| 0.4)
+                .channel(Signal::LoadPosition, "m", load)
+                .requests(&[(0.0, "follow")])
+                .finish()
+        };
+        assert_eq!(found(&build(&slow), &soft, &[]), [""; 0]);
+        assert_eq!(found(&build(&request), &soft, &[]).len(), 1, "a load that is faster is not right either");
+        assert_eq!(found(&build(&|_| 0.0), &soft, &[]).len(), 1);
+        assert_eq!(found(&build(&slow), &rules(), &[]).len(), 1);
+    }
+
+    #[test]
+    fn the_phase_of_an_expected_fault_is_left_out() {
+        let recording = there_and_back(|_| 0.0);
+        let came = |met| [Expected { expectation: expecting("drive", "8611h", 0.0, 1.0), met: Some(met) }];
+        assert_eq!(found(&recording, &rules(), &came(0.3)).len(), 1);
+        assert_eq!(found(&recording, &rules(), &came(1.5)).len(), 2);
+    }
+}

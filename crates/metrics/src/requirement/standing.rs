@@ -1,0 +1,151 @@
+//! `stands`: before its first motion the axis stands where it was.
+use super::rules::Driven;
+use super::task::Task;
+use servobench_base::RequestKind;
+use servobench_signals::Signal;
+
+/// Times the deflection that is explained.
+const TIMES: f64 = 3.0;
+/// Times the stroke within which friction holds the load.
+const STICK: f64 = 1.5;
+/// Resolutions within which it stands.
+const RESOLUTIONS: f64 = 10.0;
+/// The least step of a disturbance that begins the time again, of the largest disturbance.
+const STEP: f64 = 0.01;
+/// Times the deviation from which it starts.
+const INITIAL: f64 = 2.0;
+
+/// Why the axis does not stand; `None` where it is not asked to, before it moves.
+pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
+    let rows = task.rows.as_ref()?;
+    let servo = task.rules.servo.filter(|_| task.rules.driven == Driven::ByLoops)?;
+    let moves = |kind| matches!(kind, RequestKind::Follow | RequestKind::Velocity | RequestKind::Effort);
+    let standing: Vec<_> = task
+        .phases
+        .iter()
+        .take_while(|phase| !moves(phase.kind))
+        .filter(|phase| matches!(phase.kind, RequestKind::Stand | RequestKind::Rest))
+        .collect();
+    if standing.is_empty() {
+        return None;
+    }
+    let rules = task.rules;
+    let deflection = &rules.deflection;
+    let of_pole = rules.poles.and_then(|poles| poles.slowest_real).unwrap_or(servo.gain / 2.0);
+    let sigma = rules.oscillation().map_or(of_pole, |slowest| slowest.decay.min(of_pole)).max(0.0);
+    let kept = (-sigma * rows.h).exp();
+    let disturbed = |row: usize| {
+        let at = |signal| task.recording.channel(signal).map_or(0.0, |values| values[row]);
+        (at(Signal::DisturbanceMotor), at(Signal::DisturbanceLoad))
+    };
+    let window = rules.window.unwrap_or(0.0).max(RESOLUTIONS * rules.resolution());
+    let mut reasons = Vec::new();
+    for phase in standing {
+        let place = rows.request[phase.rows.start];
+        let is_told = rows.request[phase.rows.clone()].iter().all(|x| x.to_bits() == place.to_bits());
+        let place = if is_told { place } else { rows.load[phase.rows.start] };
+        let mut last = disturbed(phase.rows.start);
+        let (mut time, mut decay) = (0.0, 1.0);
+        for row in phase.rows.clone() {
+            let (on_motor, on_load) = if task.disturbance > 0.0 { disturbed(row) } else { (0.0, 0.0) };
+            let effort = |(motor, load): (f64, f64)| motor.abs() + rules.transmission.abs() * load.abs();
+            if effort((on_motor - last.0, on_load - last.1)) > STEP * task.disturbance {
+                (last, time, decay) = ((on_motor, on_load), 0.0, 1.0);
+            }
+            let elastic = deflection.elastic + deflection.elastic_per_effort * on_load.abs();
+            let explained = TIMES * (deflection.explained(effort(last).max(effort((on_motor, on_load)))) + elastic);
+            let fading = explained * (1.0 + sigma * time) * decay;
+            let bound = if deflection.has_integral { window.max(fading) } else { fading.max(window + explained) }
+                + STICK * (deflection.stick + elastic)
+                + INITIAL * deflection.initial;
+            let off = (rows.load[row] - place).abs();
+            if off.is_nan() || off > bound {
+                reasons.push(format!(
+                    "the load is {} from where it stands at {}: more than {}{}",
+                    task.length(off),
+                    task.time(row),
+                    task.length(bound),
+                    task.bound_by(&(row..phase.rows.end))
+                ));
+                break;
+            }
+            time += rows.h;
+            decay *= kept;
+        }
+    }
+    Some(reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::tests::rules;
+    use crate::requirement::{Deflection, Poles, Rules, Servo};
+    use crate::synthetic::Build;
+
+    const SERVO: Servo = Servo {
+        gain: 50.0,
+        position_integral_time: None,
+        velocity_feedforward: 0.0,
+        bandwidth: 250.0,
+        reference_weight: 1.0,
+        integral_time: Some(0.02),
+        inertia_feedforward: 0.0,
+        viscous: 0.0,
+        viscous_feedforward: 0.0,
+    };
+
+    /// Two seconds at 1 kHz, with a force on the load from 1 s on.
+    fn found(rules: &Rules<'_>, force: f64, load: impl Fn(f64) -> f64) -> usize {
+        let recording = Build::new(1000, 2001)
+            .channel(Signal::RequestPosition, "m", |_| 0.0)
+            .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
+            .channel(Signal::LoadPosition, "m", load)
+            .channel(Signal::DisturbanceLoad, "N", |t| if t < 1.0 { 0.0 } else { force })
+            .requests(&[(0.0, "stand")])
+            .finish();
+        broken(&Task::of(&recording, rules, &[])).unwrap().len()
+    }
+
+    /// Oracle: 100 N at 1e-5 m/N are 1 mm, of which three times are allowed, fading with 20 1/s.
+    #[test]
+    fn an_axis_with_an_integral_comes_back() {
+        let deflection = Deflection { effort: 100.0, per_effort: 1e-5, ..Deflection::default() };
+        let poles = Some(Poles { oscillating: None, slowest_real: Some(20.0) });
+        let rules = Rules { servo: Some(SERVO), deflection, poles, window: Some(1e-5), ..rules() };
+        let sags = |size: f64, sigma: f64| move |t: f64| -size * (1.0 + sigma * t) * (-sigma * t).exp();
+        assert_eq!(found(&rules, 0.0, sags(2.9e-3, 20.0)), 0);
+        assert_eq!(found(&rules, 0.0, sags(3.1e-3, 20.0)), 1);
+        assert_eq!(found(&rules, 0.0, sags(2.9e-3, 10.0)), 1, "it comes back too late");
+        assert_eq!(found(&rules, 0.0, |t| -9.81 / 2.0 * t * t), 1, "it falls");
+        let again = |t: f64| if t < 1.0 { 0.0 } else { sags(5.8e-3, 20.0)(t - 1.0) };
+        assert_eq!(found(&rules, 100.0, again), 0);
+        assert_eq!(found(&rules, 0.0, again), 1);
+    }
+
+    #[test]
+    fn an_axis_without_an_integral_stays_where_its_load_draws_it() {
+        let deflection = Deflection { effort: 100.0, per_effort: 1e-5, has_integral: false, ..Deflection::default() };
+        let rules = Rules { servo: Some(SERVO), deflection, window: Some(1e-5), ..rules() };
+        assert_eq!(found(&rules, 0.0, |_| -3e-3), 0);
+        assert_eq!(found(&rules, 0.0, |_| -3.1e-3), 1);
+        let weak = Rules { deflection: Deflection { max_effort: 10.0, ..deflection }, ..rules.clone() };
+        assert_eq!(found(&weak, 0.0, |_| -4e-4), 1, "what the drive cannot hold explains nothing");
+    }
+
+    #[test]
+    fn what_moves_or_is_not_held_does_not_stand() {
+        let recording = |kind| {
+            Build::new(1000, 101)
+                .channel(Signal::RequestPosition, "m", |_| 0.0)
+                .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
+                .channel(Signal::LoadPosition, "m", |t| t)
+                .requests(&[(0.0, kind)])
+                .finish()
+        };
+        let rules = Rules { servo: Some(SERVO), ..rules() };
+        for (kind, is_asked) in [("stand", true), ("follow", false), ("nothing", false), ("velocity", false)] {
+            assert_eq!(broken(&Task::of(&recording(kind), &rules, &[])).is_some(), is_asked, "{kind}");
+        }
+    }
+}

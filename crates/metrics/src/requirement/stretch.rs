@@ -1,0 +1,167 @@
+//! Stretches of a run, and how load, request and the response of the loop compare in them: one pass over the rows.
+use super::Rules;
+use super::phases::RequestPhase;
+use super::servo::Response;
+use servobench_base::RequestKind;
+use servobench_signals::Signal;
+use servobench_trace::Recording;
+use std::ops::Range;
+
+/// Rows of one phase, and what is measured over them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Stretch {
+    /// Its rows, at least one.
+    pub(super) rows: Range<usize>,
+    /// Lowest and highest response.
+    pub(super) response: (f64, f64),
+    /// Largest distance of the load from the response, and its row.
+    pub(super) worst: (f64, usize),
+    /// Mean of load less request, and of request less response.
+    pub(super) load_off: f64,
+    pub(super) response_off: f64,
+    /// Mean velocity of load and response.
+    pub(super) load_velocity: f64,
+    pub(super) response_velocity: f64,
+}
+
+/// Channels of the pass.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rows<'a> {
+    pub(super) request: &'a [f64],
+    pub(super) request_velocity: &'a [f64],
+    pub(super) load: &'a [f64],
+    /// Period of the rows (s).
+    pub(super) h: f64,
+}
+
+impl<'a> Rows<'a> {
+    /// Those of `recording`; `None` where it lacks one.
+    pub(super) fn of(recording: &'a Recording) -> Option<Self> {
+        Some(Self {
+            request: recording.channel(Signal::RequestPosition)?,
+            request_velocity: recording.channel(Signal::RequestVelocity)?,
+            load: recording.channel(Signal::LoadPosition)?,
+            h: recording.rate.period(),
+        })
+    }
+
+    /// Velocity of the load between the rows `from` and `to`; 0 where there is no time between them.
+    pub(super) fn load_velocity(&self, from: usize, to: usize) -> f64 {
+        if to <= from { 0.0 } else { (self.load[to] - self.load[from]) / ((to - from) as f64 * self.h) }
+    }
+}
+
+impl Stretch {
+    /// Of these rows, with nothing measured yet.
+    pub(super) const fn new(rows: Range<usize>) -> Self {
+        Self {
+            response: (f64::INFINITY, f64::NEG_INFINITY),
+            worst: (0.0, rows.start),
+            load_off: 0.0,
+            response_off: 0.0,
+            load_velocity: 0.0,
+            response_velocity: 0.0,
+            rows,
+        }
+    }
+
+    /// How far the response goes.
+    pub(super) fn span(&self) -> f64 {
+        self.response.1 - self.response.0
+    }
+
+    fn take(&mut self, row: usize, load: f64, request: f64, response: f64) {
+        self.response = (self.response.0.min(response), self.response.1.max(response));
+        let off = (load - response).abs();
+        // What is not a number is as far off as can be.
+        if off > self.worst.0 || off.is_nan() && self.worst.0.is_finite() {
+            self.worst = (if off.is_nan() { f64::INFINITY } else { off }, row);
+        }
+        self.load_off += load - request;
+        self.response_off += request - response;
+        self.response_velocity = if row == self.rows.start { response } else { self.response_velocity };
+    }
+
+    fn finish(&mut self, rows: &Rows<'_>, last_response: f64) {
+        let count = self.rows.len() as f64;
+        self.load_off /= count;
+        self.response_off /= count;
+        let last = self.rows.end - 1;
+        self.load_velocity = rows.load_velocity(self.rows.start, last);
+        let time = (last - self.rows.start) as f64 * rows.h;
+        self.response_velocity = if time > 0.0 { (last_response - self.response_velocity) / time } else { 0.0 };
+    }
+}
+
+/// Measures `stretches`, which are in order, do not overlap and are each within phases that want a position, or one that wants a
+/// velocity.
+pub(super) fn measure(rows: &Rows<'_>, phases: &[RequestPhase], rules: &Rules<'_>, stretches: &mut [Stretch]) {
+    let mut follower = Follower { response: rules.servo.map(|servo| Response::new(servo, rows.h)), wanted: 0.0 };
+    let mut before = RequestKind::Nothing;
+    let mut waiting = stretches.iter_mut();
+    let mut now = waiting.next();
+    for phase in phases {
+        follower.begin(rows, phase, before);
+        before = phase.kind;
+        if !matches!(phase.kind, RequestKind::Follow | RequestKind::Rest | RequestKind::Velocity) {
+            continue;
+        }
+        for row in phase.rows.clone() {
+            let (request, response) = follower.at(rows, phase.kind, row);
+            if let Some(stretch) = now.as_mut().filter(|stretch| stretch.rows.start <= row) {
+                stretch.take(row, rows.load[row], request, response);
+                if stretch.rows.end == row + 1 {
+                    stretch.finish(rows, response);
+                    now = waiting.next();
+                }
+            }
+            follower.step(rows, phase.kind, row);
+        }
+    }
+}
+
+/// The response, and the position that is wanted of it.
+struct Follower {
+    response: Option<Response>,
+    wanted: f64,
+}
+
+impl Follower {
+    /// Where a request for a position or a velocity begins, the response is where the load is.
+    fn begin(&mut self, rows: &Rows<'_>, phase: &RequestPhase, before: RequestKind) {
+        let row = phase.rows.start;
+        let wants = |kind| matches!(kind, RequestKind::Follow | RequestKind::Rest);
+        let goes_on = match phase.kind {
+            RequestKind::Follow | RequestKind::Rest if wants(before) => return,
+            RequestKind::Follow | RequestKind::Rest => before == RequestKind::Velocity,
+            RequestKind::Velocity if wants(before) => return,
+            RequestKind::Velocity => false,
+            RequestKind::Nothing | RequestKind::Stand | RequestKind::Effort => return,
+        };
+        self.wanted = rows.load[row];
+        if let Some(response) = &mut self.response {
+            response.put(rows.load[row], rows.load_velocity(row.saturating_sub(1), row), goes_on);
+        }
+    }
+
+    /// Request and response at `row`.
+    fn at(&mut self, rows: &Rows<'_>, kind: RequestKind, row: usize) -> (f64, f64) {
+        if kind != RequestKind::Velocity {
+            self.wanted = rows.request[row];
+        }
+        // A loop that is not stable has no response: the load is held to the request.
+        let response = self.response.as_ref().map(Response::position).filter(|position| position.is_finite());
+        (self.wanted, response.unwrap_or(self.wanted))
+    }
+
+    fn step(&mut self, rows: &Rows<'_>, kind: RequestKind, row: usize) {
+        let velocity = rows.request_velocity[row];
+        let next = rows.request_velocity.get(row + 1).copied().unwrap_or(velocity);
+        if let Some(response) = &mut self.response {
+            response.step(self.wanted, velocity, next - velocity);
+        }
+        if kind == RequestKind::Velocity {
+            self.wanted += rows.h * velocity;
+        }
+    }
+}

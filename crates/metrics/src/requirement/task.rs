@@ -1,0 +1,234 @@
+//! The task of a run as its rules judge it: ways, rests, and holds of a velocity, each measured against the response of the loop.
+//!
+//! Phases that want a position follow each other without a gap: their ways lead from one rest to the next. A rest shorter than
+//! [`Task::least_rest`] belongs to the way that passes it, unless the run ends in it.
+use super::phases::{RequestPhase, between_turning_points, request_phases};
+use super::stretch::{Rows, Stretch, measure};
+use super::{Expected, Rules, arrival_window};
+use crate::extremes::{most_of, range_of};
+use crate::quantity::Quantity;
+use servobench_base::RequestKind;
+use servobench_signals::{PerLimit, Signal};
+use servobench_trace::Recording;
+use std::ops::Range;
+
+/// Turns of the request closer than so many increments, or units of the bus, are none.
+const TURNS: f64 = 20.0;
+/// Differences of positions say nothing about so small a part of them.
+pub(super) const ROUNDING: f64 = 1e-12;
+/// Shortest rest and shortest hold that is judged (s).
+const SHORTEST: f64 = 0.02;
+/// The loop has come to rest after so many of its time constants.
+pub(super) const TIME_CONSTANTS: f64 = 5.0;
+/// A rest is judged from so many periods of the slowest oscillation on.
+const PERIODS: f64 = 2.0;
+/// A fault is seen so much later (s) than the request of the task ends, or earlier.
+const SEEN_WITHIN: f64 = 0.02;
+/// Increments, as which swings of the load do not count, and the same as a share of the window.
+const SWING: (f64, f64) = (4.0, 1e-3);
+/// Least rows of a hold, and how equal its velocities are.
+const HOLD: (usize, f64) = (20, 1e-9);
+
+/// A piece of the task.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Piece {
+    /// From one turning point of the request to the next.
+    Way,
+    /// At a target, after a way over this distance; whether it is too short for the loop to come to rest.
+    Rest { way: f64, is_short: bool },
+    /// At this velocity, the second half of the time.
+    Hold(f64),
+}
+
+/// The task of a run.
+pub(super) struct Task<'a> {
+    pub(super) recording: &'a Recording,
+    pub(super) rules: &'a Rules<'a>,
+    pub(super) expected: &'a [Expected],
+    pub(super) phases: Vec<RequestPhase>,
+    /// `None`: the recording lacks what it takes.
+    pub(super) rows: Option<Rows<'a>>,
+    pub(super) pieces: Vec<(Piece, Stretch)>,
+    /// Largest disturbance of motor and load, both as efforts of the motor, and that of the load in its own coordinate.
+    pub(super) disturbance: f64,
+    pub(super) on_load: f64,
+}
+
+impl<'a> Task<'a> {
+    pub(super) fn of(recording: &'a Recording, rules: &'a Rules<'a>, expected: &'a [Expected]) -> Self {
+        let largest = |signal| {
+            let values: &[f64] = recording.channel(signal).unwrap_or_default();
+            most_of([values], |[value]| value.abs())
+        };
+        let on_load = largest(Signal::DisturbanceLoad);
+        let mut task = Self {
+            recording,
+            rules,
+            expected,
+            phases: request_phases(recording),
+            rows: Rows::of(recording),
+            pieces: Vec::new(),
+            disturbance: largest(Signal::DisturbanceMotor) + rules.transmission.abs() * on_load,
+            on_load,
+        };
+        if let Some(rows) = task.rows {
+            task.pieces = task.cut(&rows);
+            let (pieces, mut stretches): (Vec<_>, Vec<_>) = std::mem::take(&mut task.pieces).into_iter().unzip();
+            measure(&rows, &task.phases, rules, &mut stretches);
+            task.pieces = pieces.into_iter().zip(stretches).collect();
+        }
+        task
+    }
+
+    /// Half width of the window around a target after a way of `distance`.
+    pub(super) fn window(&self, distance: f64) -> f64 {
+        self.rules.window.unwrap_or_else(|| arrival_window(distance, self.rules.resolution()))
+    }
+
+    /// Shortest rest in which the loop comes to rest (s).
+    pub(super) fn least_rest(&self) -> f64 {
+        let of_loop = self.rules.servo.map_or(0.0, |servo| TIME_CONSTANTS / servo.slowest_rate());
+        let of_swing = self.rules.oscillation().map_or(0.0, |slowest| PERIODS / slowest.frequency);
+        of_loop.max(of_swing).max(SHORTEST)
+    }
+
+    /// Whether an expected fault comes in `rows`, or where they end.
+    pub(super) fn is_excused(&self, rows: &Range<usize>) -> bool {
+        let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));
+        self.expected.iter().filter_map(|one| one.met).any(|at| (start - SEEN_WITHIN..end + SEEN_WITHIN).contains(&at))
+    }
+
+    /// The move that is made at `row`, in words: `, in "move to 0.2 m"`.
+    pub(super) fn within(&self, row: usize) -> String {
+        let time = self.recording.time_of(row);
+        let made = self.recording.moves.iter().rfind(|made| made.start <= time);
+        made.map_or_else(String::new, |made| format!(" in `{}`", made.label))
+    }
+
+    /// A position of the axis in words.
+    pub(super) fn length(&self, value: f64) -> Quantity<'_> {
+        Quantity::new(value, &self.recording.about.axis_unit)
+    }
+
+    /// A time of the run in words.
+    pub(super) fn time(&self, row: usize) -> Quantity<'static> {
+        Quantity::new(self.recording.time_of(row), "s")
+    }
+
+    /// The largest acceleration of the request, from row to row.
+    pub(super) fn requested_acceleration(&self) -> f64 {
+        let Some(rows) = self.rows else { return 0.0 };
+        rows.request_velocity.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max) / rows.h
+    }
+
+    /// The limit of the drive that binds for the longest time in `rows`, as the end of a sentence.
+    pub(super) fn bound_by(&self, rows: &Range<usize>) -> String {
+        let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));
+        let PerLimit { voltage, current, effort } = PerLimit::NAMES;
+        let bound = [effort, current, voltage].map(|limit| {
+            let events = self.recording.events.iter();
+            let binding = events.filter(|event| event.limit.as_ref().is_some_and(|bound| bound.name == limit));
+            let time: f64 = binding.map(|event| (event.end.min(end) - event.start.max(start)).max(0.0)).sum();
+            (limit, time)
+        });
+        match bound.into_iter().reduce(|one, two| if two.1 > one.1 { two } else { one }) {
+            Some((limit, time)) if time > 0.0 => format!("; {limit} bound for {}", Quantity::new(time, "s")),
+            _ => String::new(),
+        }
+    }
+
+    fn cut(&self, rows: &Rows<'_>) -> Vec<(Piece, Stretch)> {
+        let mut pieces = Vec::new();
+        let mut way: Option<Range<usize>> = None;
+        let mut left: Option<usize> = None;
+        let least = self.least_rest();
+        for phase in &self.phases {
+            match phase.kind {
+                RequestKind::Follow | RequestKind::Velocity => left = left.or(Some(phase.rows.start)),
+                RequestKind::Stand | RequestKind::Effort | RequestKind::Nothing => left = None,
+                RequestKind::Rest => {}
+            }
+            match phase.kind {
+                RequestKind::Follow => way = Some(way.map_or(phase.rows.start, |way| way.start)..phase.rows.end),
+                RequestKind::Rest => {
+                    let is_short = (phase.rows.len() as f64) * rows.h < least;
+                    if is_short && phase.rows.end < self.recording.len() {
+                        way = way.map(|way| way.start..phase.rows.end);
+                    } else if let Some(way) = way.take() {
+                        let from = left.take().unwrap_or(way.start);
+                        let distance = span(&rows.request[from..way.end]);
+                        self.ways(rows, way, &mut pieces);
+                        let piece = Piece::Rest { way: distance, is_short };
+                        pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
+                    }
+                }
+                RequestKind::Velocity | RequestKind::Effort | RequestKind::Stand | RequestKind::Nothing => {
+                    if let Some(way) = way.take() {
+                        self.ways(rows, way, &mut pieces);
+                    }
+                    if phase.kind == RequestKind::Velocity {
+                        holds(rows, &phase.rows, &mut pieces);
+                    }
+                }
+            }
+        }
+        if let Some(way) = way {
+            self.ways(rows, way, &mut pieces);
+        }
+        pieces
+    }
+
+    /// The ways of the request in `all`.
+    fn ways(&self, rows: &Rows<'_>, all: Range<usize>, pieces: &mut Vec<(Piece, Stretch)>) {
+        let request = &rows.request[all.clone()];
+        let rounding = ROUNDING * request[0].abs().max(request[request.len() - 1].abs());
+        let least = (TURNS * self.rules.resolution()).max(rounding);
+        if span(request) > least {
+            let ways = between_turning_points(rows.request, &all, least);
+            pieces.extend(ways.into_iter().filter(|way| !way.is_empty()).map(|way| (Piece::Way, Stretch::new(way))));
+        }
+    }
+
+    /// The rows of a rest over which the load is averaged: whole cycles where it swings to its end, the whole rest where too few of
+    /// them are there, otherwise its last tenth.
+    fn settled(&self, rows: &Rows<'_>, rest: &Range<usize>, way: f64) -> Range<usize> {
+        const REST: usize = 10;
+        let hysteresis = (SWING.0 * self.rules.increment).max(SWING.1 * self.window(way));
+        let pieces = between_turning_points(rows.load, rest, hysteresis.max(ROUNDING * rows.load[rest.start].abs()));
+        let turns: Vec<usize> = pieces.iter().skip(1).map(|piece| piece.start).collect();
+        let middle = rest.start + rest.len() / 2;
+        let swings = turns.last().is_some_and(|last| *last >= middle);
+        if let [.., one, _, last] = turns[..]
+            && swings
+            && 2 * (last - one) >= rest.end - last
+        {
+            let cycles = turns.iter().rev().step_by(2).take_while(|turn| **turn >= middle).last();
+            let from = cycles.copied().filter(|from| *from < last).unwrap_or(one);
+            return from..last;
+        }
+        if swings { rest.clone() } else { rest.end - rest.len().div_ceil(REST)..rest.end }
+    }
+}
+
+/// From the lowest of `values` to the highest.
+fn span(values: &[f64]) -> f64 {
+    let (low, high) = range_of(values);
+    (high - low).max(0.0)
+}
+
+/// Times of `phase` in which the requested velocity is constant: their second halves.
+fn holds(rows: &Rows<'_>, phase: &Range<usize>, pieces: &mut Vec<(Piece, Stretch)>) {
+    let mut start = phase.start;
+    for row in phase.start + 1..=phase.end {
+        let velocity = rows.request_velocity[start];
+        let is_same = row < phase.end && (rows.request_velocity[row] - velocity).abs() <= HOLD.1 * velocity.abs();
+        if is_same {
+            continue;
+        }
+        let length = row - start;
+        if length >= HOLD.0 && length as f64 * rows.h >= SHORTEST {
+            pieces.push((Piece::Hold(velocity), Stretch::new(start + length / 2..row)));
+        }
+        start = row;
+    }
+}

@@ -1,0 +1,84 @@
+//! `velocity`: where a velocity is requested and held, the load has it.
+use super::task::{Piece, Task};
+use crate::quantity::Quantity;
+
+/// The most that droop explains, of the velocity.
+const OF_VELOCITY: f64 = 0.5;
+/// A hold at zero is measured by the largest velocity of the request so.
+const AT_ZERO: f64 = 0.2;
+
+/// Why a velocity is not reached; `None` where none is requested for long enough.
+pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
+    let holds: Vec<_> = task
+        .pieces
+        .iter()
+        .filter_map(|(piece, hold)| match piece {
+            Piece::Hold(velocity) => Some((*velocity, hold)),
+            Piece::Way | Piece::Rest { .. } => None,
+        })
+        .collect();
+    let largest = holds.iter().map(|(velocity, _)| velocity.abs()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return None;
+    }
+    let unit = format!("{}/s", task.recording.about.axis_unit);
+    let droop = task.rules.deflection.velocity_droop(task.disturbance);
+    let missed = holds.into_iter().filter(|(_, hold)| !task.is_excused(&hold.rows)).filter_map(|(velocity, hold)| {
+        let scale = velocity.abs().max(AT_ZERO * largest);
+        let of_loop = (velocity - hold.response_velocity).abs();
+        let bound = (task.rules.tolerances.velocity * scale + droop).min(OF_VELOCITY * scale) + of_loop;
+        let off = (hold.load_velocity - velocity).abs();
+        (off.is_nan() || off > bound).then(|| {
+            format!(
+                "the load moves at {} from {} to {}, where {} is requested (±{}){}",
+                Quantity::new(hold.load_velocity, &unit),
+                task.time(hold.rows.start),
+                task.time(hold.rows.end - 1),
+                Quantity::new(velocity, &unit),
+                Quantity::new(bound, &unit),
+                task.bound_by(&hold.rows)
+            )
+        })
+    });
+    Some(missed.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::tests::rules;
+    use crate::requirement::{Deflection, Rules};
+    use crate::synthetic::Build;
+    use servobench_signals::Signal;
+
+    /// A second at 0.4 m/s, of which the load does `share`.
+    fn found(rules: &Rules<'_>, share: f64) -> Vec<String> {
+        let recording = Build::new(1000, 1001)
+            .channel(Signal::RequestPosition, "m", |t| share * 0.4 * t)
+            .channel(Signal::RequestVelocity, "m/s", |_| 0.4)
+            .channel(Signal::LoadPosition, "m", |t| share * 0.4 * t)
+            .requests(&[(0.0, "velocity")])
+            .finish();
+        broken(&Task::of(&recording, rules, &[])).unwrap()
+    }
+
+    #[test]
+    fn five_per_cent_and_the_droop_are_allowed_and_never_more_than_half() {
+        assert_eq!(
+            found(&rules(), 0.0),
+            ["the load moves at 0 m/s from 500 ms to 1.00 s, where 400 mm/s is requested (±20.0 mm/s)"]
+        );
+        let droops = |velocity_per_effort| Rules {
+            deflection: Deflection { effort: 2.0, velocity_per_effort, ..Deflection::default() },
+            ..rules()
+        };
+        for (rules, kept, missed) in
+            [(rules(), 0.951, 0.949), (rules(), -0.0, 1.051), (droops(0.02), 0.86, 0.84), (droops(1.0), 0.51, 0.49)]
+        {
+            assert_eq!(found(&rules, missed).len(), 1, "{missed}");
+            if kept > 0.0 {
+                assert_eq!(found(&rules, kept), [""; 0], "{kept}");
+            }
+        }
+    }
+}
