@@ -56,7 +56,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
                     + of_loop
                     + gives_way.min(OF_WAY * way);
                 let off = rest.load_off;
-                        (off.is_nan() || off.abs() > bound).then(|| {
+                (off.is_nan() || off.abs() > bound).then(|| {
                     let row = rest.rows.start;
                     format!(
                         "the load rests {} from {} at {}{} (window ±{}){}",

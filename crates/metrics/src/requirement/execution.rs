@@ -7,6 +7,9 @@ use crate::quantity::Quantity;
 use servobench_base::RequestKind;
 use servobench_trace::{Call, CallFate};
 
+/// The state of the drive in which its loops follow, as recordings name it.
+const OPERATION_ENABLED: &str = "Operation enabled";
+
 /// Why the program is not executed; `None` where there is nothing to execute.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let Task { recording, rules, .. } = task;
@@ -35,12 +38,21 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
     }
     let followed = task.phases.windows(2).filter(|pair| moves(&&pair[0]) && pair[1].kind == RequestKind::Nothing);
     followed
-        .filter(|pair| !task.is_excused(&pair[0].rows))
+        .filter(|pair| !task.is_excused(&pair[0].rows) && loses_power(task, &pair[1]))
         .map(|pair| {
             let row = pair[1].rows.start;
             format!("the power is lost at {} in a motion{}", task.time(row), task.within(row))
         })
         .collect()
+}
+
+/// Whether the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
+fn loses_power(task: &Task<'_>, phase: &RequestPhase) -> bool {
+    let Some(state) = task.recording.signal("drive", "state") else { return true };
+    let [start, end] = [phase.rows.start, phase.rows.end].map(|row| task.recording.time_of(row));
+    let is_enabled = |value: &str| value == OPERATION_ENABLED;
+    let mut changes = state.changes.iter().filter(|(time, _)| start < *time && *time < end);
+    !state.at(start).is_some_and(is_enabled) || changes.any(|(_, value)| !is_enabled(value))
 }
 
 fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {

@@ -2,10 +2,12 @@
 use super::phases::RequestPhase;
 use super::rules::Driven;
 use super::stretch::Rows;
-use super::task::{TIME_CONSTANTS, Task};
+use super::task::{ROUNDING, TIME_CONSTANTS, Task};
 use crate::extremes::most_of;
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
+use servobench_signals::Signal;
+use std::ops::Range;
 
 /// What is left of the velocity at the beginning.
 const LEFT: f64 = 0.01;
@@ -36,6 +38,15 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     Some(reasons)
 }
 
+/// Rows of `stop` until the set-point of the drive stands.
+fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
+    let setpoint = task.recording.channel(Signal::SetpointPosition).map(|values| &values[stop.clone()]);
+    let Some(setpoint) = setpoint else { return 0 };
+    let Some(first) = setpoint.first_chunk::<2>() else { return 0 };
+    let least = (LEFT * (first[1] - first[0]).abs()).max(ROUNDING * h);
+    setpoint.windows(2).rposition(|pair| (pair[1] - pair[0]).abs() > least).map_or(0, |last| last + 1)
+}
+
 fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<String> {
     let row = |time: f64| -> usize {
         let rows = (time / rows.h).ceil();
@@ -44,8 +55,8 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     let mean = task.rules.oscillation().map_or(MEAN, |slowest| slowest.frequency.recip().max(MEAN));
     let span = row(mean).max(1);
     let (start, end) = (stop.rows.start, stop.rows.end);
-    let requested = &rows.request_velocity[start.saturating_sub(1)..end];
-    let planned = requested.iter().rposition(|v| *v != 0.0).unwrap_or(0);
+    let requested = rows.request_velocity[start.saturating_sub(1)];
+    let planned = planned(task, &stop.rows, rows.h);
     let settling = task.rules.servo.map_or(MEAN, |servo| {
         // With the velocity fed forward the loop of the position has little to do.
         let rate = if servo.velocity_feedforward < 1.0 { servo.slowest_rate() } else { servo.bandwidth };
@@ -57,7 +68,7 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     if due >= end && !is_last {
         return None;
     }
-    let before = rows.load_velocity(start.saturating_sub(span), start).abs().max(requested[0].abs());
+    let before = rows.load_velocity(start.saturating_sub(span), start).abs().max(requested.abs());
     let largest = most_of([rows.request_velocity], |[v]| v.abs());
     let resolution = RESOLUTIONS * task.rules.resolution() / (span as f64 * rows.h);
     let bound = (LEFT * before).max(OF_LARGEST * largest).max(resolution);
@@ -83,7 +94,6 @@ mod tests {
     use super::*;
     use crate::requirement::tests::rules;
     use crate::synthetic::Build;
-    use servobench_signals::Signal;
 
     /// 1 m/s, stopped at 1 s, in 0.1 s as the set-point has it; the load slows down with `slows` (m/s²).
     fn found(slows: f64, next: f64) -> Vec<String> {
@@ -93,7 +103,10 @@ mod tests {
         };
         let recording = Build::new(1000, 2001)
             .channel(Signal::RequestPosition, "m", load)
-            .channel(Signal::RequestVelocity, "m/s", |t| (1.0 - (t - 1.0).max(0.0) / 0.1).max(0.0))
+            .channel(Signal::RequestVelocity, "m/s", |t| if t < 1.0 { 1.0 } else { 0.0 })
+            .channel(Signal::SetpointPosition, "m", |t| {
+                t.min(1.0) + 0.05 * (1.0 - (1.0 - (t - 1.0).clamp(0.0, 0.1) / 0.1).powi(2))
+            })
             .channel(Signal::LoadPosition, "m", load)
             .requests(&[(0.0, "velocity"), (1.0, "stand"), (next, "velocity")])
             .finish();
