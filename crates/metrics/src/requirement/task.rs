@@ -14,6 +14,8 @@ use std::ops::Range;
 
 /// Turns of the request closer than so many increments, or units of the bus, are none.
 const TURNS: f64 = 20.0;
+/// So are those closer than this share of the farthest way: an interpolation overshoots by less.
+const OF_FARTHEST: f64 = 1e-3;
 /// Differences of positions say nothing about so small a part of them.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// Shortest rest and shortest hold that is judged (s).
@@ -142,6 +144,7 @@ impl<'a> Task<'a> {
         let mut way: Option<Range<usize>> = None;
         let mut left: Option<usize> = None;
         let least = self.least_rest();
+        let least_way = self.least_way(rows);
         for phase in &self.phases {
             match phase.kind {
                 RequestKind::Follow | RequestKind::Velocity => left = left.or(Some(phase.rows.start)),
@@ -157,14 +160,14 @@ impl<'a> Task<'a> {
                     } else if let Some(way) = way.take() {
                         let from = left.take().unwrap_or(way.start);
                         let distance = span(&rows.request[from..way.end]);
-                        self.ways(rows, way, &mut pieces);
+                        Self::ways(rows, way, least_way, &mut pieces);
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
                     }
                 }
                 RequestKind::Velocity | RequestKind::Effort | RequestKind::Stand | RequestKind::Nothing => {
                     if let Some(way) = way.take() {
-                        self.ways(rows, way, &mut pieces);
+                        Self::ways(rows, way, least_way, &mut pieces);
                     }
                     if phase.kind == RequestKind::Velocity {
                         holds(rows, &phase.rows, &mut pieces);
@@ -173,16 +176,23 @@ impl<'a> Task<'a> {
             }
         }
         if let Some(way) = way {
-            self.ways(rows, way, &mut pieces);
+            Self::ways(rows, way, least_way, &mut pieces);
         }
         pieces
     }
 
+    /// How far the request goes at least where it turns.
+    fn least_way(&self, rows: &Rows<'_>) -> f64 {
+        let follows = self.phases.iter().filter(|phase| phase.kind == RequestKind::Follow);
+        let farthest = follows.map(|phase| span(&rows.request[phase.rows.clone()])).fold(0.0, f64::max);
+        (TURNS * self.rules.resolution()).max(OF_FARTHEST * farthest)
+    }
+
     /// The ways of the request in `all`.
-    fn ways(&self, rows: &Rows<'_>, all: Range<usize>, pieces: &mut Vec<(Piece, Stretch)>) {
+    fn ways(rows: &Rows<'_>, all: Range<usize>, least: f64, pieces: &mut Vec<(Piece, Stretch)>) {
         let request = &rows.request[all.clone()];
         let rounding = ROUNDING * request[0].abs().max(request[request.len() - 1].abs());
-        let least = (TURNS * self.rules.resolution()).max(rounding);
+        let least = least.max(rounding);
         if span(request) > least {
             let ways = between_turning_points(rows.request, &all, least);
             pieces.extend(ways.into_iter().filter(|way| !way.is_empty()).map(|way| (Piece::Way, Stretch::new(way))));
@@ -197,7 +207,8 @@ impl<'a> Task<'a> {
         let pieces = between_turning_points(rows.load, rest, hysteresis.max(ROUNDING * rows.load[rest.start].abs()));
         let turns: Vec<usize> = pieces.iter().skip(1).map(|piece| piece.start).collect();
         let middle = rest.start + rest.len() / 2;
-        let swings = turns.last().is_some_and(|last| *last >= middle);
+        // One turn is the end of a creeping approach.
+        let swings = turns.len() > 1 && turns[turns.len() - 2] >= middle;
         if let [.., one, _, last] = turns[..]
             && swings
             && 2 * (last - one) >= rest.end - last
