@@ -143,16 +143,22 @@ impl<'a> Task<'a> {
         let mut pieces = Vec::new();
         let mut way: Option<Range<usize>> = None;
         let mut left: Option<usize> = None;
+        let mut is_interrupted = false;
         let least = self.least_rest();
         let least_way = self.least_way(rows);
-        for phase in &self.phases {
+        for (k, phase) in self.phases.iter().enumerate() {
+            let before = &self.phases[k.saturating_sub(2)..k];
             match phase.kind {
                 RequestKind::Follow | RequestKind::Velocity => left = left.or(Some(phase.rows.start)),
                 RequestKind::Stand | RequestKind::Effort | RequestKind::Nothing => left = None,
                 RequestKind::Rest => {}
             }
             match phase.kind {
-                RequestKind::Follow => way = Some(way.map_or(phase.rows.start, |way| way.start)..phase.rows.end),
+                RequestKind::Follow => {
+                    // The link catches up with a task that has gone on in the meantime.
+                    is_interrupted |= way.is_none() && is_silence(before);
+                    way = Some(way.map_or(phase.rows.start, |way| way.start)..phase.rows.end);
+                }
                 RequestKind::Rest => {
                     let is_short = (phase.rows.len() as f64) * rows.h < least;
                     if is_short && phase.rows.end < self.recording.len() {
@@ -160,14 +166,14 @@ impl<'a> Task<'a> {
                     } else if let Some(way) = way.take() {
                         let from = left.take().unwrap_or(way.start);
                         let distance = span(&rows.request[from..way.end]);
-                        Self::ways(rows, way, least_way, &mut pieces);
+                        Self::ways(rows, way, least_way, std::mem::take(&mut is_interrupted), &mut pieces);
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
                     }
                 }
                 RequestKind::Velocity | RequestKind::Effort | RequestKind::Stand | RequestKind::Nothing => {
                     if let Some(way) = way.take() {
-                        Self::ways(rows, way, least_way, &mut pieces);
+                        Self::ways(rows, way, least_way, std::mem::take(&mut is_interrupted), &mut pieces);
                     }
                     if phase.kind == RequestKind::Velocity {
                         holds(rows, &phase.rows, &mut pieces);
@@ -176,7 +182,7 @@ impl<'a> Task<'a> {
             }
         }
         if let Some(way) = way {
-            Self::ways(rows, way, least_way, &mut pieces);
+            Self::ways(rows, way, least_way, std::mem::take(&mut is_interrupted), &mut pieces);
         }
         pieces
     }
@@ -188,14 +194,15 @@ impl<'a> Task<'a> {
         (TURNS * self.rules.resolution()).max(OF_FARTHEST * farthest)
     }
 
-    /// The ways of the request in `all`.
-    fn ways(rows: &Rows<'_>, all: Range<usize>, least: f64, pieces: &mut Vec<(Piece, Stretch)>) {
+    /// The ways of the request in `all`; that on which a link recovers from an interruption is none.
+    fn ways(rows: &Rows<'_>, all: Range<usize>, least: f64, is_interrupted: bool, pieces: &mut Vec<(Piece, Stretch)>) {
         let request = &rows.request[all.clone()];
         let rounding = ROUNDING * request[0].abs().max(request[request.len() - 1].abs());
         let least = least.max(rounding);
         if span(request) > least {
             let ways = between_turning_points(rows.request, &all, least);
-            pieces.extend(ways.into_iter().filter(|way| !way.is_empty()).map(|way| (Piece::Way, Stretch::new(way))));
+            let ways = ways.into_iter().skip(usize::from(is_interrupted)).filter(|way| !way.is_empty());
+            pieces.extend(ways.map(|way| (Piece::Way, Stretch::new(way))));
         }
     }
 
@@ -219,6 +226,11 @@ impl<'a> Task<'a> {
         }
         if swings { rest.clone() } else { rest.end - rest.len().div_ceil(REST)..rest.end }
     }
+}
+
+/// Whether a motion was broken off by a silence of the task.
+fn is_silence(before: &[RequestPhase]) -> bool {
+    matches!(before, [moved, silent] if moved.kind == RequestKind::Follow && silent.kind == RequestKind::Nothing)
 }
 
 /// From the lowest of `values` to the highest.
