@@ -230,6 +230,15 @@ impl State {
         self.mode
     }
 
+    /// Whether the highest velocity (6080h) cut the target of csv.
+    #[must_use]
+    pub const fn cuts_velocity(&self) -> bool {
+        match &self.running {
+            Some(Running::Csv(mode)) => mode.is_limited(),
+            _ => false,
+        }
+    }
+
     /// Where the axis has its zero (increments of the encoder).
     #[must_use]
     pub const fn origin(&self) -> i64 {

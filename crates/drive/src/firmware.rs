@@ -305,6 +305,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     let h = p.period(p.velocity_every);
     let method = p.blocks.measurement.as_ref();
     let mut followed = x.held.velocity_reference;
+    let mut asked = x.velocity_command;
     if x.closed == Closed::Position && p.feedforward.interpolate {
         let fed_forward = |since: f64| {
             let velocity = p.feedforward.motor_reference(x.held.reference.after(since)).velocity;
@@ -316,11 +317,13 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         let age = p.velocity_filter_time + method.map_or(of_encoder, |method| method.age(h));
         followed = fed_forward(since - age);
         x.held.velocity_reference = fed_forward(since);
+        asked = x.held.velocity_reference;
     }
     if p.blocks.max_speed.is_finite() {
         let most = p.blocks.max_speed * p.transmission.abs();
         followed = followed.clamp(-most, most);
         x.held.velocity_reference = x.held.velocity_reference.clamp(-most, most);
+        x.held.speed_is_cut = matches!(x.closed, Closed::Position | Closed::Velocity) && asked.abs() > most;
     }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let travelled = sensors.motor_position - last;

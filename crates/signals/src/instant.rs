@@ -119,9 +119,19 @@ pub struct PerLimit<T> {
     pub current: T,
     /// Effort limit of the velocity loop.
     pub effort: T,
+    /// Speed limit of the drive, which cuts what the position loop, or the master, asks for; no channel shows its share.
+    pub speed: T,
+    /// Velocity limit of the master; no channel shows its share.
+    pub master: T,
 }
 
 impl PerLimit<&'static str> {
     /// Name of each limit in recordings and reports.
-    pub const NAMES: Self = Self { voltage: "voltage limit", current: "current limit", effort: "effort limit" };
+    pub const NAMES: Self = Self {
+        voltage: "voltage limit",
+        current: "current limit",
+        effort: "effort limit",
+        speed: "speed limit",
+        master: "velocity limit of the master",
+    };
 }

@@ -96,7 +96,8 @@ impl Axis {
     #[inline(always)]
     fn record(&mut self, time: f64) {
         let now = &mut self.now;
-        let cut = PerLimit { voltage: now.voltage.q, current: now.effort_reference, effort: now.effort_reference };
+        let (effort, speed) = (now.effort_reference, now.velocity_reference);
+        let cut = PerLimit { voltage: now.voltage.q, current: effort, effort, speed, master: speed };
         self.limits.tick(time, &now.binds, cut, &mut self.recorder);
         self.alarms.tick(time, now.alarms, &mut self.recorder);
         self.requests.tick(time, now.request_kind, &mut self.recorder);

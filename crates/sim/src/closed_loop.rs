@@ -230,6 +230,7 @@ impl ClosedLoop {
             known_rotation: self.state.power.rotation(),
         };
         let Control { params, state, .. } = control;
+        let mut cuts_velocity = [false; 2];
         let command = match &mut self.state.source {
             Source::Program(program) => {
                 // As numbers, which stay in registers: a copy would have to wait until they are stored.
@@ -274,6 +275,7 @@ impl ClosedLoop {
                 now.setpoint = network.setpoint(now.motor.position);
                 network.tell(now);
                 now.ask(network.request(t));
+                cuts_velocity = network.cuts_velocity();
                 (now.reference, now.motor_reference) = match network.reference(t) {
                     Some((reference, motor)) => (reference.x, motor.position),
                     None => (now.load.position, now.motor.position),
@@ -294,6 +296,8 @@ impl ClosedLoop {
             voltage: held.current.saturated,
             current: held.effort.cut == Some(Cut::Available),
             effort: held.effort.cut == Some(Cut::Effort),
+            speed: held.speed_is_cut | cuts_velocity[0],
+            master: cuts_velocity[1],
         };
         command
     }

@@ -32,6 +32,8 @@ type Limit = (&'static str, &'static str);
 const VOLTAGE: Limit = ("inverter", PerLimit::NAMES.voltage);
 const CURRENT: Limit = ("velocity loop", PerLimit::NAMES.current);
 const EFFORT: Limit = ("velocity loop", PerLimit::NAMES.effort);
+const SPEED: Limit = ("velocity loop", PerLimit::NAMES.speed);
+const MASTER: Limit = ("master", PerLimit::NAMES.master);
 
 impl LimitWatch {
     /// Takes which limits bind at tick `t` (s), and what each of them cuts, of which the sign counts.
@@ -42,32 +44,35 @@ impl LimitWatch {
     )]
     pub(crate) fn tick(&mut self, t: f64, binds: &PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
         self.ticks += 1;
-        let bound = binds.voltage | binds.current | binds.effort;
+        let bound = binds.voltage | binds.current | binds.effort | binds.speed | binds.master;
         if bound || self.bound {
             self.bound = bound;
             self.note(t, *binds, cut, recorder);
         }
     }
 
-    /// Shares of the ticks since the last call in which each limit bound, 0 to 1.
+    /// Shares of the ticks since the last call in which each limit bound, 0 to 1; those of velocities have no channel and stay 0.
     #[inline(always)]
     pub(crate) fn shares(&mut self) -> PerLimit<f64> {
         let ticks = core::mem::take(&mut self.ticks);
-        let PerLimit { voltage, current, effort } = &mut self.watches;
+        let PerLimit { voltage, current, effort, .. } = &mut self.watches;
         let [voltage, current, effort] =
             [voltage, current, effort].map(|watch| core::mem::take(&mut watch.bound_ticks));
         if voltage | current | effort == 0 {
             return PerLimit::default();
         }
         let share = |bound: u32| f64::from(bound) / f64::from(ticks.max(1));
-        PerLimit { voltage: share(voltage), current: share(current), effort: share(effort) }
+        let [voltage, current, effort] = [voltage, current, effort].map(share);
+        PerLimit { voltage, current, effort, ..PerLimit::default() }
     }
 
     /// Ends what still binds at `t` (s), and notes what went from limit to limit.
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
         self.note(t, PerLimit::default(), PerLimit::default(), recorder);
-        let PerLimit { voltage, current, effort } = &mut self.watches;
-        for (watch, (_, limit)) in [(voltage, VOLTAGE), (current, CURRENT), (effort, EFFORT)] {
+        let PerLimit { voltage, current, effort, speed, master } = &mut self.watches;
+        for (watch, (_, limit)) in
+            [(voltage, VOLTAGE), (current, CURRENT), (effort, EFFORT), (speed, SPEED), (master, MASTER)]
+        {
             let times = std::mem::take(&mut watch.reversals);
             if !times.is_empty() {
                 recorder.note_limit_reversals(LimitReversals { limit: limit.into(), times });
@@ -77,12 +82,14 @@ impl LimitWatch {
 
     #[cold]
     fn note(&mut self, t: f64, binds: PerLimit<bool>, cut: PerLimit<f64>, recorder: &mut Recorder) {
-        let PerLimit { voltage, current, effort } = &mut self.watches;
+        let PerLimit { voltage, current, effort, speed, master } = &mut self.watches;
         let event =
             |(source, limit): Limit| move |start, end, is_last| Event::bound(start, end, source, limit, is_last);
         voltage.tick(t, binds.voltage.then_some(cut.voltage), recorder, event(VOLTAGE));
         current.tick(t, binds.current.then_some(cut.current), recorder, event(CURRENT));
         effort.tick(t, binds.effort.then_some(cut.effort), recorder, event(EFFORT));
+        speed.tick(t, binds.speed.then_some(cut.speed), recorder, event(SPEED));
+        master.tick(t, binds.master.then_some(cut.master), recorder, event(MASTER));
     }
 }
 
@@ -148,7 +155,7 @@ mod tests {
         recorder.finish().0.events
     }
 
-    const POSITIVE: PerLimit<f64> = PerLimit { voltage: 1.0, current: 1.0, effort: 1.0 };
+    const POSITIVE: PerLimit<f64> = PerLimit { voltage: 1.0, current: 1.0, effort: 1.0, speed: 1.0, master: 1.0 };
 
     /// What is cut between is not a reversal, and neither is a limit that binds on the same side again.
     #[test]
@@ -163,8 +170,27 @@ mod tests {
         assert_eq!(found, [LimitReversals { limit: "effort limit".into(), times: vec![3.0, 6.0] }]);
     }
 
+    /// A speed is cut as an effort is, and each limit has its own alternations.
+    #[test]
+    fn velocities_of_drive_and_master_are_watched_too() {
+        let (mut recorder, mut watch) = (recorder(), LimitWatch::default());
+        for (t, speed, master) in [(0.0, 1.0, 0.0), (1.0, -2.0, -1.0), (2.0, 0.0, 1.0), (3.0, 1.0, 0.0)] {
+            let binds = PerLimit { speed: speed != 0.0, master: master != 0.0, ..PerLimit::default() };
+            watch.tick(t, &binds, PerLimit { speed, master, ..PerLimit::default() }, &mut recorder);
+        }
+        watch.finish(4.0, &mut recorder);
+        let recording = recorder.finish().0;
+        let reversals = |limit: &str, times: &[f64]| LimitReversals { limit: limit.into(), times: times.to_vec() };
+        let expected = [reversals("speed limit", &[1.0, 3.0]), reversals("velocity limit of the master", &[2.0])];
+        assert_eq!(recording.limit_reversals, expected);
+        let messages = recording.events.iter().map(|event| event.message.as_str());
+        let speed = "speed limit binds";
+        let master = "velocity limit of the master binds";
+        assert_eq!(messages.collect::<Vec<_>>(), [speed, master, speed]);
+    }
+
     fn binding(voltage: bool, current: bool, effort: bool) -> PerLimit<bool> {
-        PerLimit { voltage, current, effort }
+        PerLimit { voltage, current, effort, ..PerLimit::default() }
     }
 
     #[test]
@@ -181,15 +207,16 @@ mod tests {
     #[test]
     fn shares_are_of_the_ticks_since_the_last_row() {
         let (mut recorder, mut watch) = (recorder(), LimitWatch::default());
-        assert_eq!(watch.shares(), PerLimit { voltage: 0.0, current: 0.0, effort: 0.0 });
+        assert_eq!(watch.shares(), PerLimit::default());
         for (voltage, current, effort) in
             [(true, false, false), (true, true, false), (false, true, false), (true, false, true)]
         {
             watch.tick(0.0, &binding(voltage, current, effort), POSITIVE, &mut recorder);
         }
-        assert_eq!(watch.shares(), PerLimit { voltage: 0.75, current: 0.5, effort: 0.25 });
+        let shares = PerLimit { voltage: 0.75, current: 0.5, effort: 0.25, ..PerLimit::default() };
+        assert_eq!(watch.shares(), shares);
         watch.tick(0.0, &binding(true, false, false), POSITIVE, &mut recorder);
-        assert_eq!(watch.shares(), PerLimit { voltage: 1.0, current: 0.0, effort: 0.0 });
+        assert_eq!(watch.shares(), PerLimit { voltage: 1.0, ..PerLimit::default() });
     }
 
     #[test]

@@ -374,6 +374,11 @@ impl Network {
         }
     }
 
+    /// Whether the drive cuts the velocity that it is sent, and the master what it sends.
+    pub(crate) const fn cuts_velocity(&self) -> [bool; 2] {
+        [self.drive.1.cuts_velocity(), self.link.1.is_limited()]
+    }
+
     /// Why the motion task gave up, once.
     pub(crate) const fn failure(&mut self) -> Option<String> {
         self.failure.take()
