@@ -40,8 +40,8 @@ pub use modal::{Mode, Signal, fit_mode};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Deflection, Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation, Poles,
-    REQUEST_KIND, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances, arrival_window,
+    Deflection, Disturbance, Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation,
+    Poles, REQUEST_KIND, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances, arrival_window,
     judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;

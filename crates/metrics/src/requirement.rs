@@ -3,29 +3,34 @@
 //! A requirement is a line of [`Requirement`] and a module that gives the reasons for which a recording breaks it. What each of
 //! them means exactly, with its numbers, is in `docs/requirements.md`.
 mod arrival;
-mod asked;
 mod bounds;
+mod calm;
 mod deflection;
 mod effort;
+mod excitation;
 mod execution;
 mod fault;
 mod following;
+mod growth;
 mod harm;
 mod judge;
-mod oscillation;
 mod phases;
+mod rings;
 mod rules;
 mod servo;
+mod stable;
 mod standing;
 mod stopping;
 mod stretch;
+mod swings;
 mod task;
+mod turning_points;
 mod velocity;
 
 pub use arrival::arrival_window;
 pub use deflection::Deflection;
 pub use judge::judge_requirements;
-pub use rules::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules, Tolerances};
+pub use rules::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules, Tolerances};
 pub use servo::Servo;
 
 use crate::incident::Incident;
@@ -72,6 +77,7 @@ requirements! {
     Executed "executed" "every motion and every call is executed and ends without an error",
     NoFault "no_fault" "axis, drive and link have no fault but those that are expected",
     Stable "stable" "the loop is stable, and no oscillation grows or goes from limit to limit",
+    Rings "rings" "after a motion nothing goes on to swing",
     NoHarm "no_harm" "no harm comes to machine, motor or trajectory but what is expected",
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
@@ -80,12 +86,11 @@ requirements! {
 pub const REQUEST_KIND: (&str, &str) = ("request", "kind");
 
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [Signal; 14] = [
+pub const JUDGED_BY: [Signal; 13] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
     Signal::SetpointPosition,
-    Signal::SetpointAcceleration,
     Signal::MotorPosition,
     Signal::LoadPosition,
     Signal::FollowingErrorMotor,
@@ -238,6 +243,9 @@ pub(crate) mod tests {
             expected: &[],
             window: None,
             increment: 0.0,
+            noise: 0.0,
+            disturbances: Vec::new(),
+            excited: Vec::new(),
             transmission: 1.0,
             bus_unit: 0.0,
             servo: None,

@@ -6,7 +6,7 @@ use crate::speeds::Speeds;
 use servobench_base::Dq;
 use servobench_metrics::Quantity;
 use servobench_plant::Encoder;
-use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, LoopSignal, Scenario};
+use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, Scenario};
 use servobench_stability::{
     self as stability, Depth, Instability, Loop, Master, OperatingPoint, PositionFeedback, Report, Sensors, Source,
     VelocitySignal,
@@ -199,7 +199,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
             current: Dq { d: current.d_reference, q: 0.0 },
         }),
     };
-    let acts = scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| acts(*signal));
+    let acts = scenario.fmus.iter().any(|fmu| fmu.efforts().next().is_some());
     let turns =
         model.point.current != Dq::default() && (model.sensors.motor_latency > 0.0 || model.sensors.commutation != 0.0);
     let is_wrong = matches!(&scenario.actuator, Actuator::Pmsm { wiring, .. } if !wiring.is_right());
@@ -228,9 +228,4 @@ fn sensors(encoder: Encoder, drive: &Drive) -> Sensors {
 
 fn velocity_signal(encoder: Encoder) -> VelocitySignal {
     if encoder.gives_velocity() { VelocitySignal::Encoder } else { VelocitySignal::Differences }
-}
-
-/// Whether what an FMU gives acts on the axis.
-const fn acts(signal: LoopSignal) -> bool {
-    matches!(signal, LoopSignal::MotorEffort | LoopSignal::LoadEffort)
 }

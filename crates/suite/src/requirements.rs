@@ -1,8 +1,10 @@
 //! From a scenario to what its run is held to beside its limits.
 mod axle;
 
-use servobench_metrics::{Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
-use servobench_scenario::{Actuator, Feedback, Scenario};
+use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
+use servobench_plant::Encoder;
+use servobench_scenario::{Actuator, DisturbedBody, Feedback, LoopSignal, Scenario};
+use servobench_signals::Signal;
 use servobench_sim::{Analysis, MasterLoop, NotAnalysed, Speeds, analyse_stability};
 use servobench_stability::{Depth, Report, StabilityError};
 use servobench_trace::Recording;
@@ -15,6 +17,9 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         expected: &scenario.requirements.expected,
         window: scenario.measure.window,
         increment: increment(scenario),
+        noise: noise(scenario),
+        disturbances: disturbances(scenario),
+        excited: excited(scenario),
         transmission: scenario.axis.transmission,
         bus_unit: scenario.bus.as_ref().map_or(0.0, |bus| bus.units.axis.abs() / f64::from(bus.units.drive)),
         servo: axle::servo(scenario),
@@ -81,12 +86,43 @@ fn poles(report: &Report) -> Poles {
 
 /// What the encoder that closes the position loop tells apart (axis unit); 0 for an ideal one, or none.
 pub(crate) fn increment(scenario: &Scenario) -> f64 {
-    let motor = match &scenario.actuator {
-        Actuator::Pmsm { encoder, .. } | Actuator::IdealSource { encoder, .. } => encoder,
-        Actuator::Prescribed | Actuator::Off => return 0.0,
-    };
+    of_encoder(scenario, Encoder::resolution)
+}
+
+/// Noise of that encoder (axis unit, effective).
+fn noise(scenario: &Scenario) -> f64 {
+    of_encoder(scenario, |encoder| encoder.errors.map_or(0.0, |errors| errors.noise))
+}
+
+/// A length of the encoder that closes the position loop, in the axis unit; 0 without one.
+fn of_encoder(scenario: &Scenario, length: impl Fn(&Encoder) -> f64) -> f64 {
+    let Some(motor) = scenario.actuator.encoder() else { return 0.0 };
     match scenario.actuator.drive().map(|drive| drive.position_feedback) {
-        Some(Feedback::Load(encoder)) => encoder.resolution(),
-        _ => scenario.axis.transmission * motor.resolution(),
+        Some(Feedback::Load(encoder)) => length(&encoder),
+        _ => scenario.axis.transmission.abs() * length(&motor),
     }
+}
+
+/// What the scenario orders to disturb the axis, as efforts of the motor.
+fn disturbances(scenario: &Scenario) -> Vec<Disturbance> {
+    let all = scenario.disturbances.iter().map(|one| Disturbance {
+        start: one.start,
+        end: one.start + one.duration,
+        effort: match one.on {
+            DisturbedBody::Motor => one.effort,
+            DisturbedBody::Load => scenario.axis.transmission * one.effort,
+        },
+        frequency: one.frequency,
+    });
+    all.collect()
+}
+
+/// Channels in which FMUs excite the axis, and what makes each an effort of the motor.
+fn excited(scenario: &Scenario) -> Vec<(Signal, f64)> {
+    let exciting = scenario.fmus.iter().filter(|fmu| fmu.excites).flat_map(|fmu| fmu.efforts());
+    let scaled = exciting.map(|effort| {
+        let scale = if effort == LoopSignal::LoadEffort { scenario.axis.transmission } else { 1.0 };
+        (effort.signal(), scale)
+    });
+    scaled.collect()
 }

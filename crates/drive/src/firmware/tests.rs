@@ -388,6 +388,7 @@ fn the_integral_of_the_position_waits_at_limits() {
                 step(&p, &mut x, &demand, EffortLimits::NONE, &Sensors::default());
             }
             assert_eq!(x.position.integral.to_bits(), first.to_bits());
+            assert_eq!(x.held.speed_is_cut, max_speed.is_finite(), "between two cycles of the position loop too");
             let beyond = Sensors { motor_position: sign * 1.001 * far, ..Sensors::default() };
             for _ in 0..1600 {
                 step(&p, &mut x, &demand, EffortLimits::NONE, &beyond);

@@ -2,7 +2,7 @@
 use super::task::Task;
 use super::{
     Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, effort, execution, fault, following,
-    harm, oscillation, standing, stopping, velocity,
+    harm, rings, stable, standing, stopping, velocity,
 };
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
@@ -33,7 +33,8 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
             Requirement::Stopped => (stopping::broken(&task), true),
             Requirement::Executed => (execution::broken(&task), true),
             Requirement::NoFault => (fault::broken(recording, rules, &faults), true),
-            Requirement::Stable => (oscillation::broken(recording, rules), true),
+            Requirement::Stable => (stable::broken(recording, rules), true),
+            Requirement::Rings => (rings::broken(recording, rules), true),
             Requirement::NoHarm => (harm::broken(recording, rules), true),
             // A run that diverged has no end that could be judged.
             Requirement::Bounded => (Some(bounds::broken(recording, rules)), !rules.has_diverged()),

@@ -2,6 +2,7 @@
 use super::deflection::Deflection;
 use super::servo::Servo;
 use super::{Expectation, Requirement};
+use servobench_signals::Signal;
 
 /// What a judgement of requirements needs to know besides the recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,12 @@ pub struct Rules<'a> {
     /// One increment of the encoder that closes the position loop or, if that is wider, the error of its signals within a period (axis
     /// unit); 0 for an ideal one.
     pub increment: f64,
+    /// Noise of its readings (axis unit, effective).
+    pub noise: f64,
+    /// Efforts that the scenario orders, which explain that the axis swings.
+    pub disturbances: Vec<Disturbance>,
+    /// Channels in which an FMU excites the axis, each with the factor that makes it an effort of the motor.
+    pub excited: Vec<(Signal, f64)>,
     /// Axis coordinate per motor coordinate.
     pub transmission: f64,
     /// One unit of the positions on the bus (axis unit); 0 without a bus.
@@ -57,6 +64,19 @@ impl Default for Tolerances {
     fn default() -> Self {
         Self { follows: 0.25, arrives: 0.05, velocity: 0.05, effort: 0.05 }
     }
+}
+
+/// An effort that the scenario orders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disturbance {
+    /// From when on it acts (s).
+    pub start: f64,
+    /// Until when (s); infinite: to the end of the run.
+    pub end: f64,
+    /// Its amplitude as an effort of the motor (N·m or N, motor coordinate).
+    pub effort: f64,
+    /// Of a sine that begins at zero (Hz); `None` for a constant one.
+    pub frequency: Option<f64>,
 }
 
 /// What moves the axis.
@@ -113,6 +133,13 @@ pub enum EarlyEnd {
     GaveUp(String),
 }
 
+/// A swing is seen if it is larger than so many increments of the encoder,
+const INCREMENTS: f64 = 4.0;
+/// so many times the noise of its readings,
+const NOISE: f64 = 5.0;
+/// and this part of the largest position, about which differences of positions say nothing.
+const ROUNDING: f64 = 1e-12;
+
 impl Rules<'_> {
     /// The oscillation that fades last.
     pub(super) fn oscillation(&self) -> Option<Oscillation> {
@@ -122,6 +149,13 @@ impl Rules<'_> {
     /// The coarser of the increment of the encoder and the unit of the bus (axis unit).
     pub(super) const fn resolution(&self) -> f64 {
         self.increment.max(self.bus_unit)
+    }
+
+    /// The largest swing of `positions` that says nothing (axis unit), as far as they come before row `end`.
+    pub(super) fn seen(&self, positions: &[f64], end: usize) -> f64 {
+        let largest =
+            positions.iter().take(end).filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        (INCREMENTS * self.increment).max(NOISE * self.noise).max(ROUNDING * largest)
     }
 
     pub(crate) const fn has_diverged(&self) -> bool {

@@ -126,8 +126,8 @@ impl<'a> Task<'a> {
     /// The limit of the drive that binds for the longest time in `rows`, as the end of a sentence.
     pub(super) fn bound_by(&self, rows: &Range<usize>) -> String {
         let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));
-        let PerLimit { voltage, current, effort } = PerLimit::NAMES;
-        let bound = [effort, current, voltage].map(|limit| {
+        let PerLimit { voltage, current, effort, speed, master } = PerLimit::NAMES;
+        let bound = [effort, current, voltage, speed, master].map(|limit| {
             let events = self.recording.events.iter();
             let binding = events.filter(|event| event.limit.as_ref().is_some_and(|bound| bound.name == limit));
             let time: f64 = binding.map(|event| (event.end.min(end) - event.start.max(start)).max(0.0)).sum();

@@ -22,6 +22,9 @@ table! {
         /// Whether the event mode of an FMU of FMI 3.0 is used; if it has one, it is unless this is `false`: then the FMU deals with
         /// events by itself.
         event_mode: bool = (),
+        /// Whether its efforts excite the axis, as a `[[disturbance]]` does, so that they explain that it swings; default: false: they
+        /// answer to the axis, as those of a load do. Not for the mechanics of an axis.
+        excites: bool = (),
         /// How long one of its calls may take (real time); default: 10 s.
         call_timeout: f64 = positive(Plain(&TIME), "10 s"),
         /// Megabytes of memory that its process may take; default: 2048.

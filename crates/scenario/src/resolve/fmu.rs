@@ -76,7 +76,19 @@ pub(super) fn others(
             .chain(["shaft.position", "shaft.velocity", "time"])
             .collect();
         let fmu = fmu(&one.value, every, known, report, &signals, &offered);
-        all.push(fmu.map(|(fmu, outputs)| Fmu { outputs, ..fmu }));
+        let excites = one.value.excites.optional().ok().map(|excites| excites.copied().unwrap_or_default());
+        let fmu = fmu.zip(excites).map(|((fmu, outputs), excites)| Fmu { outputs, excites, ..fmu });
+        if let (Some(fmu), Some(span)) = (&fmu, one.value.excites.span())
+            && fmu.efforts().next().is_none()
+        {
+            let message = "`excites` is for an FMU that gives an effort";
+            report.error(
+                span,
+                message,
+                "connect an output to `disturbance.motor` or `disturbance.load`, or leave it out",
+            );
+        }
+        all.push(fmu);
     }
     let all: Vec<_> = all.into_iter().collect::<Option<_>>()?;
     check_ports(file, given, &all, known, report);
@@ -150,7 +162,10 @@ fn fmu<P: Port>(
         },
         event_mode: given.event_mode.optional().ok()?.copied().unwrap_or(true),
     };
-    Some((Fmu { name: name(given), file, every: every?, inputs: inputs?, outputs: Vec::new() }, outputs))
+    Some((
+        Fmu { name: name(given), file, every: every?, inputs: inputs?, outputs: Vec::new(), excites: false },
+        outputs,
+    ))
 }
 
 fn connections<T>(

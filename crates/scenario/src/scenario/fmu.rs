@@ -15,6 +15,8 @@ pub struct Fmu {
     pub inputs: Vec<(String, InputSource)>,
     /// Outputs by variable with what each is.
     pub outputs: Vec<(String, LoopSignal)>,
+    /// Whether its efforts excite the axis, and explain that it swings.
+    pub excites: bool,
 }
 
 /// What an input of an FMU is given (SI).
@@ -56,6 +58,14 @@ pub enum LoopSignal {
     VoltageD,
     /// `voltage.q`, instead of the drive's.
     VoltageQ,
+}
+
+impl Fmu {
+    /// What it does to the motor and the load by an effort.
+    pub fn efforts(&self) -> impl Iterator<Item = LoopSignal> + '_ {
+        let acts = |signal: &LoopSignal| matches!(signal, LoopSignal::MotorEffort | LoopSignal::LoadEffort);
+        self.outputs.iter().map(|(_, signal)| *signal).filter(acts)
+    }
 }
 
 impl LoopSignal {

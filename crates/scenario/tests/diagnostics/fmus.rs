@@ -41,6 +41,7 @@ const LOAD: &str =
 fn fmus_beside_the_axis_are_right() {
     check(&[
         (LOAD, &[]),
+        (&format!("{LOAD}excites = true\n"), &[]),
         (&format!("{LOAD}[coupling]\nstep = \"1 ms\"\nmethod = \"iterated\"\ntolerance = 1e-6\niterations = 9\n"), &[]),
         (
             &format!(
@@ -112,6 +113,11 @@ fn steps_fit_and_keys_belong_to_their_methods() {
         (
             &format!("{LOAD}[coupling]\niterations = 3\n"),
             &["6:14: `iterations` is for the method \"iterated\"; leave it out, or iterate"],
+        ),
+        (
+            "[[fmu]]\nfile = \"a.fmu\"\nexcites = true\ninputs = { x = \"load.position\" }\n",
+            &["3:11: `excites` is for an FMU that gives an effort; connect an output to `disturbance.motor` or \
+               `disturbance.load`, or leave it out"],
         ),
         (
             &format!("{LOAD}isolation = \"none\"\ncall_timeout = \"1 s\"\n"),

@@ -134,6 +134,18 @@ fn a_double_integrator_under_position_and_velocity() {
     assert_eq!(position.name, LoopName::Position);
     assert!((position.boundaries.below.unwrap().factor * 2.2 / 2.0 - 1.0).abs() < BISECTED, "{position:?}");
     assert_eq!(report(&cascade(2.3, 0.4)).instability.unwrap().name, LoopName::Velocity);
+
+    // The poles that fade last: a pair, or two real ones.
+    let pair = stable.slowest_oscillating.unwrap();
+    assert_eq!(stable.slowest_real, None);
+    let (half, square) = (1.0 - (0.7 + 0.14) / 2.0, 1.0 - 0.7 + 0.14_f64);
+    assert!((pair.growth / (square.ln() / 2.0 / h) - 1.0).abs() < 1e-9, "{pair:?}");
+    assert!((pair.frequency / ((half / square.sqrt()).acos() / TAU / h) - 1.0).abs() < 1e-9, "{pair:?}");
+    let slow = report(&cascade(0.7, 0.05));
+    assert_eq!(slow.slowest_oscillating, None);
+    let (half, square) = (1.0 - (0.7 + 0.0175) / 2.0, 1.0 - 0.7 + 0.0175_f64);
+    let slowest = half + (half * half - square).sqrt();
+    assert!((slow.slowest_real.unwrap().growth / (slowest.ln() / h) - 1.0).abs() < 1e-9, "{slow:?}");
 }
 
 /// Oracle: a velocity loop with a filter of time constant T on a mass: z² + (a·f + f − 2)·z + 1 − f with f = h/(h + T),

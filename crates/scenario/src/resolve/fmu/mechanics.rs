@@ -97,6 +97,9 @@ pub(in crate::resolve) fn mechanics(file: &File, known: Known<'_>, report: &mut 
     let signals = |text: &str| {
         ON_MECHANICS.iter().find(|signal| signal.name() == text).map(|signal| InputSource::Signal(*signal))
     };
+    if let Some(span) = given.excites.span() {
+        report.error(span, "`excites` is for an FMU beside the axis", "leave it out");
+    }
     let fmu = fmu(given, 1, known, report, &signals, &ON_MECHANICS.map(Signal::name));
     if let Some((fmu, outputs)) = &fmu {
         let gives = |port: BodySignal| outputs.iter().any(|(_, to)| *to == port);

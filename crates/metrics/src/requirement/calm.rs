@@ -1,0 +1,117 @@
+//! Stretches in which the task asks for one velocity and nothing that the scenario orders disturbs the axis: what swings there is
+//! the loop's own.
+use super::Rules;
+use super::excitation::disturbed;
+use super::phases::request_phases;
+use servobench_base::RequestKind;
+use servobench_signals::Signal;
+use servobench_trace::Recording;
+use std::ops::Range;
+
+/// Changes of the requested velocity below this share of its largest value in the run are roundings.
+const ROUNDING: f64 = 1e-9;
+
+/// A stretch with one requested velocity.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Calm {
+    /// Its rows.
+    pub(super) rows: Range<usize>,
+    /// The velocity that is requested (axis unit per s), 0 where the axis is to stand.
+    pub(super) velocity: f64,
+    /// Distance of the motion that ended last (axis unit); `None` before the first one.
+    pub(super) after: Option<f64>,
+}
+
+/// The calm stretches of `recording` in order. What comes later does not change those before, but for the end of the last one.
+pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
+    let channels = (recording.channel(Signal::RequestVelocity), recording.channel(Signal::RequestPosition));
+    let (Some(velocities), Some(positions)) = channels else { return Vec::new() };
+    let rounding = ROUNDING * velocities.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    let disturbed = disturbed(recording, rules);
+    let (mut all, mut stood_at, mut after) = (Vec::new(), None, None);
+    let mut moves = false;
+    for phase in request_phases(recording) {
+        if matches!(phase.kind, RequestKind::Nothing | RequestKind::Effort) {
+            (stood_at, after, moves) = (None, None, false);
+            continue;
+        }
+        let mut start = phase.rows.start;
+        while start < phase.rows.end {
+            let (v, x) = (velocities[start], positions[start]);
+            let same =
+                velocities[start..phase.rows.end].iter().take_while(|next| (**next - v).abs() <= rounding).count();
+            // What is not a number is not even the same as itself.
+            let end = start + same.max(1);
+            let stands = v.abs() <= rounding;
+            if stands && std::mem::take(&mut moves) {
+                after = stood_at.map(|from: f64| (x - from).abs());
+            }
+            moves |= !stands;
+            if stands || stood_at.is_none() {
+                stood_at = Some(x);
+            }
+            if stands || phase.kind == RequestKind::Velocity {
+                let velocity = if stands { 0.0 } else { v };
+                all.extend(without(start..end, &disturbed).map(|rows| Calm { rows, velocity, after }));
+            }
+            start = end;
+        }
+    }
+    all
+}
+
+/// What is left of `rows` without `others`, which are in order of their start.
+fn without(rows: Range<usize>, others: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
+    let mut left = Vec::new();
+    let mut start = rows.start;
+    for other in others {
+        if other.start > start && start < rows.end {
+            left.push(start..other.start.min(rows.end));
+        }
+        start = start.max(other.end);
+    }
+    if start < rows.end {
+        left.push(start..rows.end);
+    }
+    left.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::rules::Disturbance;
+    use crate::requirement::tests::rules;
+    use crate::synthetic::Build;
+
+    /// A second at 1 kHz: a motion over 0.2 m from 0.2 s to 0.4 s, and at 0.1 m/s from 0.7 s on.
+    fn recording() -> Recording {
+        let velocity = |t: f64| match t {
+            t if (0.2..0.4).contains(&t) => 1.0 + 0.1 * t,
+            t if t >= 0.7 => 0.1,
+            _ => 0.0,
+        };
+        Build::new(1000, 1000)
+            .channel(Signal::RequestVelocity, "m/s", velocity)
+            .channel(Signal::RequestPosition, "m", |t| if t < 0.3 { 0.1 } else { 0.3 })
+            .requests(&[(0.0, "nothing"), (0.1, "stand"), (0.2, "follow"), (0.4, "rest"), (0.7, "velocity")])
+            .finish()
+    }
+
+    #[test]
+    fn the_axis_is_calm_where_it_is_to_stand_or_to_keep_its_velocity() {
+        let found = calm(&recording(), &rules());
+        let rows: Vec<_> = found.iter().map(|calm| (calm.rows.clone(), calm.velocity)).collect();
+        assert_eq!(rows, [(100..200, 0.0), (400..700, 0.0), (700..1000, 0.1)]);
+        assert_eq!(found[0].after, None);
+        assert!((found[1].after.unwrap() - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_disturbance_cuts_a_stretch_where_it_changes() {
+        let sine = Disturbance { start: 0.5, end: 0.6, effort: 1.0, frequency: Some(5.0) };
+        let step = Disturbance { start: 0.15, end: f64::INFINITY, effort: 1.0, frequency: None };
+        let found = calm(&recording(), &Rules { disturbances: vec![sine, step], ..rules() });
+        let rows: Vec<_> = found.into_iter().map(|calm| calm.rows).collect();
+        assert_eq!(rows, [100..150, 151..200, 400..500, 600..700, 700..1000]);
+    }
+}

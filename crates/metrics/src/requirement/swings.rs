@@ -1,0 +1,248 @@
+//! Swinging between limits: a limited quantity goes from its positive to its negative limit and back.
+//!
+//! A stretch is from one start of a motion to the next. In each of them alternations are counted that task and disturbances
+//! ([`excitation`](super::excitation)) do not explain, over every part of it: more than [`MOST`] are an oscillation. An alternation
+//! counts where the motor's error over [`NINE`] of them swings by more than the encoder sees, in the median: what an edge of the encoder,
+//! noise or a peak of one tick sends from limit to limit does not move the motor, or comes now and then. A part that is over stays what it is, so that a longer
+//! run has at least as many.
+use super::Rules;
+use super::excitation::turns;
+use crate::quantity::Quantity;
+use servobench_signals::Signal;
+use servobench_trace::{LimitReversals, Recording};
+
+/// Alternations beyond those that are explained, at most.
+pub(super) const MOST: usize = 8;
+/// Alternations over which the motor's error has to swing.
+const NINE: usize = 9;
+/// An oscillation is regular: of the times from one of the nine to the next the longest is so many times the median, at most.
+const REGULAR: usize = 4;
+
+/// The worst swinging between limits, in words.
+pub(super) fn between_limits(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
+    if recording.limit_reversals.is_empty() {
+        return None;
+    }
+    let error = error(recording)?;
+    let (turns, starts) = (turns(recording, rules), starts(recording));
+    let worst = recording.limit_reversals.iter().filter_map(|LimitReversals { limit, times }| {
+        let counting = counting(recording, &error, times, rules);
+        Some((limit, unexplained(&counting, &turns, &starts)?))
+    });
+    let Some((limit, swinging)) = worst.max_by_key(|(_, swinging)| swinging.excess) else {
+        return recording.limit_reversals.iter().find_map(not_known);
+    };
+    let Swinging { times, first, last, .. } = swinging;
+    let (first, last) = (Quantity::new(first, "s"), Quantity::new(last, "s"));
+    Some(format!("it goes from one {limit} to the other {times} times from {first} to {last}"))
+}
+
+/// Of a run with more alternations than are kept nobody can say that the others were explained.
+fn not_known(LimitReversals { limit, times }: &LimitReversals) -> Option<String> {
+    let last = times.get(LimitReversals::MOST - 1)?;
+    let (most, last) = (LimitReversals::MOST, Quantity::new(*last, "s"));
+    Some(format!("it has gone from one {limit} to the other {most} times by {last}, and what follows is not judged"))
+}
+
+/// A part of a run in which a quantity swings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Swinging {
+    /// Alternations more than are explained.
+    excess: usize,
+    times: usize,
+    first: f64,
+    last: f64,
+}
+
+/// The part with the most of `alternations` beyond `turns`, if those are too many; it does not go across `starts`. All in order.
+fn unexplained(alternations: &[f64], turns: &[f64], starts: &[f64]) -> Option<Swinging> {
+    let mut worst: Option<Swinging> = None;
+    let mut now: Option<Swinging> = None;
+    let (mut turns, mut starts) = (turns.iter().peekable(), starts.iter().peekable());
+    for time in alternations {
+        let begins = core::iter::from_fn(|| starts.next_if(|start| *start <= time)).count() > 0;
+        let explained = core::iter::from_fn(|| turns.next_if(|turn| *turn <= time)).count();
+        let goes_on = now.filter(|one| !begins && one.excess > explained);
+        let one = goes_on.map_or(Swinging { excess: 1, times: 1, first: *time, last: *time }, |one| Swinging {
+            excess: one.excess - explained + 1,
+            times: one.times + 1,
+            last: *time,
+            ..one
+        });
+        now = Some(one);
+        if one.excess > MOST && worst.is_none_or(|worst| one.excess > worst.excess) {
+            worst = Some(one);
+        }
+    }
+    worst
+}
+
+/// Those of `times` at which the motor's error swings over nine of them by more than the encoder sees.
+fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'_>) -> Vec<f64> {
+    let rows: Vec<usize> = times.iter().map(|time| recording.index_at(*time).min(error.len())).collect();
+    let mut counts = vec![false; times.len()];
+    for k in 0..(rows.len() + 1).saturating_sub(NINE) {
+        let nine = &rows[k..k + NINE];
+        if is_regular(nine) && median_swing(error, nine) > rules.seen(error, nine[NINE - 1]) {
+            counts[k..k + NINE].fill(true);
+        }
+    }
+    times.iter().zip(counts).filter_map(|(time, counts)| counts.then_some(*time)).collect()
+}
+
+/// Whether `rows` come as regularly as those of an oscillation.
+fn is_regular(rows: &[usize]) -> bool {
+    let mut gaps: Vec<usize> = rows.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    gaps.sort_unstable();
+    gaps.last().is_some_and(|longest| *longest <= REGULAR * gaps[gaps.len() / 2])
+}
+
+/// From the lowest to the highest error between two neighbours of `rows`, without the drift from the first to the last: the median.
+fn median_swing(error: &[f64], rows: &[usize]) -> f64 {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return 0.0 };
+    let at = |row: usize| error.get(row).or(error.last()).copied().unwrap_or_default();
+    let drift = (at(*last) - at(*first)) / (last - first).max(1) as f64;
+    let mut swings: Vec<f64> = rows
+        .windows(2)
+        .map(|pair| {
+            let values = (pair[0]..=pair[1]).map(|row| at(row) - drift * (row - first) as f64);
+            let (low, high) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+            high - low
+        })
+        .collect();
+    swings.sort_by(f64::total_cmp);
+    swings[swings.len() / 2]
+}
+
+/// The way that is requested less that of the motor, at each row (axis unit).
+fn error(recording: &Recording) -> Option<Vec<f64>> {
+    let position = recording.channel(Signal::MotorPosition)?;
+    let velocity = recording.channel(Signal::RequestVelocity)?;
+    let (period, mut way) = (recording.rate.period(), 0.0);
+    let error = position.iter().zip(velocity).map(|(x, v)| {
+        let error = way - x;
+        way += v * period;
+        error
+    });
+    Some(error.collect())
+}
+
+/// Times at which a motion starts from rest (s).
+fn starts(recording: &Recording) -> Vec<f64> {
+    let velocity = recording.channel(Signal::RequestVelocity).unwrap_or_default();
+    // A velocity that passes zero is not at rest.
+    let starts = velocity.windows(3).enumerate().filter(|(_, v)| v[0] == 0.0 && v[1] == 0.0 && v[2] != 0.0);
+    starts.map(|(row, _)| recording.time_of(row + 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirement::rules::Disturbance;
+    use crate::requirement::tests::rules;
+    use crate::synthetic::Build;
+    use core::f64::consts::TAU;
+
+    /// A second at 1 kHz, in which the effort alternates `times` times between its limits from 100 ms on, every 10 ms, while the motor
+    /// swings by `size`.
+    fn reversing(times: usize, size: f64, velocity: impl Fn(f64) -> f64) -> Recording {
+        let mut recording = Build::new(1000, 1001)
+            .channel(Signal::RequestVelocity, "m/s", velocity)
+            .channel(Signal::MotorPosition, "m", |t| size / 2.0 * (TAU * 50.0 * t).cos())
+            .channel(Signal::EffortReference, "N", |_| 100.0)
+            .finish();
+        let times = (0..times).map(|k| 0.1 + 0.01 * k as f64).collect();
+        recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times }];
+        recording
+    }
+
+    #[test]
+    fn more_than_eight_alternations_that_nothing_explains_are_an_oscillation() {
+        for (times, is_found) in [(0, false), (8, false), (9, true), (60, true)] {
+            let found = between_limits(&reversing(times, 1e-3, |_| 0.0), &rules());
+            assert_eq!(found.is_some(), is_found, "{times}: {found:?}");
+        }
+        assert_eq!(
+            between_limits(&reversing(9, 1e-3, |_| 0.0), &rules()).unwrap(),
+            "it goes from one effort limit to the other 9 times from 100 ms to 180 ms"
+        );
+    }
+
+    /// A request that turns as often explains them, and so does a disturbance; one that turns half as often does not.
+    #[test]
+    fn task_and_disturbances_explain_alternations() {
+        for (hertz, is_found) in [(50.0, false), (25.0, true)] {
+            let found = between_limits(&reversing(60, 1e-3, |t| (TAU * hertz * t).sin()), &rules());
+            assert_eq!(found.is_some(), is_found, "request of {hertz} Hz: {found:?}");
+            for (effort, is_felt) in [(20.0, true), (0.5, false)] {
+                let sine = Disturbance { start: 0.0, end: f64::INFINITY, effort, frequency: Some(hertz) };
+                let rules = Rules { disturbances: vec![sine], ..rules() };
+                let found = between_limits(&reversing(60, 1e-3, |_| 0.0), &rules);
+                assert_eq!(found.is_some(), is_found || !is_felt, "disturbance of {hertz} Hz, {effort} N: {found:?}");
+            }
+        }
+    }
+
+    /// Edges of an encoder, noise and peaks of one tick send an effort to its limits, but do not move the motor.
+    #[test]
+    fn what_does_not_move_the_motor_does_not_count() {
+        for (increment, noise, is_found) in
+            [(0.9e-6, 0.0, true), (1.1e-6, 0.0, false), (0.0, 0.7e-6, true), (0.0, 0.9e-6, false)]
+        {
+            let found = between_limits(&reversing(800, 4e-6, |_| 0.0), &Rules { increment, noise, ..rules() });
+            assert_eq!(found.is_some(), is_found, "{increment} {noise}: {found:?}");
+        }
+    }
+
+    /// Peaks that come now and then while the motor is off for another reason are no oscillation; one that is not symmetric is.
+    #[test]
+    fn an_oscillation_is_regular() {
+        let mut recording = reversing(0, 1e-3, |_| 0.0);
+        for (gaps, is_found) in [([7, 7, 7], true), ([1, 14, 1], false), ([1, 8, 8], true), ([2, 8, 2], true)] {
+            let times = (0..40).scan(0.05, |time, k| {
+                *time += 2e-3 * f64::from(gaps[k % 3]);
+                Some(*time)
+            });
+            recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times: times.collect() }];
+            assert_eq!(between_limits(&recording, &rules()).is_some(), is_found, "{gaps:?}");
+        }
+    }
+
+    /// A motion that starts from rest begins anew, a request that passes zero does not.
+    #[test]
+    fn alternations_of_two_motions_do_not_add_up() {
+        let starting = |t: f64| if t < 0.155 { 0.0 } else { 1.0 };
+        assert_eq!(between_limits(&reversing(12, 1e-3, starting), &rules()), None);
+        assert!(between_limits(&reversing(12, 1e-3, |t| 0.155 - t), &rules()).is_some());
+    }
+
+    #[test]
+    fn what_is_not_kept_is_not_judged_as_none() {
+        let mut recording = reversing(0, 1e-3, |_| 0.0);
+        let late = |count: usize| vec![LimitReversals { limit: "effort limit".into(), times: vec![2.0; count] }];
+        recording.limit_reversals = late(LimitReversals::MOST - 1);
+        assert_eq!(between_limits(&recording, &rules()), None, "outside of the run");
+        recording.limit_reversals = late(LimitReversals::MOST);
+        let found = between_limits(&recording, &rules()).unwrap();
+        assert!(found.contains("what follows is not judged"), "{found}");
+    }
+
+    /// Each part of a run has at least as many of them in a longer one, whatever comes afterwards.
+    #[test]
+    fn a_longer_run_is_never_greener() {
+        let velocity = |t: f64| if t > 0.3 { 0.3 * (TAU * 200.0 * t).sin() } else { 0.0 };
+        let mut last = false;
+        for k in 1..=10 {
+            let mut recording = reversing(6 * k, 1e-3, velocity);
+            let rows = 100 + 60 * k + 1;
+            for channel in &mut recording.channels {
+                channel.values = channel.values.iter().copied().take(rows).collect();
+            }
+            let found = between_limits(&recording, &rules()).is_some();
+            assert!(found || !last, "{k}");
+            last = found;
+        }
+        assert!(last);
+    }
+}
