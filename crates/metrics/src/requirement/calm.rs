@@ -60,13 +60,14 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
     all
 }
 
-/// What is left of `rows` without `others`, which are in order of their start.
+/// What is left of `rows` without `others`, which are in order and apart from each other.
 fn without(rows: Range<usize>, others: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let mut left = Vec::new();
     let mut start = rows.start;
-    for other in others {
-        if other.start > start && start < rows.end {
-            left.push(start..other.start.min(rows.end));
+    let within = &others[others.partition_point(|other| other.end <= rows.start)..];
+    for other in within.iter().take_while(|other| other.start < rows.end) {
+        if other.start > start {
+            left.push(start..other.start);
         }
         start = start.max(other.end);
     }

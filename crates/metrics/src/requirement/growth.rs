@@ -50,15 +50,15 @@ fn of(
     rules: &Rules<'_>,
 ) -> (Vec<Swing>, [usize; 2], &'static str) {
     let rows = calm.rows.clone();
-    let seen = rules.seen(position, rows.end);
+    let unseen = rules.unseen();
     if calm.velocity == 0.0 {
-        return (swings(&position[rows.clone()], rows.start, seen, SHARE), STANDING, "position");
+        return (swings(&position[rows.clone()], rows.start, unseen, SHARE), STANDING, "position");
     }
     let period = recording.rate.period();
     let velocity: Vec<f64> = position[rows.clone()].windows(2).map(|pair| (pair[1] - pair[0]) / period).collect();
     let all = swings(&velocity, rows.start, 0.0, SHARE);
     // A velocity that swings by Δv over a time T moves the motor by Δv·T/π.
-    let is_seen = |pair: &[Swing]| pair[1].size * (pair[1].end - pair[0].end) as f64 * period / PI > seen;
+    let is_seen = |pair: &[Swing]| pair[1].size * (pair[1].end - pair[0].end) as f64 * period / PI > unseen;
     (all.windows(2).filter(|pair| is_seen(pair)).map(|pair| pair[1]).collect(), MOVING, "velocity")
 }
 

@@ -36,7 +36,7 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<Str
 fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'_>) -> Option<String> {
     let rows = rest.rows.clone();
     let window = rules.window.unwrap_or_else(|| arrival_window(rest.after.unwrap_or_default(), rules.increment));
-    let least = (2.0 * window).max(rules.seen(position, rows.end));
+    let least = (2.0 * window).max(rules.unseen());
     let all = swings(&position[rows.clone()], rows.start, least, 0.0);
     let period = recording.rate.period();
     let (earlier, later) = match decay(rules) {

@@ -133,12 +133,10 @@ pub enum EarlyEnd {
     GaveUp(String),
 }
 
-/// A swing is seen if it is larger than so many increments of the encoder,
+/// The encoder sees a swing that is larger than so many of its increments,
 const INCREMENTS: f64 = 4.0;
-/// so many times the noise of its readings,
+/// and than so many times the noise of its readings.
 const NOISE: f64 = 5.0;
-/// and this part of the largest position, about which differences of positions say nothing.
-const ROUNDING: f64 = 1e-12;
 
 impl Rules<'_> {
     /// The oscillation that fades last.
@@ -151,11 +149,9 @@ impl Rules<'_> {
         self.increment.max(self.bus_unit)
     }
 
-    /// The largest swing of `positions` that says nothing (axis unit), as far as they come before row `end`.
-    pub(super) fn seen(&self, positions: &[f64], end: usize) -> f64 {
-        let largest =
-            positions.iter().take(end).filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        (INCREMENTS * self.increment).max(NOISE * self.noise).max(ROUNDING * largest)
+    /// The largest swing that the encoder does not tell from none (axis unit).
+    pub(super) const fn unseen(&self) -> f64 {
+        (INCREMENTS * self.increment).max(NOISE * self.noise)
     }
 
     pub(crate) const fn has_diverged(&self) -> bool {

@@ -3,6 +3,9 @@
 //! A turning point is confirmed once the signal has come back from it by more than a hysteresis. What comes later in a signal does
 //! not change the turning points before: a longer recording has those of a shorter one, and more.
 
+/// Differences of values say nothing about so small a part of the largest one before.
+pub(super) const ROUNDING: f64 = 1e-12;
+
 /// From one turning point to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Swing {
@@ -48,18 +51,19 @@ impl TurningPoints {
     }
 }
 
-/// The swings of `values`, of which the first is that of row `from`: each is larger than `floor` and than `share` of the largest one
-/// before.
+/// The swings of `values`, of which the first is that of row `from`: each is larger than `floor`, than `share` of the largest one
+/// before and than roundings.
 pub(super) fn swings(values: &[f64], from: usize, floor: f64, share: f64) -> Vec<Swing> {
     let Some(first) = values.first() else { return Vec::new() };
     let mut points = TurningPoints::new(from, *first);
-    let (mut last, mut largest): (Option<f64>, f64) = (None, 0.0);
+    let (mut last, mut largest, mut reach): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
     let mut all = Vec::new();
     for (row, value) in values.iter().enumerate() {
         if !value.is_finite() {
             break;
         }
-        let hysteresis = floor.max(share * largest);
+        reach = reach.max(value.abs());
+        let hysteresis = floor.max(share * largest).max(ROUNDING * reach);
         let Some((end, value)) = points.next(from + row, *value, hysteresis) else { continue };
         if let Some(before) = last.replace(value) {
             let size = (value - before).abs();
