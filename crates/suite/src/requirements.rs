@@ -51,7 +51,8 @@ fn linear_loop(scenario: &Scenario, recording: &Recording) -> (LinearLoop, Optio
     let speeds = is_scheduled.then(|| Speeds::recorded(recording, scenario.axis.transmission)).flatten();
     match analyse_stability(scenario, Depth::Verdict, speeds.as_ref()) {
         Ok(Analysis::Done { report, master, without }) => {
-            let poles = Some(poles(&report));
+            // The position loop of a master has poles of its own, which are not known.
+            let poles = master.is_none().then(|| poles(&report));
             let of_master = master.filter(MasterLoop::is_unstable).map(|master| master.to_string());
             match report.instability.map(|instability| instability.to_string()).or(of_master) {
                 Some(why) => (LinearLoop::Unstable(why), poles, None),
