@@ -32,6 +32,43 @@ pub enum Absence {
         /// The part, in words.
         part: &'static str,
     },
+    /// The run or the pause is too short for a metric of what follows a profile.
+    #[error(
+        "the load is seen for {} at rest; this metric takes {}, two periods of its slowest mode and 20 rows",
+        Quantity::new(*rest, "s"), Quantity::new(*needed, "s")
+    )]
+    RestTooShort {
+        /// How long the load is seen (s).
+        rest: f64,
+        /// How long it must be (s).
+        needed: f64,
+    },
+    /// Rows that stand for many ticks are too far apart.
+    #[error(
+        "rows at {} are too few to measure: {} at least, or `record.channels` that every tick has memory for",
+        Quantity::new(*rate, "Hz"), Quantity::new(*needed, "Hz")
+    )]
+    TooFewRows {
+        /// Rate of the rows (Hz).
+        rate: f64,
+        /// Lowest rate (Hz).
+        needed: f64,
+    },
+    /// A load that never moves is inside the window.
+    #[error(
+        "the window of ±{} is as large as the way of `{label}`, {}: a load that never moved would be inside",
+        Quantity::new(*window, unit), Quantity::new(*distance, unit)
+    )]
+    WindowIsTheWay {
+        /// Label of the move.
+        label: String,
+        /// Window (axis unit).
+        window: f64,
+        /// Distance of the move (axis unit).
+        distance: f64,
+        /// Axis unit.
+        unit: String,
+    },
     /// The settling time needs a window.
     #[error("no settling window is given")]
     NoWindow,
@@ -51,6 +88,12 @@ pub enum Absence {
         exit: f64,
         /// How long after the profile the recording watched (s).
         watched: f64,
+    },
+    /// The last move ends in motion, or another took over: no target is the last.
+    #[error("`{label}`, the last move, does not end at rest")]
+    NoLastTarget {
+        /// Label of the move.
+        label: String,
     },
     /// No move reaches constant velocity.
     #[error("no move has a part at constant velocity")]
@@ -97,9 +140,6 @@ pub enum Absence {
     /// The load holds still where a mode would move it: friction, not vibration.
     #[error("the load sticks and slips instead of oscillating")]
     Sticks,
-    /// One component more in the fit, and other modes come out.
-    #[error("the motion after the profile is no sum of a few decaying modes")]
-    Unconfirmed,
     /// No drive that follows points has a buffer that could err.
     #[error("the drive follows no points of a trajectory")]
     NoPoints,
@@ -109,6 +149,17 @@ pub enum Absence {
     /// The scenario makes nothing wrong on its bus.
     #[error("no `[[bus.fault]]` concerns the run")]
     NoBusFault,
+    /// The mode dies before it has shown enough periods.
+    #[error("the mode is damped so strongly that {periods:.1} of its periods are visible; this takes {needed}")]
+    Damped {
+        /// Periods until its envelope has fallen to 5 %.
+        periods: f64,
+        /// Periods that are needed.
+        needed: f64,
+    },
+    /// The motion swings, but no decaying mode could be fitted: what damps it depends on how far it swings.
+    #[error("amplitude-dependent: no decaying mode could be fitted to the motion after the profile")]
+    AmplitudeDependent,
     /// Nothing oscillates where the scenario says that the mode is.
     #[error("no mode within {} % of {}", 100.0 * share, Quantity::new(*frequency, "Hz"))]
     NotThere {

@@ -7,6 +7,7 @@
 //! and says why ([`Absence`]); it is never zero, and a limit on it is missed.
 
 mod absence;
+mod basis;
 mod compliance;
 mod display_unit;
 mod effort;
@@ -36,7 +37,7 @@ pub use display_unit::{DisplayUnit, DisplayUnits, digits};
 pub use incident::{Incident, note_incidents};
 pub use measure::{MEASURED_FROM, Question, measure, measure_only};
 pub use metric::{Metric, MetricSet, Metrics, MoveMetrics};
-pub use modal::{Mode, Signal, fit_mode};
+pub use modal::{Mode, Signal, Vibration, fit_mode, vibration};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{

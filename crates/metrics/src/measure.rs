@@ -1,12 +1,17 @@
 //! A recording to its metrics.
-use crate::absence::Absence;
 use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::name::Name;
 use crate::span::{Checked, Phase, phases};
 use crate::vibration::{Residual, Search};
-use crate::{compliance, effort, incident, rounding, settling, tracking};
+use crate::{basis, compliance, effort, incident, rounding, settling, tracking};
+use servobench_base::Rate;
 use servobench_signals::Signal;
-use servobench_trace::Recording;
+use servobench_trace::{Ending, Recording};
+
+/// What vibrates by less than this share of the settling window does not matter to whoever gave it.
+const PART_OF_WINDOW: f64 = 1e-3;
+/// Increments of an encoder within which a motion may be its doing.
+const INCREMENTS: f64 = 4.0;
 
 /// What a measurement needs to know besides the recording.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -17,6 +22,19 @@ pub struct Question {
     pub from: Option<f64>,
     /// Natural frequency of the mode that is asked for (Hz). Without it, the mode with the most energy is reported.
     pub mode: Option<f64>,
+    /// Frequency of the lowest mode of the model (Hz); `None` where it is rigid or not known.
+    pub lowest_mode: Option<f64>,
+    /// One increment of the encoder that closes the position loop (axis unit); 0 for an ideal one.
+    pub increment: f64,
+    /// Rate of the ticks of the run; rows at a lower one are thinned. `None` where every tick has a row.
+    pub base_rate: Option<Rate>,
+}
+
+impl Question {
+    /// Vibration below this is of no interest (axis unit): a thousandth of the window, and four increments.
+    pub(crate) fn least(&self) -> f64 {
+        (PART_OF_WINDOW * self.window.unwrap_or_default()).max(INCREMENTS * self.increment)
+    }
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
@@ -87,25 +105,31 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
     let checked = Checked::of(recording);
     let mut run = MetricSet::default();
     let mut moves = Vec::with_capacity(phases.len());
-    let mut residual = Residual::absent(&Absence::NoMove);
-    for phase in &phases {
-        residual = Residual::after(&checked, phase, search);
+    // The stretch that `from` begins, and every rest after it.
+    let from = question.from.map(|from| Residual::from_time(&checked, from, question, search));
+    let mut residuals: Vec<_> = from.into_iter().collect();
+    let begins = question.from.unwrap_or(f64::NEG_INFINITY);
+    for (k, phase) in phases.iter().enumerate() {
+        let residual = Residual::after(&checked, phase, question, search);
         let made = phase.made;
         let metrics = move_metrics(&checked, phase, question, &residual);
         moves.push(MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics });
-    }
-    if let Some(from) = question.from {
-        residual = Residual::from_time(&checked, from, search);
+        // A move that another takes over, or that goes on, leaves no rest; the last one is measured as it is.
+        if made.start > begins && (made.ending == Ending::AtRest || k + 1 == phases.len()) {
+            residuals.push(residual);
+        }
     }
     let all = 0..recording.len();
     settling::note_worst(&mut run, &checked, &moves);
+    settling::note_program(&mut run, &phases, &moves);
     tracking::note(&mut run, &checked, all.clone(), &phases);
-    residual.note(&mut run, &checked);
+    Residual::largest(residuals).note(&mut run, &checked);
     compliance::note(&mut run, &phases);
     effort::note(&mut run, &checked, &all);
     incident::note(&mut run, &checked);
     let mut metrics = Metrics { run, moves };
     rounding::clear(&mut metrics, recording);
+    basis::withhold(&mut metrics, recording, question);
     metrics
 }
 
@@ -113,7 +137,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
 fn move_metrics(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
     let mut metrics = MetricSet::default();
     let this = std::slice::from_ref(phase);
-    settling::note(&mut metrics, recording, phase, question.window, residual.mode());
+    settling::note(&mut metrics, recording, phase, question, residual.mode());
     tracking::note(&mut metrics, recording, phase.rows(), this);
     residual.note(&mut metrics, recording);
     compliance::note(&mut metrics, this);

@@ -103,6 +103,12 @@ impl MetricSet {
         self.absent.retain(|name, _| wanted(*name));
     }
 
+    /// Takes a metric back, and says why.
+    pub(crate) fn withhold(&mut self, name: Name, why: Absence) {
+        self.present.remove(&name);
+        self.absent.insert(name, why);
+    }
+
     /// Makes a metric zero whose magnitude is not above `floor`.
     pub(crate) fn clear(&mut self, name: Name, floor: f64) {
         if let Some(metric) = self.present.get_mut(&name)

@@ -4,33 +4,38 @@
 //! y(t) = c + aperiodic tails + Σ e^{−ζωt}·(a·cos ω_d·t + b·sin ω_d·t)      ω_d = ω·√(1 − ζ²)
 //! ```
 //! fitted by least squares. Tails (real poles) take the settling of an integrator, further modes what else rings; so
-//! neither falsifies the mode that is reported. Spectra only propose where to start. Components are added while each
-//! removes at least a quarter of what is left; a mode counts only when one component more leaves it where it is.
+//! neither falsifies the mode that is reported. Spectra only propose where to start. Components are added until nothing is left that
+//! anybody asks for, while each removes at least a quarter of what is left. A motion that they do not explain (stick-slip, a limit
+//! cycle) is described by its swings.
 //!
 //! A long record is thinned without aliasing to at least 16 values per period of the fastest mode proposed, and its
 //! first 4096 values are fitted: 128 periods or more.
 //!
 //! ```text
-//! proposal → series → order (fit, refine, spectrum) → dominant
+//! proposal → series → order (fit, refine, spectrum, noise) → dominant, or swings
 //! ```
 mod columns;
 mod dominant;
 mod fit;
 mod least_squares;
 mod model;
+mod noise;
 mod order;
 mod proposal;
 mod refine;
 mod series;
 mod spectrum;
+mod swings;
 mod turns;
 
 use crate::absence::Absence;
 use crate::extremes::range_of;
+use dominant::{Found, Unfit};
 use fit::Fit;
 use model::Component;
 use order::Order;
 use series::Series;
+use swings::Swings;
 
 /// A record of a motion that has no input.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +48,8 @@ pub struct Signal<'a> {
     pub step: f64,
     /// Below this the values mean nothing: their rounding, or the step of a sensor.
     pub resolution: f64,
+    /// Below this nobody asks for a vibration (unit of the values).
+    pub least: f64,
 }
 
 /// A mode of a record.
@@ -58,6 +65,20 @@ pub struct Mode {
     pub share: f64,
 }
 
+/// How a record vibrates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vibration {
+    /// Envelope of the dominant mode at time 0; where no mode could be fitted, half of the largest swing; 0 where nothing swings (unit
+    /// of the values).
+    pub amplitude: f64,
+    /// Natural frequency of the mode, or one over twice the mean time between two reversals (Hz).
+    pub frequency: Result<f64, Absence>,
+    /// Damping ratio ζ of the mode; negative when the oscillation grows.
+    pub damping: Result<f64, Absence>,
+    /// Share of the oscillation's energy that all fitted modes explain, 0 to 1.
+    pub share: Result<f64, Absence>,
+}
+
 /// Periods that a record must hold.
 const PERIODS: f64 = 2.0;
 /// Values that a record must hold.
@@ -69,34 +90,111 @@ const MAX_VALUES: usize = 4096;
 /// A record that has more is not thinned to fewer: two dozen parameters fit two dozen values, whatever these are.
 const MIN_VALUES: usize = 256;
 
-/// The mode with the most energy in the record; with `near` (Hz), the one with the most energy within 25 % of it.
+impl Vibration {
+    /// Of what is at rest, or goes one way.
+    fn none() -> Self {
+        let absent = || Err(Absence::NoVibration);
+        Self { amplitude: 0.0, frequency: absent(), damping: absent(), share: absent() }
+    }
+
+    /// Of `swings` that are not a sum of modes, for the reason `unfit`.
+    fn of_swings(swings: Swings, unfit: Unfit) -> Self {
+        let too_short = |periods| Absence::TooShort { periods, needed: PERIODS };
+        let (damping, share) = match unfit {
+            Unfit::TooShort { periods } => (too_short(periods), too_short(periods)),
+            Unfit::Sticks => (Absence::AmplitudeDependent, Absence::Sticks),
+            Unfit::NotModal { share } => (Absence::AmplitudeDependent, Absence::NotModal { share }),
+            Unfit::Settles | Unfit::Elsewhere => (Absence::AmplitudeDependent, Absence::AmplitudeDependent),
+        };
+        let frequency = swings.frequency.ok_or(too_short(swings.periods));
+        Self { amplitude: swings.amplitude, frequency, damping: Err(damping), share: Err(share) }
+    }
+
+    /// The mode with which the record rings, where one could be fitted that is seen for two periods.
+    ///
+    /// # Errors
+    /// [`Absence`] of its damping ratio.
+    pub fn mode(&self) -> Result<Mode, Absence> {
+        let (frequency, damping, share) = (self.frequency.clone()?, self.damping.clone()?, self.share.clone()?);
+        Ok(Mode { amplitude: self.amplitude, frequency, damping, share })
+    }
+}
+
+/// The vibration of a record: of its mode with the most energy, or, where it is not a sum of a few decaying modes, of its swings. With
+/// `near` (Hz), within 25 % of that frequency.
 ///
 /// # Errors
-/// [`Absence`]: nothing oscillates, the record is shorter than two periods, or a few decaying modes do not explain the
-/// motion.
-pub fn fit_mode(signal: &Signal<'_>, near: Option<f64>) -> Result<Mode, Absence> {
+/// [`Absence`]: the record has fewer than 16 values, or what swings does so at another frequency than `near`.
+pub fn vibration(signal: &Signal<'_>, near: Option<f64>) -> Result<Vibration, Absence> {
     if signal.values.len() < VALUES {
         return Err(Absence::TooShort { periods: 0.0, needed: PERIODS });
     }
     let (low, high) = range_of(signal.values);
     let height = high - low;
-    if !height.is_finite() || height <= signal.resolution {
+    if !height.is_finite() {
         return Err(Absence::NoVibration);
+    }
+    if height <= signal.resolution.max(signal.least) {
+        return Ok(Vibration::none());
     }
     // Scaled to about 1, so that squares of nanometres keep far from the smallest numbers.
     let values: Vec<f64> = signal.values.iter().map(|y| (y - low) / height).collect();
-    let signal = Signal { values: &values, resolution: signal.resolution / height, ..*signal };
+    let (resolution, least) = (signal.resolution / height, signal.least / height);
+    let scaled = Signal { values: &values, resolution, least, ..*signal };
+    let unfit = match fitted(&scaled, near) {
+        Ok(Found { mode, periods }) => {
+            let seen = |value: f64| {
+                if periods >= PERIODS { Ok(value) } else { Err(Absence::Damped { periods, needed: PERIODS }) }
+            };
+            return Ok(Vibration {
+                amplitude: mode.amplitude * height,
+                frequency: seen(mode.frequency),
+                damping: seen(mode.damping),
+                share: Ok(mode.share),
+            });
+        }
+        Err(Unfit::Settles) => return Ok(Vibration::none()),
+        Err(unfit) => unfit,
+    };
+    let Some(swings) = Swings::of(&values, scaled.step, hysteresis(&scaled)) else { return Ok(Vibration::none()) };
+    let swings = Swings { amplitude: swings.amplitude * height, ..swings };
+    match (near, swings.frequency, unfit) {
+        (Some(near), _, Unfit::Elsewhere) => Err(Absence::NotThere { frequency: near, share: BAND }),
+        (Some(near), Some(found), _) if (found - near).abs() > BAND * near => {
+            Err(Absence::NotThere { frequency: near, share: BAND })
+        }
+        _ => Ok(Vibration::of_swings(swings, unfit)),
+    }
+}
+
+/// The mode with the most energy in the record; with `near` (Hz), the one with the most energy within 25 % of it.
+///
+/// # Errors
+/// [`Absence`]: nothing oscillates, the record or the oscillation is shorter than two periods, or a few decaying modes do not explain the
+/// motion.
+pub fn fit_mode(signal: &Signal<'_>, near: Option<f64>) -> Result<Mode, Absence> {
+    vibration(signal, near)?.mode()
+}
+
+/// The mode that is fitted to `signal`, a record of height 1.
+fn fitted(signal: &Signal<'_>, near: Option<f64>) -> Result<Found, Unfit> {
     let band = near.map_or((0.0, f64::INFINITY), |near| (near * (1.0 - BAND), near * (1.0 + BAND)));
-    let mut proposed = proposal::frequencies(&signal, band.0, band.1);
+    let mut proposed = proposal::frequencies(signal, band.0, band.1);
     if proposed.is_empty() {
         // A strongly damped mode need not show as a peak.
         proposed.extend(near);
     }
-    let fastest = proposed.iter().copied().reduce(f64::max).ok_or(Absence::NoVibration)?;
-    let series = Series::thinned(&values, signal.start, signal.step, thinning(&signal, fastest), MAX_VALUES);
-    let order = Order::of(&series, &proposed, signal.resolution).ok_or(Absence::NoVibration)?;
-    let mode = dominant::dominant(&order, &series, &signal, near)?;
-    Ok(Mode { amplitude: mode.amplitude * height, ..mode })
+    let fastest = proposed.iter().copied().reduce(f64::max).ok_or(Unfit::NotModal { share: 0.0 })?;
+    let series = Series::thinned(signal.values, signal.start, signal.step, thinning(signal, fastest), MAX_VALUES);
+    let noise = noise::DEVIATIONS * noise::deviation(signal.values) * series.noise_gain();
+    let least = signal.least.max(signal.resolution).max(noise);
+    let order = Order::of(&series, &proposed, least).ok_or(Unfit::NotModal { share: 0.0 })?;
+    dominant::dominant(&order, &series, signal, near, least)
+}
+
+/// Swings of a record are larger than this: what somebody asks for, and what noise reaches from its lowest value to its highest.
+fn hysteresis(signal: &Signal<'_>) -> f64 {
+    signal.least.max(signal.resolution).max(2.0 * noise::DEVIATIONS * noise::deviation(signal.values))
 }
 
 /// The rest position of a record in which `mode` rings: the constant of the least squares fit of a constant and that mode.

@@ -69,6 +69,7 @@ names! {
     MoveTime "move_time" Move TIME "1.35 s" "duration of the longest set-point profile",
     SettlingTime "settling_time" Move TIME "50 ms" "last exit of the load from the window after the end of the profile",
     MoveAndSettlingTime "move_and_settling_time" Move TIME "1.4 s" "longest profile with its settling time",
+    ProgramTime "program_time" Move TIME "3 s" "time from the start of the run until the last target is reached for good",
     Overshoot "overshoot" Move LENGTH "5 um" "largest excursion of the load beyond the target",
     SteadyStateError "steady_state_error" Move LENGTH "1 um" "target minus load position once at rest",
     FollowingErrorPeakMotor "following_error_peak_motor" Run LENGTH "10 um" "largest following error of the motor",
@@ -128,7 +129,27 @@ impl Name {
     /// Whether there is none without a settling window.
     #[must_use]
     pub const fn needs_window(self) -> bool {
-        matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime)
+        matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime)
+    }
+
+    /// Whether it is of what follows a profile, and needs a [basis](crate::Question::basis).
+    #[must_use]
+    pub const fn needs_basis(self) -> bool {
+        matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime | Self::SteadyStateError)
+            || matches!(self.scope(), Scope::AfterMove)
+    }
+
+    /// Whether it is made of the rows of a recording; others are made of the plan.
+    #[must_use]
+    pub const fn is_of_rows(self) -> bool {
+        !matches!(
+            self,
+            Self::MoveTime
+                | Self::SetpointVelocityRatio
+                | Self::SetpointAccelerationRatio
+                | Self::SetpointJerkRatio
+                | Self::SetpointSnapRatio
+        )
     }
 
     /// Whether the sign of the value means a direction. A largest allowed value then bounds the magnitude.

@@ -1,10 +1,13 @@
 //! Settling time, overshoot and what is left at rest: the load against its target.
 use crate::absence::Absence;
+use crate::basis;
+use crate::measure::Question;
 use crate::metric::{MetricSet, MoveMetrics};
 use crate::modal::{Mode, rest_beside};
 use crate::name::Name;
 use crate::span::{Checked, Phase, channel, largest};
 use servobench_signals::Signal;
+use servobench_trace::Ending;
 
 const LOAD: Signal = Signal::LoadPosition;
 /// The load must be seen inside the window for one part in so many of the time after the profile, or it has not settled:
@@ -19,13 +22,15 @@ pub(crate) fn note(
     set: &mut MetricSet,
     recording: &Checked<'_>,
     phase: &Phase<'_>,
-    window: Option<f64>,
-    mode: Option<&Mode>,
+    question: &Question,
+    mode: Option<Mode>,
 ) {
     let made = phase.made;
     let length = made.end - made.start;
     let load = channel(recording, LOAD);
-    let settling = load.clone().and_then(|load| settling_time(recording, load, phase, window));
+    let basis = basis::of(recording, &phase.after, question);
+    let at_rest = load.clone().and_then(|load| basis.map(|()| load));
+    let settling = at_rest.clone().and_then(|load| settling_time(recording, load, phase, question.window));
     let unit = recording.about.axis_unit.as_str();
     set.note(Name::MoveTime, "s", Ok(length));
     set.note(Name::SettlingTime, "s", settling.clone());
@@ -34,11 +39,12 @@ pub(crate) fn note(
     set.note(
         Name::SteadyStateError,
         unit,
-        load.and_then(|load| error_at_rest(load, phase, recording.rate.period(), mode)),
+        at_rest.map(|load| error_at_rest(load, phase, recording.rate.period(), mode)),
     );
 }
 
-/// Notes the worst of `moves`. A move that is followed at once by the next has no time to settle and does not count.
+/// Notes the worst of `moves`. A move that is followed by the next before it can settle does not count, nor one whose way is not larger
+/// than the window.
 pub(crate) fn note_worst(set: &mut MetricSet, recording: &Checked<'_>, moves: &[MoveMetrics]) {
     let unit = recording.about.axis_unit.as_str();
     for (name, unit) in [
@@ -52,6 +58,23 @@ pub(crate) fn note_worst(set: &mut MetricSet, recording: &Checked<'_>, moves: &[
     }
 }
 
+/// Notes when the last target is reached for good, counted from t = 0. Settling ends it, not the end of the profile, and all waits and
+/// earlier moves are in it: of two programs with the same targets the one with the smaller time has done them sooner.
+pub(crate) fn note_program(set: &mut MetricSet, phases: &[Phase<'_>], moves: &[MoveMetrics]) {
+    set.note(Name::ProgramTime, "s", program_time(phases, moves));
+}
+
+fn program_time(phases: &[Phase<'_>], moves: &[MoveMetrics]) -> Result<f64, Absence> {
+    let (Some(phase), Some(last)) = (phases.last(), moves.last()) else { return Err(Absence::NoMove) };
+    if phase.made.ending != Ending::AtRest {
+        return Err(Absence::NoLastTarget { label: phase.made.label.clone() });
+    }
+    match (last.metrics.value(Name::SettlingTime), last.metrics.absence(Name::SettlingTime)) {
+        (Some(settling), _) => Ok(phase.made.end + settling),
+        (None, absence) => Err(absence.cloned().unwrap_or(Absence::NoMove)),
+    }
+}
+
 fn worst(moves: &[MoveMetrics], name: Name) -> Result<f64, Absence> {
     let mut worst = Err(Absence::NoMove);
     for (k, metrics) in moves.iter().map(|made| &made.metrics).enumerate() {
@@ -62,7 +85,11 @@ fn worst(moves: &[MoveMetrics], name: Name) -> Result<f64, Absence> {
                 }
                 worst = Ok(value);
             }
-            (None, Some(Absence::NothingRecorded { .. })) if k + 1 < moves.len() => {}
+            (None, Some(Absence::NothingRecorded { .. } | Absence::RestTooShort { .. })) if k + 1 < moves.len() => {}
+            (None, Some(absence @ Absence::WindowIsTheWay { .. })) if matches!(worst, Err(Absence::NoMove)) => {
+                worst = Err(absence.clone());
+            }
+            (None, Some(Absence::WindowIsTheWay { .. })) => {}
             (None, Some(absence)) => return Err(absence.clone()),
             (None, None) => {}
         }
@@ -78,10 +105,12 @@ fn settling_time(
     window: Option<f64>,
 ) -> Result<f64, Absence> {
     let window = window.ok_or(Absence::NoWindow)?;
-    if phase.after.is_empty() {
-        return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
-    }
     let made = phase.made;
+    let distance = (made.to - made.from).abs();
+    if distance > 0.0 && window >= distance {
+        let (label, unit) = (made.label.clone(), recording.about.axis_unit.clone());
+        return Err(Absence::WindowIsTheWay { label, window, distance, unit });
+    }
     let (period, deviation) = (recording.rate.period(), |row: usize| (load[row] - made.to).abs());
     let Some(outside) = phase.rows().rev().find(|&row| deviation(row) > window) else {
         return Ok(0.0);
@@ -113,11 +142,8 @@ fn overshoot(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
 
 /// Target minus position, mean over the last tenth of the time before the next move. Where a mode rings, over whole periods
 /// of it, and without it: a mean over part of a period would be that of the vibration.
-fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<&Mode>) -> Result<f64, Absence> {
+fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<Mode>) -> f64 {
     let rows = phase.after.clone();
-    if rows.is_empty() {
-        return Err(Absence::NothingRecorded { part: "between the profile and the next move" });
-    }
     let count = rows.len().div_ceil(REST);
     if let Some(mode) = mode {
         let period = 1.0 / (mode.frequency * (1.0 - mode.damping * mode.damping).sqrt() * step);
@@ -125,17 +151,18 @@ fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<&Mode>
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a mode is seen for two periods")]
         let count = ((periods * period).round() as usize).min(rows.len());
         let last: Vec<f64> = load[rows.end - count..rows.end].iter().map(|x| phase.made.to - x).collect();
-        if let Some(rest) = rest_beside(mode, &last, step) {
-            return Ok(rest);
+        if let Some(rest) = rest_beside(&mode, &last, step) {
+            return rest;
         }
     }
     let last = &load[rows.end - count..rows.end];
-    Ok(last.iter().map(|x| phase.made.to - x).sum::<f64>() / count as f64)
+    last.iter().map(|x| phase.made.to - x).sum::<f64>() / count as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::measure;
     use crate::span::phases;
     use crate::synthetic::{Build, planned};
     use core::f64::consts::PI;
@@ -145,7 +172,8 @@ mod tests {
 
     fn of_first(recording: &Recording, window: Option<f64>) -> MetricSet {
         let mut set = MetricSet::default();
-        note(&mut set, &Checked::of(recording), &phases(recording)[0], window, None);
+        let question = Question { window, ..Question::default() };
+        note(&mut set, &Checked::of(recording), &phases(recording)[0], &question, None);
         set
     }
 
@@ -194,7 +222,7 @@ mod tests {
         let recording = after_a_move(|t| ring(t) - 1e-6);
         let mode = Mode { amplitude: 100e-6, frequency: f, damping: zeta, share: 1.0 };
         let mut set = MetricSet::default();
-        note(&mut set, &Checked::of(&recording), &phases(&recording)[0], None, Some(&mode));
+        note(&mut set, &Checked::of(&recording), &phases(&recording)[0], &Question::default(), Some(mode));
         let rest = set.value(Name::SteadyStateError).unwrap();
         // Positions about 1 m are rounded to 1e-16.
         assert!((rest - 1e-6).abs() < 1e-14, "{rest}");
@@ -245,6 +273,37 @@ mod tests {
         }
     }
 
+    /// The load leaves ±10 µm for the last time 0.06·ln 100 s after the end of the second profile, at 2.5 s; what the first one left does
+    /// not count, nor does anything where the last target is not reached or is none.
+    #[test]
+    fn the_program_ends_when_its_last_target_is_reached_for_good() {
+        let run = |after: fn(f64) -> f64, ending: Ending| {
+            let mut last = planned(2.0, 2.5, 1.0, 0.0).made();
+            last.ending = ending;
+            let recording = Build::new(8000, 32_000)
+                .channel(LOAD, "m", move |t| match t {
+                    0.0..1.0 => t,
+                    1.0..2.0 => 1.0 + 1e-3,
+                    2.0..2.5 => 1.0 - 2.0 * (t - 2.0),
+                    _ => after(t - 2.5),
+                })
+                .moves([planned(0.0, 1.0, 0.0, 1.0).made(), last])
+                .finish();
+            let question = Question { window: Some(WINDOW), ..Question::default() };
+            let metrics = measure(&recording, &question);
+            assert!(metrics.moves.iter().all(|made| made.metrics.get(Name::ProgramTime).is_none()));
+            metrics.run
+        };
+        let settles = |t: f64| 1e-3 * (-t / 0.06).exp();
+        let time = run(settles, Ending::AtRest).value(Name::ProgramTime).unwrap();
+        assert!((time - 2.5 - 0.06 * 100_f64.ln()).abs() < 6e-8, "{time}");
+        let off = run(|_| 1e-3, Ending::AtRest);
+        assert!(matches!(off.absence(Name::ProgramTime), Some(Absence::NotSettled { .. })));
+        let moving = run(settles, Ending::InMotion);
+        let words = moving.absence(Name::ProgramTime).map(ToString::to_string);
+        assert_eq!(words.as_deref(), Some("`move to 0 m`, the last move, does not end at rest"));
+    }
+
     #[test]
     fn the_worst_move_stands_for_the_run() {
         let slow = |t: f64| 1e-3 * (-t / 0.08).exp();
@@ -261,7 +320,8 @@ mod tests {
             .iter()
             .map(|phase| {
                 let mut metrics = MetricSet::default();
-                note(&mut metrics, &Checked::of(&recording), phase, Some(WINDOW), None);
+                let question = Question { window: Some(WINDOW), ..Question::default() };
+                note(&mut metrics, &Checked::of(&recording), phase, &question, None);
                 let made = phase.made;
                 MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics }
             })

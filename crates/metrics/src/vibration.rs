@@ -1,8 +1,10 @@
 //! Residual vibration of the load: what is left when the set-point has come to rest.
 use crate::absence::Absence;
+use crate::basis;
 use crate::extremes::range_of;
+use crate::measure::Question;
 use crate::metric::MetricSet;
-use crate::modal::{self, Mode, fit_mode};
+use crate::modal::{self, Mode, Vibration, vibration};
 use crate::name::Name;
 use crate::span::{Checked, Phase, channel, root_mean};
 use servobench_signals::Signal;
@@ -37,7 +39,7 @@ pub(crate) struct Residual {
     peak_to_peak: Result<f64, Absence>,
     rms: Result<f64, Absence>,
     /// `None` when none was looked for.
-    mode: Option<Result<Mode, Absence>>,
+    mode: Option<Result<Vibration, Absence>>,
 }
 
 impl Residual {
@@ -47,23 +49,31 @@ impl Residual {
     }
 
     /// From the end of the profile to the next move. `search` says where a mode is looked for.
-    pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, search: Search) -> Self {
-        Self::over(recording, &phase.after, phase.made.end, phase.made.to, search)
+    pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, search: Search) -> Self {
+        Self::over(recording, &phase.after, phase.made.end, phase.made.to, question, search)
     }
 
-    /// From `time` (s) to the next move.
-    pub(crate) fn from_time(recording: &Checked<'_>, time: f64, search: Search) -> Self {
+    /// From `time` (s) to the next move. The amplitude is that at the end of the profile before it, where nothing has pushed since.
+    pub(crate) fn from_time(recording: &Checked<'_>, time: f64, question: &Question, search: Search) -> Self {
         let start = recording.index_at(time);
         let next = recording.moves.iter().map(|made| recording.index_at(made.start)).find(|row| *row > start);
         let rest = recording.channel(LOAD).and_then(|load| load.last()).copied().unwrap_or_default();
-        Self::over(recording, &(start..next.unwrap_or(recording.len())), time, rest, search)
+        let made = recording.moves.iter().rfind(|made| made.end <= time);
+        let zero = made.map(|made| made.end).filter(|end| !is_pushed(recording, &(recording.index_at(*end)..start)));
+        Self::over(recording, &(start..next.unwrap_or(recording.len())), zero.unwrap_or(time), rest, question, search)
     }
 
     /// Over `rows`, as deviation from `rest` (axis unit), with the amplitude referred to the instant `zero` (s).
-    fn over(recording: &Checked<'_>, rows: &Range<usize>, zero: f64, rest: f64, search: Search) -> Self {
-        let load = match channel(recording, LOAD) {
-            Ok(load) if !rows.is_empty() => &load[rows.clone()],
-            Ok(_) => return Self::absent(&Absence::NothingRecorded { part: "after the profile" }),
+    fn over(
+        recording: &Checked<'_>,
+        rows: &Range<usize>,
+        zero: f64,
+        rest: f64,
+        question: &Question,
+        search: Search,
+    ) -> Self {
+        let load = match channel(recording, LOAD).and_then(|load| basis::of(recording, rows, question).map(|()| load)) {
+            Ok(load) => &load[rows.clone()],
             Err(why) => return Self::absent(&why),
         };
         let (lowest, highest) = range_of(load);
@@ -75,27 +85,47 @@ impl Residual {
         let first = deviation.clone().next().unwrap_or_default();
         let mean = first + deviation.clone().map(|x| x - first).sum::<f64>() / load.len() as f64;
         let period = recording.rate.period();
-        let heard: Vec<f64> = deviation.clone().take(HEARD).collect();
-        let signal = modal::Signal {
-            values: &heard,
-            start: rows.start as f64 * period - zero,
-            step: period,
-            resolution: 8.0 * f64::EPSILON * largest,
+        let mode = match search {
+            Search::Nowhere => None,
+            Search::Everywhere | Search::Near(_) => {
+                let heard: Vec<f64> = deviation.clone().take(HEARD).collect();
+                let signal = modal::Signal {
+                    values: &heard,
+                    start: rows.start as f64 * period - zero,
+                    step: period,
+                    resolution: 8.0 * f64::EPSILON * largest,
+                    least: question.least(),
+                };
+                Some(vibration(&signal, if let Search::Near(frequency) = search { Some(frequency) } else { None }))
+            }
         };
         Self {
             peak_to_peak: Ok(high - low),
             rms: root_mean(deviation.map(|x| (x - mean) * (x - mean)), "after the profile"),
-            mode: match search {
-                Search::Nowhere => None,
-                Search::Everywhere => Some(fit_mode(&signal, None)),
-                Search::Near(frequency) => Some(fit_mode(&signal, Some(frequency))),
-            },
+            mode,
         }
     }
 
-    /// The dominant mode, where there is one.
-    pub(crate) fn mode(&self) -> Option<&Mode> {
-        self.mode.as_ref()?.as_ref().ok()
+    /// The largest of every rest of a program: of peak-to-peak value and of RMS, and the mode with the largest amplitude. A pause that is
+    /// too short to measure does not count; a last rest that is has cut the run short.
+    pub(crate) fn largest(mut all: Vec<Self>) -> Self {
+        let Some(last) = all.pop() else { return Self::absent(&Absence::NoMove) };
+        if let Err(why @ (Absence::RestTooShort { .. } | Absence::NothingRecorded { .. })) = &last.peak_to_peak {
+            return Self::absent(why);
+        }
+        all.into_iter().filter(|rest| rest.peak_to_peak.is_ok()).fold(last, |one, two| Self {
+            peak_to_peak: larger(one.peak_to_peak, two.peak_to_peak, |value| *value),
+            rms: larger(one.rms, two.rms, |value| *value),
+            mode: match (one.mode, two.mode) {
+                (Some(one), Some(two)) => Some(larger(one, two, |found| found.amplitude)),
+                (one, two) => one.or(two),
+            },
+        })
+    }
+
+    /// The dominant mode, where one could be fitted.
+    pub(crate) fn mode(&self) -> Option<Mode> {
+        self.mode.as_ref()?.as_ref().ok()?.mode().ok()
     }
 
     /// Notes the metrics, without those of a mode when none was looked for.
@@ -104,12 +134,30 @@ impl Residual {
         set.note(Name::ResidualVibrationPp, unit, self.peak_to_peak.clone());
         set.note(Name::ResidualVibrationRms, unit, self.rms.clone());
         let Some(mode) = &self.mode else { return };
-        let of_mode = |value: fn(&Mode) -> f64| mode.as_ref().map(value).map_err(Clone::clone);
-        set.note(Name::ResidualVibrationAmplitude, unit, of_mode(|mode| mode.amplitude));
-        set.note(Name::ResidualVibrationFrequency, "Hz", of_mode(|mode| mode.frequency));
-        set.note(Name::ResidualVibrationDamping, "", of_mode(|mode| mode.damping));
-        set.note(Name::ResidualVibrationShare, "", of_mode(|mode| mode.share));
+        let mode = mode.clone();
+        set.note(Name::ResidualVibrationAmplitude, unit, mode.clone().map(|found| found.amplitude));
+        set.note(Name::ResidualVibrationFrequency, "Hz", mode.clone().and_then(|found| found.frequency));
+        set.note(Name::ResidualVibrationDamping, "", mode.clone().and_then(|found| found.damping));
+        set.note(Name::ResidualVibrationShare, "", mode.and_then(|found| found.share));
     }
+}
+
+/// The larger of two, by `size`; one that is absent only where both are.
+fn larger<T>(one: Result<T, Absence>, two: Result<T, Absence>, size: impl Fn(&T) -> f64) -> Result<T, Absence> {
+    match (one, two) {
+        (Ok(one), Ok(two)) => Ok(if size(&two) > size(&one) { two } else { one }),
+        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
+        (Err(why), Err(_)) => Err(why),
+    }
+}
+
+/// Whether an effort from outside changes within `rows`.
+fn is_pushed(recording: &Checked<'_>, rows: &Range<usize>) -> bool {
+    let changes = |signal: Signal| {
+        let values = channel(recording, signal).ok().and_then(|values| values.get(rows.clone()));
+        values.is_some_and(|values| values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits()))
+    };
+    changes(Signal::DisturbanceMotor) || changes(Signal::DisturbanceLoad)
 }
 
 #[cfg(test)]
@@ -130,7 +178,8 @@ mod tests {
         };
         let made = planned(0.0, 0.01, 0.0, 1.0).made();
         let recording = Build::new(rate, HEARD + 8_000).channel(LOAD, "m", position).moves([made]).finish();
-        let residual = Residual::after(&Checked::of(&recording), &phases(&recording)[0], Search::Everywhere);
+        let residual =
+            Residual::after(&Checked::of(&recording), &phases(&recording)[0], &Question::default(), Search::Everywhere);
         let mode = residual.mode().unwrap();
         assert!((mode.frequency - 20.0).abs() < 1e-3 && (mode.amplitude - 1e-6).abs() < 1e-9, "{mode:?}");
         assert!((residual.peak_to_peak.unwrap() - 100e-6).abs() < 1e-9);
@@ -144,7 +193,7 @@ mod tests {
         let checked = Checked::of(&recording);
         let noted = |search| {
             let mut set = MetricSet::default();
-            Residual::after(&checked, &phases(&recording)[0], search).note(&mut set, &checked);
+            Residual::after(&checked, &phases(&recording)[0], &Question::default(), search).note(&mut set, &checked);
             (set.get(Name::ResidualVibrationPp).is_some(), set.get(Name::ResidualVibrationFrequency).is_some())
         };
         assert_eq!([Search::Nowhere, Search::Near(20.0)].map(noted), [(true, false), (true, true)]);

@@ -108,7 +108,7 @@ fn inverse(mut matrix: [[f64; 5]; 5]) -> [[f64; 5]; 5] {
 }
 
 fn fit(values: &[f64], rate: f64, resolution: f64) -> Result<Mode, servobench_metrics::Absence> {
-    fit_mode(&Signal { values, start: 0.0, step: 1.0 / rate, resolution }, None)
+    fit_mode(&Signal { values, start: 0.0, step: 1.0 / rate, resolution, least: 0.0 }, None)
 }
 
 /// Decays of ζ from 0 to 0.1 in records of 2.5 to 60 periods, with noise of 1e-4 to 3 % of the amplitude: frequency and

@@ -143,6 +143,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
             window: measure.window.given().copied(),
             from: measure.from.given().copied(),
             mode: measure.mode.given().copied(),
+            ..Question::default()
         }),
         requirements: requirements?,
         limits,

@@ -2,6 +2,7 @@
 use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
+use crate::question::question;
 use crate::requirements::rules;
 use crate::time_limit::TimeLimit;
 use crate::worker::Workers;
@@ -89,7 +90,7 @@ pub fn execute(
     let recording = selected(recording, &record.channels);
     let wanted = job.metrics();
     let is_wanted = |name| wanted.as_ref().is_none_or(|wanted| wanted.contains(&name));
-    let mut metrics = measure_only(&recording, &job.scenario.measure, &is_wanted);
+    let mut metrics = measure_only(&recording, &question(&job.scenario), &is_wanted);
     // What is measured does not depend on how much of it is kept.
     let recording = match thinned(recording, record.rate) {
         Ok(recording) => recording,

@@ -10,6 +10,7 @@ mod limits;
 mod panicked;
 mod pool;
 mod preview;
+mod question;
 mod requirements;
 mod time_limit;
 mod usage;

@@ -4,13 +4,14 @@ use super::model::{Component, Oscillation, tail};
 use super::order::Order;
 use super::series::Series;
 use super::{BAND, Mode, PERIODS, Signal};
-use crate::absence::Absence;
 use core::f64::consts::PI;
 
 /// Stronger damping is settling, not vibration; stronger growth ends in an error, not in a recording.
 const MAX_DAMPING: f64 = 0.5;
-/// Share of the oscillation that modes must explain.
-const EXPLAINED: f64 = 0.5;
+/// Share of the oscillation that modes must explain where they leave something.
+const EXPLAINED: f64 = 0.9;
+/// The largest value that is left where a mode is one, as a share of its envelope; what leaves more is imitated.
+const IMITATED: f64 = 0.2;
 /// A mode below this share of the record's height is taken for a crumb of its tail.
 const CRUMB: f64 = 1e-7;
 /// A mode larger than this, in heights of the record, is one of several that all but cancel: no vibration anybody sees.
@@ -24,57 +25,88 @@ const STILL: f64 = 0.01;
 /// away an encoder may see nothing.
 const LOUD: f64 = 0.2;
 
+/// A fitted mode.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) mode: Mode,
+    /// Periods before its envelope has fallen to 5 %, as far as the record goes.
+    pub(crate) periods: f64,
+}
+
+/// Why a record has no fitted mode.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Unfit {
+    /// Tails explain it, or nothing is there.
+    Settles,
+    /// The slowest part of it is shorter than two periods.
+    TooShort {
+        /// Periods in the record.
+        periods: f64,
+    },
+    /// It holds still where a mode would move it.
+    Sticks,
+    /// It has modes, but none near the frequency that was given.
+    Elsewhere,
+    /// Modes explain this share of it only.
+    NotModal {
+        /// From 0 to 1.
+        share: f64,
+    },
+}
+
 /// The mode with the most energy in `signal`, a record of height 1, of which `series` was thinned and `order` fitted;
-/// with `near` (Hz), the one with the most energy within [`BAND`].
+/// with `near` (Hz), the one with the most energy within [`BAND`]. Modes that are seen for two periods come before those that die sooner.
+/// Nothing below `least` is a mode.
 ///
 /// # Errors
-/// [`Absence`]: why there is none.
+/// [`Unfit`]: why there is none.
 pub(crate) fn dominant(
     order: &Order,
     series: &Series,
     signal: &Signal<'_>,
     near: Option<f64>,
-) -> Result<Mode, Absence> {
+    least: f64,
+) -> Result<Found, Unfit> {
     let span = signal.values.len() as f64 * signal.step;
-    let periods = |found: Oscillation| found.damped / (2.0 * PI) * span.min(VISIBLE / found.decay.abs());
-    let share = explained(&order.fit, |found| periods(found) >= PERIODS);
-    let mut best: Option<(f64, Mode)> = None;
-    let (mut too_short, mut unconfirmed, mut sticks) = (None::<f64>, false, false);
+    let seen = |found: Oscillation, time: f64| found.damped / (2.0 * PI) * time;
+    let visible = |found: Oscillation| seen(found, span.min(VISIBLE / found.decay.abs()));
+    let share = explained(&order.fit, |found| seen(found, span) >= PERIODS);
+    let mut best: Option<((bool, f64), Found)> = None;
+    let (mut too_short, mut elsewhere) = (None::<f64>, false);
     for (component, coefficients) in order.fit.parts() {
         let Some(found) = vibration(component) else { continue };
         let (frequency, damping) = (found.frequency(), found.damping());
         let amplitude = amplitude(found, coefficients, series);
-        let searched = near.is_none_or(|near| (frequency - near).abs() <= BAND * near);
         let envelope = |t: f64| amplitude * libm::exp(-found.decay * t);
         let largest = envelope(signal.start).max(envelope(signal.start + span));
-        if !(searched && amplitude > signal.resolution.max(CRUMB) && largest < CANCELLING) {
+        if !(largest > least.max(signal.resolution).max(CRUMB) && largest < CANCELLING) {
             continue;
         }
-        if periods(found) < PERIODS {
-            too_short = Some(too_short.map_or(periods(found), |other| other.max(periods(found))));
-        } else if !order.confirms(found) {
-            unconfirmed = true;
+        if seen(found, span) < PERIODS {
+            too_short = Some(too_short.map_or(seen(found, span), |other| other.max(seen(found, span))));
+        } else if near.is_some_and(|near| (frequency - near).abs() > BAND * near) {
+            elsewhere = true;
         } else if stands_still(signal, found, envelope) {
-            sticks = true;
+            return Err(Unfit::Sticks);
+        } else if !order.is_whole && order.fit.peak() > IMITATED * largest {
+            return Err(Unfit::NotModal { share });
         } else {
             // Mean of the squared envelope over the record.
             let energy = amplitude * amplitude * tail(2.0 * found.decay, span, span);
-            if best.is_none_or(|(other, _)| energy > other) {
-                best = Some((energy, Mode { amplitude, frequency, damping, share }));
+            let rank = (visible(found) >= PERIODS, energy);
+            if best.is_none_or(|(other, _)| rank > other) {
+                let mode = Mode { amplitude, frequency, damping, share };
+                best = Some((rank, Found { mode, periods: visible(found) }));
             }
         }
     }
-    match (best, too_short, near) {
-        (Some((_, mode)), ..) if share >= EXPLAINED => Ok(mode),
-        (Some(_), ..) => Err(Absence::NotModal { share }),
-        (None, ..) if sticks => Err(Absence::Sticks),
-        (None, ..) if unconfirmed => Err(Absence::Unconfirmed),
-        (None, Some(periods), _) => Err(Absence::TooShort { periods, needed: PERIODS }),
-        (None, None, Some(near)) => Err(Absence::NotThere { frequency: near, share: BAND }),
-        (None, None, None) if order.fit.energy > CRUMB * CRUMB * series.values.len() as f64 => {
-            Err(Absence::NotModal { share })
-        }
-        (None, None, None) => Err(Absence::NoVibration),
+    match (best, too_short) {
+        (Some((_, found)), _) if order.is_whole || share >= EXPLAINED => Ok(found),
+        (Some(_), _) => Err(Unfit::NotModal { share }),
+        (None, Some(periods)) => Err(Unfit::TooShort { periods }),
+        (None, None) if elsewhere => Err(Unfit::Elsewhere),
+        (None, None) if order.is_whole => Err(Unfit::Settles),
+        (None, None) => Err(Unfit::NotModal { share }),
     }
 }
 

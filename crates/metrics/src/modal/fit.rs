@@ -3,6 +3,7 @@ use super::columns::{Columns, dot};
 use super::least_squares::{Orthonormal, Solution};
 use super::model::Component;
 use super::series::Series;
+use crate::extremes::most_of;
 use std::ops::Range;
 
 /// A constant and components fitted to a series.
@@ -41,13 +42,28 @@ impl Fit {
         self.coefficients[0]
     }
 
-    /// With the one of `candidates` that takes most of what is left.
-    pub(crate) fn with_best_of(&self, candidates: &Candidates, series: &Series) -> Option<Self> {
+    /// Largest magnitude of what is left.
+    pub(crate) fn peak(&self) -> f64 {
+        most_of([&self.residual], |[y]| y.abs())
+    }
+
+    /// The one of `candidates` that takes most of what is left, and how much (sum of squares).
+    pub(crate) fn best_of(&self, candidates: &Candidates) -> Option<(Component, f64)> {
         let Candidates { components, columns } = candidates;
         let gains = self.basis.gains(columns.clone(), components.first()?.width(), &self.residual);
         let gains = components.iter().zip(gains).filter_map(|(one, gain)| Some((*one, gain?)));
-        let (best, _) = gains.reduce(|one, two| if two.1 > one.1 { two } else { one })?;
-        Self::of([self.components.as_slice(), &[best]].concat(), series)
+        gains.reduce(|one, two| if two.1 > one.1 { two } else { one })
+    }
+
+    /// With one component more.
+    pub(crate) fn with(&self, component: Component, series: &Series) -> Option<Self> {
+        Self::of([self.components.as_slice(), &[component]].concat(), series)
+    }
+
+    /// With the one of `candidates` that takes most of what is left.
+    pub(crate) fn with_best_of(&self, candidates: &Candidates, series: &Series) -> Option<Self> {
+        let (best, _) = self.best_of(candidates)?;
+        self.with(best, series)
     }
 
     /// The components with the places of their coefficients.

@@ -8,7 +8,7 @@
 //! to two tails (q < 0, where sine and cosine are hyperbolic): a fit that needs two tails does not end at the border.
 use super::columns::Columns;
 use super::series::Series;
-use super::turns::by_addition;
+use super::turns::{FRESH, by_addition};
 use core::f64::consts::PI;
 
 /// One component beside the constant.
@@ -39,6 +39,8 @@ pub(crate) struct Oscillation {
 
 /// Fastest decay that is told from a jump, per step.
 const FASTEST: f64 = 10.0;
+/// Exponents over a whole series below which an exponential is a straight line with a curvature.
+const STRAIGHT: f64 = 1e-6;
 /// Growth of a tail over the series, as a power of e: tenfold at most. A tail that grows takes over from a drift.
 const TAIL_GROWTH: f64 = 2.3;
 /// The same of an oscillation.
@@ -91,10 +93,7 @@ impl Component {
     /// Adds the columns that the coefficients multiply.
     pub(crate) fn add_to(self, columns: &mut Columns, series: &Series) {
         match self {
-            Self::Tail { rate } => {
-                let length = series.length();
-                columns.push((0..series.values.len()).map(|k| tail(rate, series.time(k), length)));
-            }
+            Self::Tail { rate } => add_tail(rate, columns, series),
             Self::Pair { decay, square } => {
                 let (cosines, sines) = columns.add(2).split_at_mut(series.values.len());
                 let at = |k| pair(decay, square, series.time(k));
@@ -117,7 +116,8 @@ impl Component {
         match self {
             Self::Tail { rate } => {
                 let (b, length) = (coefficients[0], series.length());
-                derivatives.push(times.map(|t| b * tail_by_rate(rate, t, length)));
+                let rows = times.zip(columns.column(first));
+                derivatives.push(rows.map(|(t, y)| b * tail_by_rate(rate, t, length, *y)));
             }
             Self::Pair { decay, square } => {
                 let (a, b) = (coefficients[0], coefficients[1]);
@@ -151,14 +151,34 @@ pub(crate) fn tail(rate: f64, t: f64, length: f64) -> f64 {
     t / length * if u.abs() < 1e-8 { 1.0 - u / 2.0 } else { -libm::expm1(-u) / u }
 }
 
-/// Derivative of [`tail`] by λ: `t²/T·(e^{−u}·(1 + u) − 1)/u²`, u = λt.
-fn tail_by_rate(rate: f64, t: f64, length: f64) -> f64 {
+/// Adds the column of the [`tail`] of `rate`: `e^{−λt} − 1` by the addition theorem `E(s + t) = E(s)·E(t) + E(s) + E(t)`, which keeps
+/// its digits where it is small, with fresh values in between.
+fn add_tail(rate: f64, columns: &mut Columns, series: &Series) {
+    let length = series.length();
+    let count = series.values.len();
+    if (rate * series.time(count)).abs() < STRAIGHT {
+        columns.push((0..count).map(|k| tail(rate, series.time(k), length)));
+        return;
+    }
+    let (step, scale) = (libm::expm1(-rate * series.step), -1.0 / (rate * length));
+    for (group, rows) in columns.add(1).chunks_mut(FRESH).enumerate() {
+        let mut here = libm::expm1(-rate * series.time(group * FRESH));
+        for row in rows {
+            *row = here * scale;
+            here += step * (1.0 + here);
+        }
+    }
+}
+
+/// Derivative of [`tail`], which is `y` there, by λ: `t²/T·(e^{−u}·(1 + u) − 1)/u²`, u = λt.
+fn tail_by_rate(rate: f64, t: f64, length: f64, y: f64) -> f64 {
     let u = rate * t;
     let g = if u.abs() < 1e-3 {
         // Truncated after the cube, whose coefficient is 1/30.
         -0.5 + u * (1.0 / 3.0 - u / 8.0)
     } else {
-        (libm::exp(-u) * (1.0 + u) - 1.0) / (u * u)
+        let decayed = 1.0 - rate * length * y;
+        (decayed * (1.0 + u) - 1.0) / (u * u)
     };
     t * t / length * g
 }

@@ -8,7 +8,6 @@ use super::least_squares::solve_definite;
 use super::model::Component;
 use super::series::Series;
 
-const MAX_STEPS: usize = 60;
 /// Energy that is rounding, relative to that of the series.
 const ROUNDING: f64 = 1e-28;
 
@@ -37,12 +36,13 @@ impl Damping {
 }
 
 impl Fit {
-    /// The same with the poles where the energy is least, as far as steps promise to take the share `worth` of it.
-    pub(crate) fn refined(mut self, series: &Series, worth: f64) -> Self {
-        let rounding = ROUNDING * dot(&series.values, &series.values);
+    /// The same with the poles where the energy is least, as far as steps promise to take the share `worth` of it and more than `least`,
+    /// and there are `fits` left to try them.
+    pub(crate) fn refined(mut self, series: &Series, worth: f64, least: f64, fits: &mut usize) -> Self {
+        let least = least.max(ROUNDING * dot(&series.values, &series.values));
         let mut damping = Damping::START;
-        for _ in 0..MAX_STEPS {
-            match self.improved(series, &mut damping, rounding.max(worth * self.energy)) {
+        while *fits > 0 {
+            match self.improved(series, &mut damping, least.max(worth * self.energy), fits) {
                 Some(better) => self = better,
                 None => break,
             }
@@ -50,8 +50,8 @@ impl Fit {
         self
     }
 
-    /// After one step downhill; `None` when none promises to take more than `least` of the energy.
-    fn improved(&self, series: &Series, damping: &mut Damping, least: f64) -> Option<Self> {
+    /// After one step downhill; `None` when none promises to take more than `least` of the energy, or no fit is left to try one.
+    fn improved(&self, series: &Series, damping: &mut Damping, least: f64, fits: &mut usize) -> Option<Self> {
         let derivatives = self.derivatives(series);
         let count = derivatives.count();
         let curvature: Vec<Vec<f64>> = (0..count)
@@ -72,6 +72,7 @@ impl Fit {
             if promised <= least {
                 return None;
             }
+            *fits = fits.checked_sub(1)?;
             match Self::of(self.moved(&step, series), series) {
                 Some(better) if better.energy < self.energy => {
                     damping.accept((self.energy - better.energy) / promised);

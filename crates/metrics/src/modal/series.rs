@@ -47,6 +47,11 @@ impl Series {
         self.values.len().saturating_sub(1) as f64 * self.step
     }
 
+    /// Of white noise in the record, the standard deviation that is left, as a share.
+    pub(crate) fn noise_gain(&self) -> f64 {
+        self.taps.iter().map(|tap| tap * tap).sum::<f64>().sqrt()
+    }
+
     /// The complex gain (re, im) with which `e^{(−decay + i·frequency)·t}` has passed the window (1/s, rad/s).
     pub(crate) fn gain(&self, decay: f64, frequency: f64) -> (f64, f64) {
         self.taps.iter().enumerate().fold((0.0, 0.0), |(re, im), (j, w)| {

@@ -5,6 +5,7 @@
 use super::turns::{TOGETHER, by_addition};
 use core::f64::consts::PI;
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 use std::cell::RefCell;
 use std::ops::Range;
 
@@ -22,7 +23,7 @@ const EQUAL: f64 = 2e-9;
 /// dies early shows, and a decay has no side lobes that would pass for peaks. Of the position, and of the velocity, in
 /// which a fast mode stands out from a slow one.
 pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> {
-    let length = (2 * values.len()).next_power_of_two();
+    let length = padded(values.len());
     let resolution = 1.0 / (length as f64 * step);
     let inside = |k: usize| (low..=high).contains(&(k as f64 * resolution));
     let mut found: Vec<f64> = Vec::with_capacity(4);
@@ -43,6 +44,13 @@ pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> 
     found
 }
 
+/// Length of the transform of `count` values: at least twice as long, so that a peak is found to a quarter of a cycle, and a power of two
+/// or three times one.
+fn padded(count: usize) -> usize {
+    let power = (2 * count).next_power_of_two();
+    if 3 * power / 4 >= 2 * count && power >= 4 { 3 * power / 4 } else { power }
+}
+
 /// Bin of the highest local maximum of `power × weight` among the `bins` that have at least `least`.
 fn highest(powers: &[f64], bins: Range<usize>, least: f64, weight: impl Fn(usize) -> f64) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
@@ -58,35 +66,70 @@ fn highest(powers: &[f64], bins: Range<usize>, least: f64, weight: impl Fn(usize
     best.filter(|(_, height)| *height > 0.0).map(|(bin, _)| bin)
 }
 
+struct Transforms(RealFftPlanner<f64>);
+
+impl Default for Transforms {
+    fn default() -> Self {
+        Self(RealFftPlanner::new())
+    }
+}
+
+/// Longest transform whose memory is kept for the next one, 2 MB in all.
+const KEPT: usize = 1 << 16;
+
+/// What transforms work with: a suite asks for the same lengths again and again.
+#[derive(Default)]
+struct Bench {
+    transforms: Transforms,
+    under_hann: Vec<f64>,
+    under_half: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+}
+
 thread_local! {
-    /// The transforms that this thread has made: a suite asks for the same length again and again.
-    static PLANNER: RefCell<RealFftPlanner<f64>> = RefCell::new(RealFftPlanner::new());
+    static BENCH: RefCell<Bench> = RefCell::new(Bench::default());
 }
 
 /// Squared magnitudes of the spectra of `values`, padded to `length`, under a Hann window and under its falling half.
 fn windowed(values: &[f64], length: usize) -> [Vec<f64>; 2] {
-    let count = values.len();
-    let transform = PLANNER.with_borrow_mut(|planner| planner.plan_fft_forward(length));
-    let (mut output, mut scratch) = (transform.make_output_vec(), transform.make_scratch_vec());
-    let (mut under_hann, mut under_half) = (transform.make_input_vec(), transform.make_input_vec());
-    let inputs = under_hann.chunks_mut(TOGETHER).zip(under_half.chunks_mut(TOGETHER));
-    let mut first = 0;
-    for ((under_hann, under_half), values) in inputs.zip(values.chunks(TOGETHER)) {
-        let cosines = half_turn(first, values.len(), count);
-        for (((hann, half), y), cos) in under_hann.iter_mut().zip(under_half).zip(values).zip(cosines) {
-            // ½ − ½·cos 2φ and ½ + ½·cos φ.
-            *hann = y * (1.0 - cos * cos);
-            *half = y * (0.5 + 0.5 * cos);
+    BENCH.with_borrow_mut(|bench| {
+        let powers = bench.windowed(values, length);
+        if length > KEPT {
+            *bench = Bench::default();
         }
-        first += values.len();
-    }
-    [under_hann, under_half].map(|mut input| {
-        match transform.process_with_scratch(&mut input, &mut output, &mut scratch) {
+        powers
+    })
+}
+
+impl Bench {
+    fn windowed(&mut self, values: &[f64], length: usize) -> [Vec<f64>; 2] {
+        let Self { transforms: Transforms(planner), under_hann, under_half, output, scratch } = self;
+        let count = values.len();
+        let transform = planner.plan_fft_forward(length);
+        output.resize(length / 2 + 1, Complex::default());
+        scratch.resize(transform.get_scratch_len(), Complex::default());
+        for input in [&mut *under_hann, &mut *under_half] {
+            input.resize(length, 0.0);
+            input[count..].fill(0.0);
+        }
+        let inputs = under_hann.chunks_mut(TOGETHER).zip(under_half.chunks_mut(TOGETHER));
+        let mut first = 0;
+        for ((under_hann, under_half), values) in inputs.zip(values.chunks(TOGETHER)) {
+            let cosines = half_turn(first, values.len(), count);
+            for (((hann, half), y), cos) in under_hann.iter_mut().zip(under_half).zip(values).zip(cosines) {
+                // ½ − ½·cos 2φ and ½ + ½·cos φ.
+                *hann = y * (1.0 - cos * cos);
+                *half = y * (0.5 + 0.5 * cos);
+            }
+            first += values.len();
+        }
+        [under_hann, under_half].map(|input| match transform.process_with_scratch(input, output, scratch) {
             Ok(()) => output.iter().map(|z| z.re * z.re + z.im * z.im).collect(),
             // Lengths are those that the transform asked for; without a spectrum there is no peak.
             Err(_) => Vec::new(),
-        }
-    })
+        })
+    }
 }
 
 /// Cosines of `length` of `count` angles that go evenly through half a turn, each in the middle of its share, from the one at `first` on;

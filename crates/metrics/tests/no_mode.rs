@@ -1,0 +1,152 @@
+//! Motions without a mode: none may be reported, whatever they look like.
+use core::f64::consts::PI;
+use servobench_metrics::{Signal, Vibration, vibration};
+use servobench_testkit::Random;
+
+const RATE: f64 = 8000.0;
+/// Records of each kind; larger by `SERVOBENCH_CASES=3000`.
+const CASES: usize = 125;
+/// Records in a hundred that may have a mode nevertheless.
+const WRONG: usize = 1;
+
+fn cases() -> usize {
+    std::env::var("SERVOBENCH_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(CASES)
+}
+
+/// Of standard deviation 1, nearly normal: the sum of twelve.
+fn normal(random: &mut Random) -> f64 {
+    (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
+}
+
+fn times(seconds: f64) -> impl Iterator<Item = f64> {
+    (0_u32..).map(|k| f64::from(k) / RATE).take_while(move |t| *t < seconds)
+}
+
+/// How a record vibrates in which nobody asks for less than `least`.
+fn of(values: &[f64], least: f64) -> Vibration {
+    let largest = values.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+    let signal = Signal { values, start: 0.0, step: 1.0 / RATE, resolution: 8.0 * f64::EPSILON * largest, least };
+    vibration(&signal, None).unwrap()
+}
+
+#[track_caller]
+fn assert_rare(kind: &str, found: &[Vibration]) {
+    let wrong: Vec<_> = found.iter().filter(|found| found.mode().is_ok()).collect();
+    println!("{kind}: {} of {} have a mode", wrong.len(), found.len());
+    assert!(wrong.len() * 100 <= WRONG * found.len(), "{kind}: {} of {}, {wrong:?}", wrong.len(), found.len());
+}
+
+/// White noise beside a rest or a tail is no vibration at all.
+#[test]
+fn noise() {
+    let mut random = Random::seeded(21);
+    let found: Vec<_> = (0..cases())
+        .map(|_| {
+            let (seconds, size) = (random.between(0.1, 1.0), random.logarithmic(1e-8, 1e-4));
+            let (tail, tau) = (size * random.between(0.0, 30.0), random.between(0.02, 0.3));
+            let values: Vec<f64> =
+                times(seconds).map(|t| tail * (-t / tau).exp() + size * normal(&mut random)).collect();
+            of(&values, 0.0)
+        })
+        .collect();
+    assert_rare("noise", &found);
+    let swings = found.iter().filter(|found| found.amplitude > 0.0).count();
+    assert!(swings * 100 <= found.len(), "{swings} of {}", found.len());
+}
+
+/// A load that wanders as noise through a low pass of second order moves it: it swings, but at no frequency of its own and with no
+/// damping.
+#[test]
+fn wandering() {
+    let mut random = Random::seeded(22);
+    let found: Vec<_> = (0..cases())
+        .map(|_| {
+            let (seconds, pole) = (random.between(0.3, 1.0), 2.0 * PI * random.logarithmic(20.0, 400.0));
+            let share = 1.0 - (-pole / RATE).exp();
+            let (mut one, mut two) = (0.0, 0.0);
+            // From its own past on.
+            let settle = |one: &mut f64, two: &mut f64, y: f64| {
+                *one += share * (y - *one);
+                *two += share * (*one - *two);
+                *two
+            };
+            for _ in 0..4000 {
+                settle(&mut one, &mut two, normal(&mut random));
+            }
+            let values: Vec<f64> = times(seconds).map(|_| settle(&mut one, &mut two, normal(&mut random))).collect();
+            of(&values, 0.0)
+        })
+        .collect();
+    assert_rare("wandering", &found);
+}
+
+/// An encoder's last counts, by chance or as a tail passes through them: four increments are asked for.
+#[test]
+fn counts() {
+    let mut random = Random::seeded(23);
+    let found: Vec<_> = (0..cases())
+        .map(|case| {
+            let (seconds, count) = (random.between(0.1, 1.0), random.logarithmic(1e-8, 1e-5));
+            let (tail, tau) = (random.between(0.0, 40.0), random.between(0.02, 0.3));
+            let hold = random.logarithmic(1e-3, 50e-3);
+            let (mut jitter, mut until) = (0.0, 0.0);
+            let values: Vec<f64> = times(seconds)
+                .map(|t| {
+                    if t >= until {
+                        jitter = if case % 2 == 0 { 0.0 } else { (1.2 * random.signed()).round() };
+                        until = t + hold * random.unit();
+                    }
+                    count * ((tail * (-t / tau).exp()).round() + jitter)
+                })
+                .collect();
+            of(&values, 4.0 * count)
+        })
+        .collect();
+    assert_rare("counts", &found);
+    let swings = found.iter().filter(|found| found.amplitude > 0.0).count();
+    assert!(swings * 100 <= found.len(), "{swings} of {}", found.len());
+}
+
+/// Sticks for a while, slips somewhere, sticks again: at random times and by random ways, or there and back without an end.
+#[test]
+fn stick() {
+    let mut random = Random::seeded(24);
+    let found: Vec<_> = (0..cases())
+        .map(|case| {
+            let (seconds, size) = (random.between(0.3, 1.0), random.logarithmic(1e-8, 1e-5));
+            let slip = random.between(5e-3, 20e-3);
+            let hold = random.between(2.0, 8.0) * slip;
+            let (mut from, mut to, mut begins) = (0.0, random.signed(), hold * random.unit());
+            let values: Vec<f64> = times(seconds)
+                .map(|t| {
+                    if t > begins + slip {
+                        (from, begins) = (to, t + hold * if case % 2 == 0 { 1.0 } else { random.between(0.5, 1.5) });
+                        to = if case % 2 == 0 { -from } else { random.signed() };
+                    }
+                    let u = ((t - begins) / slip).clamp(0.0, 1.0);
+                    size * (from + (to - from) * (0.5 - 0.5 * (PI * u).cos()))
+                })
+                .collect();
+            of(&values, 0.0)
+        })
+        .collect();
+    assert_rare("stick", &found);
+}
+
+/// Up to four aperiodic tails, with a little noise: there is nothing that swings but an overshoot.
+#[test]
+fn tails() {
+    let mut random = Random::seeded(25);
+    let found: Vec<_> = (0..cases())
+        .map(|case| {
+            let (seconds, size) = (random.between(0.2, 1.0), random.logarithmic(1e-8, 1e-4));
+            let tails: Vec<(f64, f64)> =
+                (0..=case % 4).map(|_| (size * random.signed(), seconds * random.logarithmic(0.02, 0.5))).collect();
+            let noise = if case % 2 == 0 { 0.0 } else { size * random.logarithmic(1e-5, 1e-2) };
+            let at = |t: f64| tails.iter().map(|(height, tau)| height * (-t / tau).exp()).sum::<f64>();
+            let values: Vec<f64> = times(seconds).map(|t| at(t) + noise * normal(&mut random)).collect();
+            of(&values, 1e-4 * size)
+        })
+        .collect();
+    assert_rare("tails", &found);
+}
