@@ -1,4 +1,6 @@
 //! What keeps a scenario from being built on an engine, told without running it.
+mod basis;
+
 use crate::engines::Engines;
 use crate::error::{RunError, is_of_the_run};
 use crate::job::Job;
@@ -32,7 +34,8 @@ pub struct Objection {
 pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Objection>, RunError> {
     let engine = engines.get(job.engine)?;
     if !job.runs_in_worker() {
-        return caught(|| objections(&job.scenario, engine, engines.fmu_opener))?;
+        let found = caught(|| objections(&job.scenario, engine, engines.fmu_opener))??;
+        return Ok(if found.is_empty() { basis::objections(job) } else { found });
     }
     match workers.ask(job) {
         // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
@@ -40,8 +43,11 @@ pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Obje
             Ok(vec![Objection::new(model_key(&job.scenario), error.to_string())])
         }
         answer => {
-            let found = answer?;
-            if found.is_empty() { beside(job, engines) } else { Ok(found) }
+            let mut found = answer?;
+            if found.is_empty() {
+                found = beside(job, engines)?;
+            }
+            Ok(if found.is_empty() { basis::objections(job) } else { found })
         }
     }
 }

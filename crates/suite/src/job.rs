@@ -107,21 +107,37 @@ impl Job {
         self.engine.runs_in_worker(kind)
     }
 
+    /// Whether it is measured from rows at `record.rate`, because every tick would take too much memory.
+    pub(crate) fn is_thinned(&self) -> bool {
+        let Some(duration) = self.length() else { return false };
+        is_too_much(duration * f64::from(self.scenario.base_rate.hertz()) + 1.0, self.channels())
+    }
+
+    /// How long it runs (s); `None` where its moves cannot be planned.
+    fn length(&self) -> Option<f64> {
+        self.scenario.duration.or_else(|| Some(run_length(&self.scenario, &Program::new(&self.scenario).ok()?)))
+    }
+
+    /// Channels that it records, at most.
+    fn channels(&self) -> usize {
+        let named = self.scenario.record.channels.len();
+        if named == 0 { most_channels(&self.scenario) } else { named }
+    }
+
     /// Memory that the recording takes (bytes), at most; 0 when the moves cannot be planned and nothing will be recorded.
     #[must_use]
     pub fn memory(&self) -> u64 {
         const VALUE: f64 = size_of::<f64>() as f64;
-        let Scenario { duration, record, base_rate, .. } = &self.scenario;
-        let planned = || Some(run_length(&self.scenario, &Program::new(&self.scenario).ok()?));
-        let Some(duration) = duration.or_else(planned) else {
+        let Scenario { record, base_rate, .. } = &self.scenario;
+        let Some(duration) = self.length() else {
             return 0;
         };
-        let channels = if record.channels.is_empty() { most_channels(&self.scenario) } else { record.channels.len() };
+        let channels = self.channels();
         let rows = |hertz: u32| duration * f64::from(hertz) + 1.0;
         // What is more is in a file.
         let bytes = |hertz: u32| rows(hertz).min(IN_MEMORY as f64) * channels as f64 * VALUE;
         let (every, kept) = (bytes(base_rate.hertz()), bytes(record.rate.hertz()));
-        let bytes = if rows(base_rate.hertz()) * channels as f64 * VALUE > RECORDING_LIMIT * 1e9 {
+        let bytes = if is_too_much(rows(base_rate.hertz()), channels) {
             kept
         } else if record.rate == *base_rate {
             every
@@ -133,6 +149,11 @@ impl Job {
         let bytes = bytes.ceil() as u64;
         bytes
     }
+}
+
+/// Whether so many rows of `channels` are not kept.
+fn is_too_much(rows: f64, channels: usize) -> bool {
+    rows * channels as f64 * size_of::<f64>() as f64 > RECORDING_LIMIT * 1e9
 }
 
 /// How long `scenario` runs with `program` planned (s).

@@ -80,6 +80,7 @@ impl PlannedProgram {
             let key = |metric: &str| format!("program.{index}.limits.{metric}");
             doubts.extend(step.metric_limits.iter().filter_map(|limit| missed(limit, length(made), "the move", key)));
         }
+        doubts.extend(self.window_doubt(scenario));
         let key = |metric: &str| format!("limits.{metric}");
         match self.longest() {
             Some(longest) => {
@@ -109,6 +110,30 @@ impl PlannedProgram {
             None => {}
         }
         doubts
+    }
+}
+
+impl PlannedProgram {
+    /// A window in which the load of the smallest move is before it moves.
+    fn window_doubt(&self, scenario: &Scenario) -> Option<Doubt> {
+        let window = scenario.measure.window?;
+        let distance = |made: &Move| (made.to - made.from).abs();
+        let moved = self.moves.iter().filter(|made| distance(made) > 0.0);
+        let smallest = moved.min_by(|one, two| distance(one).total_cmp(&distance(two)))?;
+        (window >= distance(smallest)).then(|| {
+            let text = |value: f64| self.units.plain(0).text(value);
+            Doubt::new(
+                "measure.window",
+                format!(
+                    "±{} is as large as the way of `{}`, {}: a load that never moved would be inside, so that settling is not \
+                     judged there",
+                    text(window),
+                    smallest.label,
+                    text(distance(smallest))
+                ),
+                "give a smaller window",
+            )
+        })
     }
 }
 
