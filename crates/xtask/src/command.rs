@@ -26,6 +26,11 @@ const COMMANDS: [(&str, &str); 16] = [
         "drill advise",
         "hold an advice against 20 000 set-points and fresh draws (SERVOBENCH_SWEEP: so many times fewer levels)",
     ),
+    (
+        "drill verdicts [--healthy | --proof]",
+        "hold verdicts on 20 000 sabotaged machines, on healthy ones alone, or with each rule switched off, against an oracle \
+         (SERVOBENCH_SWEEP: how many)",
+    ),
     ("dist", "pack binary, library, models and scenarios into one archive"),
 ];
 
@@ -62,6 +67,9 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["drill", "sweep"] => drill::sweep(&Workspace::find()?),
         ["drill", "several"] => drill::several(&Workspace::find()?),
         ["drill", "advise"] => drill::advise(&Workspace::find()?),
+        ["drill", "verdicts"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Pairs),
+        ["drill", "verdicts", "--healthy"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Healthy),
+        ["drill", "verdicts", "--proof"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Proof),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
     }

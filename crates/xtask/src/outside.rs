@@ -87,6 +87,11 @@ impl Outside {
         installed.flat_map(commands).collect()
     }
 
+    /// Whether there is the environment that most of them share.
+    pub(crate) const fn has_common(&self) -> bool {
+        self.pythons[0].is_ok()
+    }
+
     /// Says what is left out, if anything is.
     pub(crate) fn report(&self) {
         for (group, python) in GROUPS.iter().zip(&self.pythons) {
@@ -100,6 +105,11 @@ impl Outside {
     pub(crate) fn failure(self) -> Option<Failure> {
         self.pythons.into_iter().find_map(Result::err)
     }
+}
+
+/// The environment that most of them share, for other programs that need what is in it.
+pub(crate) fn common(workspace: &Workspace) -> Environment {
+    environment(&GROUPS[0], workspace)
 }
 
 /// Where the programs are.

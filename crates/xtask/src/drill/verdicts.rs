@@ -1,0 +1,78 @@
+//! `cargo xtask drill verdicts`: healthy machines and their sabotaged twins, judged by the program and by an oracle outside it.
+//!
+//! The example `twin` of the tests runs machines that no scenario can describe; `tests/twin/verdicts.py` draws them and judges the
+//! verdicts. `docs/testing.md` says what counts as bad and as good.
+use crate::failure::Failure;
+use crate::outside;
+use crate::wheel;
+use crate::workspace::{Workspace, run as run_command};
+use std::process::Command;
+
+/// Pairs by hand, unless `SERVOBENCH_SWEEP` says how many.
+const PAIRS: &str = "20000";
+/// Healthy axes, unless it does.
+const HEALTHY: &str = "2000";
+/// Pairs for each rule that is switched off, unless it does.
+const PROOF: &str = "2000";
+/// Pairs among the tests.
+const PAIRS_IN_TESTS: &str = "400";
+
+/// Which drill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Drill {
+    /// Pairs of twins.
+    Pairs,
+    /// Healthy axes alone.
+    Healthy,
+    /// Pairs of twins with each rule of the verdict switched off in turn.
+    Proof,
+}
+
+/// Runs the drill.
+///
+/// # Errors
+/// [`Failure::Fetch`] when Python's packages cannot be had, else [`Failure`] of the build or of the drill.
+pub(crate) fn run(workspace: &Workspace, drill: Drill) -> Result<(), Failure> {
+    let environment = outside::common(workspace);
+    environment.ensure()?;
+    let library = wheel::MUJOCO.ensure(workspace);
+    run_command(&mut build(workspace, library.is_ok()), 0)?;
+    let (flag, usual) = match drill {
+        Drill::Pairs => ("--pairs", PAIRS),
+        Drill::Healthy => ("--healthy", HEALTHY),
+        Drill::Proof => ("--proof", PROOF),
+    };
+    let size = std::env::var("SERVOBENCH_SWEEP").unwrap_or_else(|_| usual.to_owned());
+    let mut command = judge(workspace, library.is_ok());
+    command.args([flag, &size]);
+    if let Ok(seed) = std::env::var("SERVOBENCH_SEED") {
+        command.args(["--seed", &seed]);
+    }
+    run_command(&mut command, 0)
+}
+
+/// What `cargo xtask test` runs: the build, and few pairs with fixed seeds.
+pub(crate) fn in_tests(workspace: &Workspace, has_mujoco: bool) -> [Command; 2] {
+    let mut command = judge(workspace, has_mujoco);
+    command.args(["--pairs", PAIRS_IN_TESTS]);
+    [build(workspace, has_mujoco), command]
+}
+
+fn build(workspace: &Workspace, has_mujoco: bool) -> Command {
+    let mut build = workspace.cargo(["build", "--release", "--package", "servobench-tests", "--example", "twin"]);
+    if has_mujoco {
+        build.args(["--features", "servobench-tests/mujoco"]);
+    }
+    build
+}
+
+fn judge(workspace: &Workspace, has_mujoco: bool) -> Command {
+    let python = outside::common(workspace).python();
+    let mut command = workspace.command(python, ["-B", "-u", "tests/twin/verdicts.py", "--program"]);
+    command.arg(workspace.target.join("release").join("examples").join("twin"));
+    command.env("LD_LIBRARY_PATH", workspace.native_lib());
+    if has_mujoco {
+        command.arg("--mujoco");
+    }
+    command
+}

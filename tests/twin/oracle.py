@@ -1,0 +1,215 @@
+"""The judge of the judges: by how much a run does not do what its task asks, phase by phase.
+
+Nothing here is taken from the program but positions, velocities and efforts of its runs, the set-point that the healthy twin was given,
+and at which times calls began and ended.
+"""
+
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Any
+
+import numpy
+
+from task import Phase
+
+FEWEST = 16
+"""Rows of a phase, at least."""
+
+
+@dataclass
+class Run:
+    """A run as the oracle sees it."""
+
+    t: numpy.ndarray
+    values: dict[str, numpy.ndarray]
+    signals: dict[str, list[tuple[float, str]]]
+    start: float = 0.0
+    """When its program began (s), which times of phases count from."""
+    offset: float = 0.0
+    """Position of the machine less that of the task, once it has homed."""
+
+    @property
+    def load(self) -> numpy.ndarray:
+        return self.values["load.position"]
+
+    def rises(self, output: str) -> float:
+        """When an output becomes TRUE for the first time; infinite: never."""
+        output, _, wanted = output.partition("=")
+        values = (wanted,) if wanted else ("TRUE", "true", "1")
+        return next((time for time, value in self.signals.get(output, []) if value in values), inf)
+
+    def time(self, of: Any) -> float:
+        """The time of a beginning or an end, at most that of the end of the run."""
+        time = self.rises(of) if isinstance(of, str) else self.start + of
+        return min(time, float(self.t[-1]))
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """What is not seen."""
+
+    window: float
+    """At rests (axis unit)."""
+    increment: float
+    noise: float
+
+    def of(self, phase: Phase) -> float:
+        least = max(10 * self.increment, 5 * self.noise)
+        match phase.kind:
+            case "rest" | "swing":
+                # A window as wide as the way says nothing of an arrival.
+                return max(min(self.window, 0.05 * phase.size), least)
+            case "stand":
+                return max(self.window, least)
+            case "way":
+                return max(0.01 * phase.size, least)
+            case _:
+                return 0.01 * abs(phase.target)
+
+
+@dataclass
+class Settling:
+    """Times that a healthy axis takes."""
+
+    rest: float
+    """A rest has to be so long to be judged (s)."""
+    stand: float
+    """What stands is judged so long after it began (s)."""
+    velocity: float
+    """A velocity is judged that is held so long (s)."""
+
+
+def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling) -> list[float]:
+    """D of each phase: infinite where the run never came to it, not a number where the phase is too short to be judged."""
+    return [deviation(phase, healthy, run, settling) for phase in phases]
+
+
+def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float:
+    begin, end = healthy.time(phase.begin), healthy.time(phase.end)
+    shift = run.start - healthy.start
+    if not isfinite(shift):
+        return inf
+    if phase.kind == "homing":
+        return numpy.nan
+    if isinstance(phase.begin, str):
+        came = run.rises(phase.begin)
+        if not isfinite(came):
+            return inf if isfinite(healthy.rises(phase.begin)) else numpy.nan
+        shift = came - begin
+    if not length_suffices(phase.kind, end - begin, settling):
+        return numpy.nan
+    # Of a phase that the run's end cuts off what is there is judged, if it is the most of it.
+    inside = (run.t >= begin + shift) & (run.t <= end + shift)
+    expected = (end - begin) * len(healthy.t) / max(healthy.t[-1], 1e-9)
+    if inside.sum() < FEWEST or inside.sum() < 0.9 * expected:
+        return inf if run.t[-1] < end + shift - 0.1 * (end - begin) and run.t[-1] < healthy.t[-1] - 1e-6 else numpy.nan
+    t, load = run.t[inside] - shift, run.load[inside] - run.offset
+    match phase.kind:
+        case "way":
+            return float(numpy.max(numpy.abs(load - numpy.interp(t, healthy.t, healthy.values["reference"] - healthy.offset))))
+        case "rest":
+            late = t >= (t[0] + t[-1]) / 2
+            return abs(mean_of_cycles(load[late]) - phase.target)
+        case "swing":
+            return swing(load) / 2
+        case "stand":
+            late = t >= t[0] + settling.stand
+            # Over a bus it stands where it was when its power came.
+            held = healthy.load[(healthy.t >= begin + settling.stand) & (healthy.t <= end)]
+            target = phase.target if healthy.start == 0.0 else float(held.mean()) if len(held) else numpy.nan
+            return float(numpy.max(numpy.abs(load[late] - target))) if late.any() else numpy.nan
+        case "velocity":
+            late = t >= (t[0] + t[-1]) / 2
+            return abs(slope(t[late], load[late]) - phase.target)
+        case "effort":
+            late = t >= (t[0] + t[-1]) / 2
+            return abs(float(numpy.mean(run.values["effort.motor"][inside][late])) - phase.target)
+        case "stop":
+            # Of the velocity at its beginning what is left at its end.
+            late = t >= t[0] + 0.75 * (t[-1] - t[0])
+            return abs(slope(t[late], load[late]))
+    raise ValueError(phase.kind)
+
+
+def swing(x: numpy.ndarray) -> float:
+    """Peak to peak of a swing that goes on: the last quarter has at least two cycles, as large as those of the quarter before; else 0."""
+    quarter = len(x) // 4
+    before, last = x[-2 * quarter : -quarter], x[-quarter:]
+    if quarter < FEWEST:
+        return 0.0
+    middle = (last.max() + last.min()) / 2
+    above = last > middle
+    cycles = int((above[1:] & ~above[:-1]).sum())
+    size = float(last.max() - last.min())
+    return size if cycles >= 2 and size >= 0.9 * float(before.max() - before.min()) else 0.0
+
+
+def goes_on(t: numpy.ndarray, x: numpy.ndarray, since: float, floor: float) -> bool:
+    """Whether a swing about a line grows or stays for ever after a push at `since`."""
+    after = t > since
+    line = numpy.polynomial.Polynomial.fit(t[after], x[after], 1)
+    return swing(x[after] - line(t[after])) > floor
+
+
+def length_suffices(kind: str, length: float, settling: Settling) -> bool:
+    match kind:
+        case "rest" | "swing":
+            return length >= settling.rest
+        case "stand":
+            return length > settling.stand
+        case "velocity" | "effort":
+            return length >= settling.velocity
+    return length > 0
+
+
+def slope(t: numpy.ndarray, x: numpy.ndarray) -> float:
+    """Mean velocity, by least squares."""
+    if len(t) < 2:
+        return numpy.nan
+    s = t - t.mean()
+    return float(s @ (x - x.mean()) / (s @ s))
+
+
+def mean_of_cycles(x: numpy.ndarray) -> float:
+    """Mean over the last whole cycles: between crossings of the mean in the same direction, or of the last fifth where there are none."""
+    middle = (x.max() + x.min()) / 2
+    above = x > middle
+    rises = numpy.flatnonzero(above[1:] & ~above[:-1]) + 1
+    if len(rises) >= 3 and len(x) - rises[-1] < 2 * (rises[-1] - rises[-2]):
+        return float(x[rises[0] : rises[-1]].mean())
+    return float(x[-max(1, len(x) // 5) :].mean())
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Of a sabotaged run."""
+
+    word: str
+    """`bad`, `good` or `between`."""
+    phase: str
+    """The worst one."""
+    share: float
+    """Its D as a share of what is bad."""
+    found: float
+    tolerance: float
+    of_healthy: float
+
+
+def judgement(
+    phases: list[Phase], found: list[float], of_healthy: list[float], spread: list[float], tolerance: Tolerance
+) -> Judgement:
+    """Bad, good, or between both."""
+    word, worst = "good", Judgement("good", "", 0.0, 0.0, 0.0, 0.0)
+    for number, (phase, d, h, s) in enumerate(zip(phases, found, of_healthy, spread)):
+        if numpy.isnan(d) or numpy.isnan(h):
+            continue
+        tol = max(tolerance.of(phase), 4 * s)
+        bad, good = max(8 * h, 4 * tol), max(2 * h, tol)
+        if d > bad:
+            word = "bad"
+        elif d > good and word == "good":
+            word = "between"
+        share = d / bad if bad > 0 else (inf if d > 0 else 0.0)
+        if share >= worst.share:
+            worst = Judgement(word, f"{phase.kind} {number}", share, d, tol, h)
+    return Judgement(word, worst.phase, worst.share, worst.found, worst.tolerance, worst.of_healthy)

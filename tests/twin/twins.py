@@ -1,0 +1,257 @@
+"""Pairs of twins: a healthy machine with its task, and the same with a sabotage. All of it follows from a seed."""
+
+from dataclasses import dataclass, field, replace
+from math import pi
+from pathlib import Path
+from typing import Any
+
+from draws import Random
+from verdict_classes.case import Tree, quantity, toml
+
+import mjcf
+from linear import has_margins
+from machine import Axis, draw_axis, estimate, increment_of, with_motor
+from oracle import Settling, Tolerance
+from sabotages import SABOTAGES, Change, Twin
+from bus_task import BUS, unit_of
+from task import DIRECT, Task, draw_pace, feedforward
+
+PROGRAMS = {**DIRECT, **BUS}
+ENGINES = ("exact", "exact", "exact", "exact", "exact", "rapier", "mujoco")
+NEARLY_THE_SAME = 1 + 1e-9
+"""The mass of a sister."""
+
+
+@dataclass
+class Judge:
+    """What the verdict is told besides, to make it look away."""
+
+    tables: Tree = field(default_factory=dict)
+    """Tables of the file that it judges by."""
+    window: float | None = None
+    lifted: str | None = None
+    note: str = ""
+
+
+@dataclass
+class Pair:
+    """A sabotage of a twin."""
+
+    name: str
+    sabotage: str
+    change: Change
+    judge: Judge | None = None
+
+
+@dataclass
+class Family:
+    """A healthy twin, two sisters, and what was made of it."""
+
+    name: str
+    program: str
+    twin: Twin
+    engine: str
+    tolerance: Tolerance
+    settling: Settling
+    is_mjcf: bool = False
+    pairs: list[Pair] = field(default_factory=list)
+
+
+NOT_BY_MJCF = ("gravity", "end stop moved")
+"""Sabotages that a file of bodies here does not have."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What families are drawn from."""
+
+    programs: list[str]
+    sabotages: list[str]
+    pairs: int
+    """Of each family."""
+    lifts: list[str]
+    """Requirements that a file may lift."""
+    engines: tuple[str, ...]
+    is_coarse: bool = False
+    """Whether encoders are anything from 256 lines to 2^24 counts, and windows as narrow as they allow."""
+
+
+def draw_family(seed: str, drawn: Drawn) -> Family:
+    """The family of a seed."""
+    random = Random(f"twin {seed}")
+    program = random.choice(drawn.programs)
+    axis = draw_stable(random)
+    # A master that feeds forward does so by its own keys.
+    forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
+    pace = draw_pace(random, axis, follows=bool(forward))
+    task = PROGRAMS[program](random, axis, pace)
+    axis, window = with_task(random, axis, task, forward, is_coarse=drawn.is_coarse)
+    duration = round(task.length + random.uniform(0.02, 0.3), 4)
+    tables = task.tables | ({"measure": {"window": quantity(window, axis.unit)}} if window else {})
+    engine = random.choice(drawn.engines)
+    is_mjcf = engine != "exact" and mjcf.can_be(axis) and random.random() < 0.5
+    if is_mjcf:
+        axis = replace(axis, motor=replace(axis.motor, bias=0.0))
+        axis = replace(axis, estimate=estimate(axis))
+    twin = Twin(axis, task, tables, duration)
+    tolerance = Tolerance(window or 0.01 * task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise)
+    family = Family(seed, program, twin, engine, tolerance, settling(axis), is_mjcf)
+    number = 0
+    while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
+        # A seed for each, so that one more kind of sabotage leaves the others as they are.
+        of_pair = Random(f"pair {seed} {number}")
+        name = of_pair.choice(drawn.sabotages)
+        change = SABOTAGES[name](of_pair, twin)
+        if change is not None and not (is_mjcf and name in NOT_BY_MJCF):
+            family.pairs.append(Pair(f"{seed}.{number}", name, change, draw_judge(of_pair, twin, drawn.lifts)))
+        number += 1
+    return family
+
+
+def draw_stable(random: Random) -> Axis:
+    """An axis with margins."""
+    while True:
+        axis = draw_axis(random)
+        # Nothing that is drawn later changes its loop but the motor, whose resistance and inductance hardly do.
+        probe = with_motor(random, axis, 0.1 * axis.r, 1.0) if axis.pmsm else axis
+        if has_margins(probe):
+            return axis
+
+
+def draw_judge(random: Random, twin: Twin, lifts: list[str]) -> Judge | None:
+    """Now and then something that would make a verdict look away: a wide window, a late look, few rows, a requirement that is lifted."""
+    kind = random.choice(("window", "from", "rate", "lift")) if random.random() < 0.2 else None
+    measure = dict(twin.tables.get("measure", {}))
+    match kind:
+        case "lift" if not lifts:
+            return None
+        case "window":
+            window = twin.task.span * random.decades(-2, 0)
+            return Judge({"measure": measure | {"window": quantity(window, twin.axis.unit)}}, window=window, note=f"window {window:.3g}")
+        case "from":
+            return Judge({"measure": measure | {"from": quantity(0.95 * twin.duration, "s")}}, note="measured from the end")
+        case "rate":
+            return Judge({"record": {"rate": f"{twin.axis.base // 400} Hz"}}, note="few rows")
+        case "lift":
+            name = random.choice(lifts)
+            return Judge({"requirements": {name: False}}, lifted=name, note=f"{name} lifted")
+    return None
+
+
+def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coarse: bool) -> tuple[Axis, float | None]:
+    """The axis with everything that depends on its task: gravity, friction, encoder, motor; and the window."""
+    bare = axis.total * task.acceleration / axis.r
+    motor = axis.motor
+    # A torque is not held against them.
+    if task.name != "torque" and random.random() < 0.4:
+        motor = replace(motor, coulomb=bare * random.decades(-2, -0.5))
+    if task.name != "torque" and (random.random() < 0.4 or task.name.startswith("hold")):
+        bias = bare * random.decades(-1, 0)
+        # Points for a buffer count from where an axis has sagged to before it had power.
+        motor = replace(motor, bias=random.sign() * (min(bias, 0.8 * motor.coulomb) if task.name == "ip" else bias))
+    axis = replace(axis, motor=motor, feedforward=forward, objects=task.objects, switches=task.switches)
+    increment = None if random.random() < 0.3 else task.span * random.decades(-6.5, -4)
+    if is_coarse:
+        # Counts of a revolution; of a linear motor of 20 mm.
+        increment = (2 * pi if axis.rotary_motor else 0.02) * axis.r * random.decades(-7.2, -3.1)
+    noise = increment is not None and random.random() < 0.2
+    if increment is not None:
+        axis = replace(axis, increment=increment_of(axis, increment / axis.r), noise=increment * random.uniform(0.2, 2) / axis.r if noise else 0.0)
+    if not is_coarse and axis.increment is not None:
+        # What the edges and the noise make of the effort stays below a tenth of what there is.
+        edge = axis.velocity_gain * (axis.increment + 2 * axis.noise) * axis.base / axis.velocity_every
+        finer = min(1.0, 0.1 * axis.effort(task.velocity, task.acceleration) / edge)
+        axis = replace(axis, increment=increment_of(axis, finer * axis.increment), noise=finer * axis.noise)
+    axis = replace(axis, seed=random.randint(1, 1000))
+    axis = with_motor(random, axis, task.velocity, axis.effort(task.velocity, task.acceleration))
+    if is_coarse:
+        return axis, max(10 * axis.grain, 10 * unit_of(task.span), task.span * random.decades(-4.5, -2))
+    window = None if random.random() < 0.25 else max(20 * axis.grain, task.span * random.decades(-4, -2))
+    return axis, window
+
+
+def settling(axis: Axis) -> Settling:
+    """By the slowest time constants that its gains make."""
+    slow = 2 / axis.position_gain if axis.integral_time is None else max(2 / axis.position_gain, 2 * axis.integral_time)
+    return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=5 * slow)
+
+
+def tree(family: Family, axis: Axis, tables: Tree | None = None) -> Tree:
+    """The scenario of a machine that does the task of the family."""
+    whole = axis.tables() | family.twin.tables | (tables or {})
+    whole["run"] = whole["run"] | {"duration": quantity(family.twin.duration, "s")}
+    return whole
+
+
+def put(path: Path, family: Family, axis: Axis, whole: Tree, note: str = "") -> None:
+    """Writes a scenario, and beside it the bodies where they are a file of their own."""
+    if family.is_mjcf:
+        xml = path.with_suffix(".xml")
+        xml.write_text(mjcf.text(axis))
+        whole = whole | {"axis": mjcf.table(axis, xml.name) | ({"switches": axis.switches} if axis.switches else {})}
+    path.write_text((f"# {note}\n" if note else "") + toml(whole))
+
+
+def sisters(family: Family) -> list[Axis]:
+    """The healthy machine with another seed, and with a mass that is next to the same."""
+    axis = family.twin.axis
+    heavier = replace(axis, motor=replace(axis.motor, inertia=NEARLY_THE_SAME * axis.motor.inertia))
+    return [replace(axis, seed=axis.seed + 1000), heavier]
+
+
+def write(folder: Path, family: Family) -> list[dict[str, Any]]:
+    """Writes the scenarios of a family; the jobs that run them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in family.twin.task.files.items():
+        (folder / name).write_text(text)
+    jobs = []
+
+    def job(name: str, axis: Axis, change: Change | None = None, judge: Judge | None = None) -> None:
+        file = folder / f"{name}.toml"
+        tables = change.tables if change else None
+        put(file, family, axis, tree(family, axis, tables), f"{change.note} {change.hooks or ''}" if change else "")
+        one = {"id": f"{family.name}/{name}", "run": str(file), "judge": str(folder / "healthy.toml"), "engine": family.engine}
+        one |= {"rows": str(folder / f"{name}.f64"), "channels": channels(family), "every": every(family)}
+        if change is not None and change.then is not None:
+            then = folder / f"{name}-then.toml"
+            put(then, family, change.then, tree(family, change.then, tables), f"from {change.at} s on")
+            one |= {"then": str(then), "at": change.at}
+        if change is not None and change.hooks:
+            one["sabotage"] = change.hooks
+        if judge is not None:
+            by = folder / f"{name}-judge.toml"
+            put(by, family, family.twin.axis, tree(family, family.twin.axis, judge.tables), judge.note)
+            one["judge"] = str(by)
+        jobs.append(one)
+
+    job("healthy", family.twin.axis)
+    for number, axis in enumerate(sisters(family)):
+        job(f"sister-{number}", axis)
+    for pair in family.pairs:
+        job(pair.name, pair.change.axis, pair.change, pair.judge)
+    return jobs
+
+
+def write_longer(folder: Path, family: Family, pair: Pair) -> dict[str, Any]:
+    """A run of a sabotaged machine that is four times as long, with a push at the end of its task; the job."""
+    axis, duration = pair.change.axis, family.twin.duration
+    name, effort = f"{pair.name}-longer", "torque" if axis.rotary_motor else "force"
+    push = {"on": "motor", "start": quantity(duration, "s"), "duration": "2 ms", effort: quantity(0.2 * axis.limit, axis.effort_unit)}
+    whole = tree(family, axis, pair.change.tables) | {"disturbance": [push]}
+    whole["run"] = whole["run"] | {"duration": quantity(4 * duration, "s")}
+    put(folder / f"{name}.toml", family, axis, whole)
+    job = {"id": f"{family.name}/{name}", "run": str(folder / f"{name}.toml"), "engine": family.engine, "rows": str(folder / f"{name}.f64")}
+    job |= {"channels": [*channels(family), "motor.position"], "every": every(family), "sabotage": pair.change.hooks}
+    if pair.change.then is not None:
+        job |= {"then": str(folder / f"{pair.name}-then.toml"), "at": pair.change.at}
+    return job
+
+
+def channels(family: Family) -> list[str]:
+    bus = ["bus.position"] if family.twin.task.is_bus else []
+    return ["load.position", "reference.position", "setpoint.position", "effort.motor", *bus]
+
+
+def every(family: Family) -> int:
+    """Of so many ticks one row: about two in a millisecond."""
+    return max(1, family.twin.axis.base // 2000)

@@ -1,0 +1,330 @@
+"""Verdicts of sabotaged machines against an oracle of our own: nothing bad is green, nothing good is red.
+
+A healthy machine is drawn with a task, and sabotaged. The example `twin` runs both and judges the sabotaged one by the file of the healthy
+one, so that every tolerance comes from there. By how much it does not do its task says `oracle.py`. See docs/testing.md.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field, replace
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "outside"))
+
+import numpy
+
+from bus_task import ENABLED
+from linear import is_stable
+from oracle import Judgement, Run, deviations, goes_on, judgement
+from sabotages import SABOTAGES
+from task import Phase, Task
+from twins import ENGINES, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
+
+MOST_OF_MOVE = 0.1
+"""A healthy machine that is off by more of its move is left out."""
+MOST_DISCARDED = 0.1
+CHUNK = 20
+"""So many families are run at a time: their recordings are thrown away before the next are made."""
+EXCUSED = ("stable", "rings")
+"""Requirements that are broken by a swing about what was asked for."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A pair that does its task and is red by `stable` or `rings` alone."""
+
+    folder: Path
+    family: Family
+    pair: Pair
+    line: str
+
+
+@dataclass
+class Tally:
+    """What came of the pairs."""
+
+    families: int = 0
+    discarded: int = 0
+    cells: dict[tuple[str, str], Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
+    lines: list[str] = field(default_factory=list)
+    kinds: Counter[str] = field(default_factory=Counter)
+    checks: list[Check] = field(default_factory=list)
+    by_swing: Counter[str] = field(default_factory=Counter)
+
+    def note(self, kind: str, line: str) -> None:
+        self.kinds[kind] += 1
+        self.lines.append(f"{kind}: {line}")
+
+
+class Runner:
+    """The example `twin`, which runs and judges."""
+
+    def __init__(self, program: Path, without: list[str]) -> None:
+        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.without = without
+
+    def results(self, jobs: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+        """Of all jobs, by their names."""
+        lines = "".join(json.dumps(job | ({"without": self.without} if self.without else {})) + "\n" for job in jobs)
+
+        def give() -> None:
+            self.process.stdin.write(lines)
+            self.process.stdin.flush()
+
+        giver = threading.Thread(target=give)
+        giver.start()
+        found = {}
+        for _ in jobs:
+            one = json.loads(self.process.stdout.readline())
+            found[one["id"]] = one
+        giver.join()
+        return found
+
+    def end(self) -> None:
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def run_of(path: Path, outcome: dict[str, Any], task: Task) -> Run:
+    """Of a result and the rows that were written for it."""
+    names = outcome["channels"]
+    rows = numpy.fromfile(path).reshape(-1, max(1, len(names)))
+    values = {name: rows[:, number] for number, name in enumerate(names)}
+    values["reference"] = values.get("reference.position", values["setpoint.position"])
+    run = Run(numpy.arange(len(rows)) / outcome["rate"], values, outcome["signals"])
+    if task.is_bus:
+        # The first cycle of the task in which its power is on.
+        run.start = run.rises(ENABLED)
+    if task.name == "homing" and isfinite(run.rises("move.Active")):
+        at = numpy.searchsorted(run.t, run.rises("move.Active"))
+        run.offset = float((values["load.position"] - values["bus.position"])[max(0, min(at, len(run.t)) - 1)])
+    return run
+
+
+def begun(phases: list[Phase], healthy: Run) -> float:
+    """When the program of moves began by the set-point of the healthy twin: from the middle of the first way."""
+    way = next(phase for phase in phases if phase.kind == "way")
+    reference = healthy.values["reference"]
+    passed = numpy.flatnonzero(abs(reference - reference[0]) >= 0.5 * way.size)
+    middle = healthy.t[passed[0]] if len(passed) else inf
+    return float(middle - (way.begin + way.end) / 2)
+
+
+def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]], tally: Tally) -> bool:
+    """Compares the verdicts of a family with the oracle; whether all were right."""
+    tally.families += 1
+    phases = family.twin.task.phases
+
+    def result(name: str) -> dict[str, Any]:
+        return results[f"{family.name}/{name}"]
+
+    late = 0.0
+
+    def run(name: str) -> Run:
+        found = run_of(folder / f"{name}.f64", result(name)["outcome"], family.twin.task)
+        found.start += late
+        return found
+
+    for name in ("healthy", "sister-0", "sister-1"):
+        if "error" in result(name):
+            tally.note("not run", f"{folder / name}.toml: {result(name)['error'][:600]}")
+            return False
+    healthy = run("healthy")
+    # The program begins a few cycles after power: when the set-point passes the middle of its first way.
+    late = begun(phases, healthy) - healthy.start if family.twin.task.is_bus and not family.twin.task.tables.get("call") else 0.0
+    healthy.start += late
+    of_healthy = deviations(phases, healthy, healthy, family.settling)
+    of_sisters = [deviations(phases, healthy, run(f"sister-{number}"), family.settling) for number in (0, 1)]
+    spread = [float(numpy.nanmax([abs(s - h) for s in (*others,)] or [0])) for h, *others in zip(of_healthy, *of_sisters)]
+    sizes = [phase.size or family.twin.task.span for phase in phases]
+    if any(d > MOST_OF_MOVE * size for d, size, phase in zip(of_healthy, sizes, phases) if phase.kind in ("way", "rest", "stand")):
+        tally.discarded += 1
+        return True
+    right = True
+    outcome = result("healthy")["outcome"]
+    if not outcome["passed"]:
+        right = False
+        tally.note("healthy is red", f"{folder}/healthy.toml [{family.program}, {family.engine}]\n    {'; '.join(outcome['reasons'])[:400]}")
+    for pair in family.pairs:
+        of_pair = result(pair.name)
+        cell = tally.cells[family.program, pair.sabotage]
+        if "error" in of_pair:
+            cell["error"] += 1
+            tally.note("not run", f"{folder / pair.name}.toml [{pair.sabotage}]: {of_pair['error'][:400]}")
+            right = False
+            continue
+        outcome = of_pair["outcome"]
+        found = deviations(phases, healthy, run(pair.name), family.settling)
+        tolerance = family.tolerance
+        if pair.judge is not None and pair.judge.window is not None:
+            tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window))
+        judged = judgement(phases, found, of_healthy, spread, tolerance)
+        if outcome["ended"]:
+            judged = Judgement("bad", "ended", numpy.inf, 0, 0, 0)
+        cell[judged.word] += 1
+        kind = wrong(judged, outcome, pair)
+        if kind:
+            right = False
+            cell[kind] += 1
+            looks_away = f", {pair.judge.note}" if pair.judge else ""
+            where = f"{folder / pair.name}.toml [{family.program}, {pair.sabotage}, {family.engine}] {pair.change.note}{looks_away}"
+            told = f"D {judged.found:.4g} at {judged.phase}, healthy {judged.of_healthy:.3g}, tol {judged.tolerance:.3g}"
+            line = f"{where}\n    {told}; {'; '.join(outcome['reasons'])[:300]}"
+            if kind == "to be checked":
+                tally.checks.append(Check(folder, family, pair, line))
+            else:
+                tally.note(kind, line)
+    return right
+
+
+def settle_checks(runner: Runner, tally: Tally) -> None:
+    """A red by a swing is right where the linear loop is unstable, or where a run four times as long grows or goes on after a push."""
+    waiting, jobs = [], []
+    for check in tally.checks:
+        family, change = check.family, check.pair.change
+        if not change.hooks and change.then is None and not change.tables and not is_stable(change.axis):
+            tally.by_swing["unstable by its eigenvalues"] += 1
+            continue
+        waiting.append(check)
+        jobs.append(write_longer(check.folder, family, check.pair))
+    results = runner.results(jobs)
+    for check, job in zip(waiting, jobs):
+        result = results[job["id"]]
+        axis, pushed = check.family.twin.axis, check.family.twin.duration
+        if "error" in result or result["outcome"]["ended"]:
+            tally.by_swing["diverges in a longer run"] += 1
+            continue
+        run = run_of(Path(job["rows"]), result["outcome"], check.family.twin.task)
+        floor = max(4 * axis.r * (axis.increment or 0.0), 5 * axis.r * axis.noise, 1e-7 * check.family.twin.task.span)
+        if any(goes_on(run.t, run.values[name], pushed + 0.01, floor) for name in ("motor.position", "load.position")):
+            tally.by_swing["grows or goes on in a longer run"] += 1
+        else:
+            tally.cells[check.family.program, check.pair.sabotage]["false red"] += 1
+            tally.note("false red", check.line)
+    tally.checks.clear()
+
+
+def wrong(judged: Judgement, outcome: dict[str, Any], pair: Pair) -> str | None:
+    """What is wrong about a verdict, if anything is."""
+    if outcome["passed"]:
+        # What a lift lets pass is said.
+        is_said = pair.judge is not None and any(why.startswith(f"{pair.judge.lifted}:") for why in outcome["reasons"])
+        return "false green" if judged.word == "bad" and not is_said else None
+    broken = {name for name, standing in outcome["standing"].items() if standing == "broken"}
+    if judged.word != "good" or pair.change.harms:
+        return None
+    if broken and broken <= set(EXCUSED):
+        return "to be checked"
+    return "false red"
+
+
+def report(tally: Tally) -> None:
+    """By program and by sabotage."""
+    words = ("bad", "good", "between", "false green", "false red", "to be checked", "error")
+    for title, index in (("program", 0), ("sabotage", 1)):
+        sums: dict[str, Counter[str]] = defaultdict(Counter)
+        for cell, counts in tally.cells.items():
+            sums[cell[index]].update(counts)
+        print(f"\n{title:18} {'pairs':>6} " + " ".join(f"{word:>13}" for word in words))
+        for name in sorted(sums):
+            of = sums[name]
+            pairs = of["bad"] + of["good"] + of["between"]
+            idle = ""
+            if index == 1 and pairs >= 40 and (of["bad"] < 0.3 * pairs or of["good"] < 0.2 * pairs):
+                idle = "  idle: another range"
+            print(f"{name:18} {pairs:>6} " + " ".join(f"{of[word]:>13}" for word in words) + idle)
+    print(f"\nred by a swing, rightly: {dict(tally.by_swing)}")
+    print(f"{tally.families} healthy machines, {tally.discarded} discarded; {dict(tally.kinds)}")
+
+
+def options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=Path, required=True, help="the example `twin`")
+    parser.add_argument("--mujoco", action="store_true", help="it has the engine `mujoco`")
+    parser.add_argument("--pairs", type=int, default=400)
+    parser.add_argument("--each", type=int, default=5, help="pairs of a healthy machine")
+    parser.add_argument("--healthy", type=int, help="so many healthy axes alone")
+    parser.add_argument("--proof", type=int, help="so many pairs with each requirement switched off in turn")
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--only", help="a family, by its seed: its files are kept")
+    parser.add_argument("--programs", nargs="*", default=list(PROGRAMS))
+    parser.add_argument("--sabotages", nargs="*", default=list(SABOTAGES))
+    parser.add_argument("--keep", type=Path, help="where the scenarios of wrong verdicts go")
+    parser.add_argument("--lines", type=int, default=40, help="wrong verdicts that are shown, of each kind")
+    return parser.parse_args()
+
+
+def sweep(given: argparse.Namespace, pairs: int, without: list[str], room: Path) -> Tally:
+    """So many pairs, judged with some requirements switched off."""
+    tally, runner = Tally(), Runner(given.program, without)
+    count = given.healthy or -(-pairs // given.each)
+    names = [given.only] if given.only else [f"{given.seed}-{number}" for number in range(count)]
+    drawn = Drawn(
+        programs=given.programs,
+        sabotages=given.sabotages,
+        pairs=0 if given.healthy else given.each,
+        lifts=[] if given.proof else requirements(given.program),
+        engines=ENGINES if given.mujoco else ENGINES[:-1],
+        is_coarse=bool(given.healthy),
+    )
+    for first in range(0, len(names), CHUNK):
+        families = [draw_family(name, drawn) for name in names[first : first + CHUNK]]
+        jobs = [job for family in families for job in write(room / family.name, family)]
+        results = runner.results(jobs)
+        right = {family.name: judge_family(room / family.name, family, results, tally) for family in families}
+        settle_checks(runner, tally)
+        for name, is_right in right.items():
+            for file in (room / name).iterdir():
+                if not given.only and (is_right or file.suffix == ".f64"):
+                    file.unlink()
+            if not any((room / name).iterdir()):
+                (room / name).rmdir()
+    runner.end()
+    return tally
+
+
+def requirements(program: Path) -> list[str]:
+    """The names of all of them."""
+    return subprocess.run([program, "--requirements"], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+
+
+def proof(given: argparse.Namespace, room: Path) -> int:
+    """With any requirement switched off something bad passes; one if not."""
+    missing = 0
+    for name in requirements(given.program):
+        tally = sweep(given, given.proof, [name], room)
+        print(f"without {name:12} {tally.kinds['false green']:>5} false greens")
+        for line in [line for line in tally.lines if line.startswith("false green")][:2]:
+            print(f"    {line}")
+        missing += tally.kinds["false green"] == 0
+    return 1 if missing else 0
+
+
+def main() -> int:
+    """Draws, runs, judges; one if any verdict is wrong."""
+    given, begun = options(), time.monotonic()
+    room = given.keep or Path(tempfile.mkdtemp(prefix="servobench-twins-"))
+    print(f"seed {given.seed}")
+    if given.proof:
+        return proof(given, room)
+    tally = sweep(given, given.pairs, [], room)
+    for kind in ("not run", "healthy is red", "false green", "false red"):
+        for line in [line for line in tally.lines if line.startswith(kind + ":")][: given.lines]:
+            print(line)
+    report(tally)
+    print(f"{time.monotonic() - begun:.1f} s; files of wrong verdicts are in {room}, and a family comes again with --only")
+    return 1 if tally.kinds or tally.discarded > MOST_DISCARDED * tally.families else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
