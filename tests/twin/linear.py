@@ -84,8 +84,8 @@ def current_loop(axis: Axis, z: numpy.ndarray, k: int, n: int, motor: int) -> nu
     current, integral, pending, out, last = range(n + 5, n + 10)
     if k % axis.current_every == 0:
         z[out] = z[pending]
-        error = z[n + 3] / p.constant - z[current]
-        z[pending] = gain * error + z[integral] + flux * z[n]
+        error = z[n + 3] / p.believed - z[current]
+        z[pending] = gain * error + z[integral] + p.believed / 1.5 * z[n]
         z[integral] = z[integral] + hc * p.bandwidth * p.resistance * error
     mean_speed = 1.5 * speed - 0.5 * z[last]
     z[last] = speed

@@ -32,7 +32,9 @@ class Pmsm:
     resistance: float
     inductance: float
     constant: float
-    """Torque per peak ampere, which drive and motor agree on."""
+    """Torque per peak ampere."""
+    believed: float
+    """What the drive takes it for."""
     dc_link: float
     bandwidth: float
     extras: Tree = field(default_factory=dict)
@@ -162,7 +164,7 @@ class Axis:
                 "inductance": quantity(p.inductance, "H"),
                 "flux_linkage": quantity(p.constant / (1.5 * p.pole_pairs), "V s"),
                 "inertia": quantity(0.5 * self.motor.inertia, "kg m2"),
-                "max_current": quantity(1.2 * self.limit / p.constant, "Apk"),
+                "max_current": quantity(1.2 * self.limit / p.believed, "Apk"),
             }
         return table | ({"encoder": encoder} if encoder else {})
 
@@ -185,6 +187,9 @@ class Axis:
         }
         if self.believed_lead is not None:
             drive["estimate"]["lead"] = quantity(self.believed_lead, "m")
+        if self.pmsm is not None and self.pmsm.believed != self.pmsm.constant:
+            flux = self.pmsm.believed / (1.5 * self.pmsm.pole_pairs)
+            drive["estimate"]["motor"] = {"flux_linkage": quantity(flux, "V s")}
         if self.feedforward:
             drive["feedforward"] = self.feedforward
         if self.objects:
@@ -284,7 +289,7 @@ def draw_axis(random: Random) -> Axis:
     )
     if not pmsm:
         return axis
-    return replace(axis, pmsm=Pmsm(random.randint(2, 5), 0.0, 0.0, 0.0, 0.0, 2 * pi * base / current / 25))
+    return replace(axis, pmsm=Pmsm(random.randint(2, 5), 0.0, 0.0, 0.0, 0.0, 0.0, 2 * pi * base / current / 25))
 
 
 def with_motor(random: Random, axis: Axis, velocity: float, needed: float) -> Axis:
@@ -302,5 +307,5 @@ def with_motor(random: Random, axis: Axis, velocity: float, needed: float) -> Ax
     inductance = resistance * random.uniform(3e-3, 8e-3)
     peak = 1.2 * axis.limit / constant
     voltage = emf + resistance * peak + inductance * peak * (speed + 0.15 * p.bandwidth)
-    motor = replace(p, resistance=resistance, inductance=inductance, constant=constant, dc_link=sqrt(3) * 1.5 * voltage)
+    motor = replace(p, resistance=resistance, inductance=inductance, constant=constant, believed=constant, dc_link=sqrt(3) * 1.5 * voltage)
     return replace(axis, pmsm=motor)

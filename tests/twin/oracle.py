@@ -157,8 +157,10 @@ def length_suffices(kind: str, length: float, settling: Settling) -> bool:
             return length >= settling.rest
         case "stand":
             return length > settling.stand
-        case "velocity" | "effort":
+        case "velocity":
             return length >= settling.velocity
+        case "effort":
+            return length >= 0.05
     return length > 0
 
 

@@ -50,13 +50,22 @@ class Twin:
         return self.axis.effort(self.task.velocity, self.task.acceleration)
 
 
-def torque_constant(random: Random, twin: Twin) -> Change:
+def torque_constant(random: Random, twin: Twin) -> Change | None:
     factor, at = random.decades(-2, 0), twin.when(random)
+    motor = twin.axis.pmsm
+    if motor is not None:
+        weak = replace(motor, constant=factor * motor.constant)
+        return Change(replace(twin.axis, pmsm=weak), note=f"{factor:.3g} of the flux linkage")
+    if twin.task.name == "torque":
+        # Of an ideal source nobody sees what becomes of its effort.
+        return None
     return Change(twin.axis, hooks=[{"kind": "effort", "at": at, "factor": factor}], note=f"{factor:.3g} of the effort from {at} s")
 
 
 def torque_limit(random: Random, twin: Twin) -> Change:
     share, at = random.decades(-1.6, 0.4), twin.when(random)
+    if twin.task.name == "torque":
+        return Change(replace(twin.axis, limit=0.3 * share * twin.axis.limit), note=f"{0.3 * share:.3g} of the limit")
     hook = {"kind": "effort-limit", "at": at, "most": share * twin.needed}
     return Change(twin.axis, hooks=[hook], note=f"at most {share:.3g} of the effort that is needed from {at} s")
 
@@ -66,7 +75,9 @@ def motor_stuck(random: Random, twin: Twin) -> Change:
     return Change(twin.axis, hooks=[{"kind": "stuck", "at": at}], note=f"stuck from {at} s")
 
 
-def power_lost(random: Random, twin: Twin) -> Change:
+def power_lost(random: Random, twin: Twin) -> Change | None:
+    if twin.task.name == "torque":
+        return None
     at = round(random.uniform(0, twin.duration), 4)
     hook = {"kind": "effort", "at": at, "factor": 0.0}
     return Change(twin.axis, hooks=[hook], note=f"no effort from {at} s", harms=True)
@@ -126,13 +137,13 @@ def payload(random: Random, twin: Twin) -> Change:
 
 
 def velocity_gain(random: Random, twin: Twin) -> Change:
-    factor = random.decades(0, 2) ** random.sign()
+    factor = random.decades(0.3, 2.3) ** random.sign()
     axis = replace(twin.axis, velocity_gain=factor * twin.axis.velocity_gain)
     return Change(axis, note=f"velocity gain times {factor:.3g}")
 
 
 def position_gain(random: Random, twin: Twin) -> Change:
-    factor = random.decades(0, 2) ** random.sign()
+    factor = random.decades(0.7, 2.7) ** random.sign()
     axis = replace(twin.axis, position_gain=factor * twin.axis.position_gain)
     return Change(axis, note=f"position gain times {factor:.3g}")
 
@@ -164,7 +175,7 @@ def encoder_reversed(random: Random, twin: Twin) -> Change:
 
 
 def encoder_late(random: Random, twin: Twin) -> Change:
-    late = random.decades(-4, -2)
+    late = random.decades(-3.3, -2)
     return Change(replace(twin.axis, latency=late), note=f"encoder {late:.3g} s late")
 
 
@@ -208,7 +219,7 @@ def dead_time(random: Random, twin: Twin) -> Change | None:
     if twin.axis.pmsm is None:
         return None
     rate = twin.axis.base // twin.axis.current_every
-    share = random.decades(-2.5, -0.5)
+    share = random.decades(-3, -1.001)
     inverter = {"carrier": f"{rate} Hz", "dead_time": f"{share / rate} s"}
     return Change(with_extra(twin.axis, {"drive.inverter": inverter}), note=f"dead time of {share:.3g} of the period")
 

@@ -188,7 +188,10 @@ def velocity(random: Random, axis: Axis, pace: Pace) -> Task:
     time = ramp(pace.bounds, speed)
     per = f"{axis.unit}/s"
     steps = [{"reach_velocity": quantity(speed, per), "hold": quantity(held, "s")}, {"reach_velocity": quantity(0.0, per)}]
-    phases = [Phase("velocity", time, time + held, speed), Phase("stop", 2 * time + held, inf, speed)]
+    end, target = 2 * time + held, speed * (time + held)
+    phases = [Phase("velocity", time, time + held, speed), Phase("stop", end, inf, speed)]
+    # Its set-point is one of positions all the way.
+    phases += [Phase("way", 0.0, end, target, abs(target)), Phase("rest", end, inf, target, abs(target)), Phase("swing", end, inf, target, abs(target))]
     tables: Tree = {"setpoint": setpoint_table(pace.bounds, axis.unit), "program": steps}
     return Task("velocity, direct", tables, phases, pace.bounds.v, pace.bounds.a, pace.distance, 2 * time + held + pace.rest)
 

@@ -169,10 +169,13 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         if pair.judge is not None and pair.judge.window is not None:
             tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window))
         judged = judgement(phases, found, of_healthy, spread, tolerance)
-        if outcome["ended"]:
-            judged = Judgement("bad", "ended", numpy.inf, 0, 0, 0)
+        lost = ended_calls(outcome) - ended_calls(result("healthy")["outcome"])
+        if outcome["ended"] or lost:
+            judged = Judgement("bad", ", ".join(lost) or "end", numpy.inf, 0, 0, 0)
         cell[judged.word] += 1
         kind = wrong(judged, outcome, pair)
+        if os.environ.get("TWIN_TRACE"):
+            print(pair.name, family.program, pair.sabotage, pair.change.note, judged, outcome["passed"], outcome["reasons"][:2], [f"{p.kind}:{d:.3g}" for p, d in zip(phases, found)])
         if kind:
             right = False
             cell[kind] += 1
@@ -221,11 +224,21 @@ def wrong(judged: Judgement, outcome: dict[str, Any], pair: Pair) -> str | None:
         is_said = pair.judge is not None and any(why.startswith(f"{pair.judge.lifted}:") for why in outcome["reasons"])
         return "false green" if judged.word == "bad" and not is_said else None
     broken = {name for name, standing in outcome["standing"].items() if standing == "broken"}
-    if judged.word != "good" or pair.change.harms:
+    if judged.word != "good" or pair.change.harms or has_fault(outcome):
         return None
     if broken and broken <= set(EXCUSED):
         return "to be checked"
     return "false red"
+
+
+def ended_calls(outcome: dict[str, Any]) -> set[str]:
+    """The calls that did not come to what they are for."""
+    return {name for name, _, fate in outcome["calls"] if fate != "executed"}
+
+
+def has_fault(outcome: dict[str, Any]) -> bool:
+    """Whether drive or link have come to a fault, which is a harm."""
+    return any(value != "none" for name in ("drive.fault", "link.fault") for _, value in outcome["signals"].get(name, []))
 
 
 def report(tally: Tally) -> None:
