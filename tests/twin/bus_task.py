@@ -41,7 +41,7 @@ def program(mode: str) -> Any:
         steps, at = [], 0.0
         for number in range(random.randint(1, 3)):
             pause = round(pace.rest, 3) if number or random.random() < 0.3 else 0.05
-            step = random.sign() * pace.distance * random.uniform(0.4, 1)
+            step = random.sign() * pace.distance * random.uniform(0.6, 1)
             at = 0.0 if at and random.random() < 0.3 else at + step
             steps.append((pause, at))
         written: list[Tree] = []
@@ -108,7 +108,7 @@ def blocks(random: Random, axis: Axis, pace: Pace) -> Task:
     after, delay = "power.Status", random.choice((0.0, 0.05))
     for number in range(random.randint(1, 3)):
         name = f"move_{number}"
-        step = random.sign() * pace.distance * random.uniform(0.4, 1)
+        step = random.sign() * pace.distance * random.uniform(0.6, 1)
         target = 0.0 if calls.at and random.random() < 0.3 else calls.at + step
         calls.move(name, calls.after(after, delay), target, random.choice(("MC_MoveAbsolute", "MC_MoveRelative")))
         after, delay = f"{name}.Done", random.choice((0.0, pace.rest, pace.rest))
@@ -173,7 +173,7 @@ def homing(random: Random, axis: Axis, pace: Pace) -> Task:
     calls.call("MC_Home", "home", "power.Status")
     calls.length += at / fast * 1.3 + 6 * fast / (0.5 * pace.bounds.a) + 1.5
     calls.phases.append(Phase("homing", "power.Status", "home.Done", edge))
-    calls.move("move", {"after": "home.Done", "delay": quantity(round(pace.rest, 4), "s")}, random.sign() * pace.distance * random.uniform(0.5, 1))
+    calls.move("move", {"after": "home.Done", "delay": quantity(round(pace.rest, 4), "s")}, random.sign() * pace.distance * random.uniform(0.6, 1))
     calls.length += 2 * pace.rest
     objects = {"6098h": method, "6099h.1": round(fast / unit), "6099h.2": max(1, round(0.2 * fast / unit)), "609Ah": round(0.5 * pace.bounds.a / unit)}
     task = calls.task("homing", bus_table(random, axis, pace, "csp"), {"plc": {"homing_required": True}})

@@ -164,7 +164,7 @@ class Axis:
                 "inductance": quantity(p.inductance, "H"),
                 "flux_linkage": quantity(p.constant / (1.5 * p.pole_pairs), "V s"),
                 "inertia": quantity(0.5 * self.motor.inertia, "kg m2"),
-                "max_current": quantity(1.2 * self.limit / p.believed, "Apk"),
+                "max_current": quantity(1.2 * self.limit / min(p.constant, p.believed), "Apk"),
             }
         return table | ({"encoder": encoder} if encoder else {})
 

@@ -312,3 +312,10 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "buffer small": buffer_small,
     "master gain": master_gain,
 }
+
+NEEDS: dict[str, Callable[[Axis], bool]] = {
+    **dict.fromkeys(("current gain", "commutation", "phase lost", "link sag", "dead time"), lambda axis: axis.pmsm is not None),
+    **dict.fromkeys(("load stuck", "load uncoupled", "coupling soft"), lambda axis: axis.load is not None),
+    "gear ratio": lambda axis: axis.lead is not None,
+}
+"""Parts of an axis without which there is no such sabotage."""

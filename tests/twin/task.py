@@ -68,7 +68,7 @@ def draw_pace(random: Random, axis: Axis, *, follows: bool) -> Pace:
     """Moves of some dozen time constants of the position loop."""
     k = axis.position_gain
     distance = random.decades(-2.3, -0.3) if axis.linear_axis else random.decades(-0.5, 1.5)
-    time = random.uniform(12, 30) / k if follows else random.uniform(24, 40) / k
+    time = random.uniform(12, 30) / k if follows else random.uniform(32, 50) / k
     v = 1.6 * distance / time
     a = v / (time * random.uniform(0.12, 0.3))
     j = None if random.random() < 0.15 else a / (time * random.uniform(0.05, 0.15))
@@ -117,7 +117,7 @@ def moves_of(steps: list[tuple[float, float]], pace: Pace, tail: float) -> tuple
 def moves(random: Random, axis: Axis, pace: Pace) -> Task:
     """One move."""
     pause = random.choice((0.0, round(pace.rest / 3, 3)))
-    return of_moves("moves", axis, pace, [(pause, random.sign() * pace.distance * random.uniform(0.5, 1))])
+    return of_moves("moves", axis, pace, [(pause, random.sign() * pace.distance * random.uniform(0.6, 1))])
 
 
 def sequences(random: Random, axis: Axis, pace: Pace) -> Task:
@@ -125,7 +125,7 @@ def sequences(random: Random, axis: Axis, pace: Pace) -> Task:
     steps, at = [], 0.0
     for number in range(random.randint(2, 4)):
         pause = round(random.choice((0.0, pace.rest)), 4) if number else round(random.choice((0.0, 0.05)), 3)
-        step = random.sign() * pace.distance * random.uniform(0.4, 1)
+        step = random.sign() * pace.distance * random.uniform(0.6, 1)
         at = 0.0 if at and random.random() < 0.3 else at + step
         steps.append((pause, at))
     return of_moves("sequences", axis, pace, steps)
@@ -152,7 +152,7 @@ def table_of(random: Random, axis: Axis, pace: Pace) -> tuple[str, list[Phase], 
     """Points with velocities along two or three moves that follow each other at once, phases of the way through them, and its length."""
     steps, at = [], 0.0
     for _ in range(random.randint(1, 3)):
-        at += random.sign() * pace.distance * random.uniform(0.5, 1)
+        at += random.sign() * pace.distance * random.uniform(0.6, 1)
         steps.append((0.0, at))
     way = course(steps, pace.bounds)
     points = ["time [s],position [m],velocity [m/s]".replace("[m", f"[{axis.unit}")]

@@ -12,7 +12,7 @@ import mjcf
 from linear import has_margins
 from machine import Axis, draw_axis, estimate, increment_of, with_motor
 from oracle import Settling, Tolerance
-from sabotages import SABOTAGES, Change, Twin
+from sabotages import NEEDS, SABOTAGES, Change, Twin
 from bus_task import BUS, unit_of
 from task import DIRECT, Task, draw_pace, feedforward
 
@@ -79,13 +79,20 @@ class Drawn:
 def draw_family(seed: str, drawn: Drawn) -> Family:
     """The family of a seed."""
     random = Random(f"twin {seed}")
-    program = random.choice(drawn.programs)
-    axis = draw_stable(random)
+    # Programs in turn, and for each of them sabotages in turn.
+    turn, at = divmod(int(seed.rpartition("-")[2]), len(drawn.programs))
+    program = drawn.programs[at]
+    wanted = [drawn.sabotages[(turn * drawn.pairs + number) % len(drawn.sabotages)] for number in range(drawn.pairs)]
+    axis = draw_stable(random, wanted)
     # A master that feeds forward does so by its own keys.
     forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
     pace = draw_pace(random, axis, follows=bool(forward))
     task = PROGRAMS[program](random, axis, pace)
     axis, window = with_task(random, axis, task, forward, is_coarse=drawn.is_coarse)
+    if program == "pp":
+        # The drive takes the next target when it has reached the one before.
+        unit = unit_of(task.span) * (1.0 if axis.linear_axis else pi / 180)
+        axis = replace(axis, objects={"6067h": max(10, round((window or 1e-3 * task.span) / unit))})
     duration = round(task.length + random.uniform(0.02, 0.3), 4)
     tables = task.tables | ({"measure": {"window": quantity(window, axis.unit)}} if window else {})
     engine = random.choice(drawn.engines)
@@ -98,9 +105,9 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     family = Family(seed, program, twin, engine, tolerance, settling(axis), is_mjcf)
     number = 0
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
-        # A seed for each, so that one more kind of sabotage leaves the others as they are.
+        # A seed for each. In place of one that the machine cannot have comes any.
         of_pair = Random(f"pair {seed} {number}")
-        name = of_pair.choice(drawn.sabotages)
+        name = wanted[number] if number < len(wanted) else of_pair.choice(drawn.sabotages)
         change = SABOTAGES[name](of_pair, twin)
         if change is not None and not (is_mjcf and name in NOT_BY_MJCF):
             family.pairs.append(Pair(f"{seed}.{number}", name, change, draw_judge(of_pair, twin, drawn.lifts)))
@@ -108,10 +115,17 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     return family
 
 
-def draw_stable(random: Random) -> Axis:
-    """An axis with margins."""
+TRIES = 40
+
+
+def draw_stable(random: Random, wanted: list[str]) -> Axis:
+    """An axis with margins, that can have the sabotages that are wanted if one is found."""
+    tries = 0
     while True:
         axis = draw_axis(random)
+        tries += 1
+        if tries < TRIES and not all(NEEDS[name](axis) for name in wanted if name in NEEDS):
+            continue
         # Nothing that is drawn later changes its loop but the motor, whose resistance and inductance hardly do.
         probe = with_motor(random, axis, 0.1 * axis.r, 1.0) if axis.pmsm else axis
         if has_margins(probe):
@@ -147,7 +161,10 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         motor = replace(motor, coulomb=bare * random.decades(-2, -0.5))
     if task.name != "torque" and (random.random() < 0.4 or task.name.startswith("hold")):
         bias = bare * random.decades(-1, 0)
-        # Points for a buffer count from where an axis has sagged to before it had power.
+        if task.name == "hold over a bus":
+            # It sags before it has power, which friction has to hold.
+            motor = replace(motor, coulomb=1.25 * bias)
+        # Points for a buffer count from where an axis has sagged to.
         motor = replace(motor, bias=random.sign() * (min(bias, 0.8 * motor.coulomb) if task.name == "ip" else bias))
     axis = replace(axis, motor=motor, feedforward=forward, objects=task.objects, switches=task.switches)
     increment = None if random.random() < 0.3 else task.span * random.decades(-6.5, -4)

@@ -33,6 +33,9 @@ from twins import ENGINES, PROGRAMS, Drawn, Family, Pair, draw_family, write, wr
 MOST_OF_MOVE = 0.1
 """A healthy machine that is off by more of its move is left out."""
 MOST_DISCARDED = 0.1
+FEWEST_OF_CELL = 40
+MANY = 4000
+"""So many families give each cell of program and sabotage its pairs."""
 CHUNK = 20
 """So many families are run at a time: their recordings are thrown away before the next are made."""
 EXCUSED = ("stable", "rings")
@@ -149,6 +152,9 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     sizes = [phase.size or family.twin.task.span for phase in phases]
     if any(d > MOST_OF_MOVE * size for d, size, phase in zip(of_healthy, sizes, phases) if phase.kind in ("way", "rest", "stand")):
         tally.discarded += 1
+        tally.cells[family.program, "(none)"]["discarded"] += 1
+        if os.environ.get("TWIN_TRACE"):
+            print("discarded", family.name, family.program, [f"{p.kind}:{d:.3g} of {s:.3g}" for p, d, s in zip(phases, of_healthy, sizes)])
         return True
     right = True
     outcome = result("healthy")["outcome"]
@@ -243,7 +249,7 @@ def has_fault(outcome: dict[str, Any]) -> bool:
 
 def report(tally: Tally) -> None:
     """By program and by sabotage."""
-    words = ("bad", "good", "between", "false green", "false red", "to be checked", "error")
+    words = ("bad", "good", "between", "false green", "false red", "to be checked", "error", "discarded")
     for title, index in (("program", 0), ("sabotage", 1)):
         sums: dict[str, Counter[str]] = defaultdict(Counter)
         for cell, counts in tally.cells.items():
@@ -256,6 +262,10 @@ def report(tally: Tally) -> None:
             if index == 1 and pairs >= 40 and (of["bad"] < 0.3 * pairs or of["good"] < 0.2 * pairs):
                 idle = "  idle: another range"
             print(f"{name:18} {pairs:>6} " + " ".join(f"{of[word]:>13}" for word in words) + idle)
+    few = {cell: sum(counts[word] for word in words[:3]) for cell, counts in tally.cells.items()}
+    few = {cell: pairs for cell, pairs in few.items() if pairs < FEWEST_OF_CELL}
+    if tally.families >= MANY:
+        print(f"\n{len(tally.cells)} cells of program and sabotage, {len(few)} with fewer than {FEWEST_OF_CELL} pairs: {few}")
     print(f"\nred by a swing, rightly: {dict(tally.by_swing)}")
     print(f"{tally.families} healthy machines, {tally.discarded} discarded; {dict(tally.kinds)}")
 
