@@ -263,7 +263,7 @@ impl Network {
                     self.requests.push(t, request);
                     if let Some(passed) = self.task.time() {
                         self.reference.begin(t - passed);
-                        self.requests.begin(t - passed);
+                        self.requests.goes_on(t, passed);
                     }
                     match setpoint {
                         Some(setpoint) => self.reference.push(t, setpoint),

@@ -20,5 +20,5 @@ pub fn judge(recording: &Recording, failure: Option<Failure>, scenario: &Scenari
         Some(Interruption::Early(ended)) => Some(ended),
         Some(Interruption::Broken(error)) => return Err(error),
     };
-    Ok(judge_requirements(recording, &rules(scenario, ended)))
+    Ok(judge_requirements(recording, &rules(scenario, recording, ended)))
 }

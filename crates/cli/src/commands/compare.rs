@@ -23,8 +23,7 @@ use servobench_report::{Compared, Comparison, Noise};
 use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult};
 use servobench_suite::{
     Job, Run, RunError, check_warnings, comparable, equal_length, execute, limits_agree, map_in_parallel,
-    only_setpoints_differ,
-    setpoints_have_closed_form,
+    only_setpoints_differ, setpoints_have_closed_form,
 };
 use slowing::Slowing;
 use variants::Wanted;

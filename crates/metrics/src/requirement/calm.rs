@@ -18,7 +18,7 @@ pub(super) struct Calm {
     pub(super) rows: Range<usize>,
     /// The velocity that is requested (axis unit per s), 0 where the axis is to stand.
     pub(super) velocity: f64,
-    /// Distance of the motion that ended last (axis unit); `None` before the first one.
+    /// Distance of the motion that ended last, from where it turned last (axis unit); `None` before the first one.
     pub(super) after: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
     let rounding = ROUNDING * velocities.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
     let disturbed = disturbed(recording, rules);
     let (mut all, mut stood_at, mut after) = (Vec::new(), None, None);
-    let mut moves = false;
+    let (mut moves, mut last_velocity) = (false, 0.0_f64);
     for phase in request_phases(recording) {
         if matches!(phase.kind, RequestKind::Nothing | RequestKind::Effort) {
             (stood_at, after, moves) = (None, None, false);
@@ -47,7 +47,9 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
                 after = stood_at.map(|from: f64| (x - from).abs());
             }
             moves |= !stands;
-            if stands || stood_at.is_none() {
+            let turns = last_velocity * v < 0.0;
+            last_velocity = v;
+            if stands || turns || stood_at.is_none() {
                 stood_at = Some(x);
             }
             if stands || phase.kind == RequestKind::Velocity {
@@ -96,6 +98,27 @@ mod tests {
             .channel(Signal::RequestPosition, "m", |t| if t < 0.3 { 0.1 } else { 0.3 })
             .requests(&[(0.0, "nothing"), (0.1, "stand"), (0.2, "follow"), (0.4, "rest"), (0.7, "velocity")])
             .finish()
+    }
+
+    /// To 0.2 m and back at 1 m/s without a pause: the way back is the motion before the rest.
+    #[test]
+    fn a_motion_there_and_back_is_as_long_as_its_way_back() {
+        let recording = Build::new(1000, 1000)
+            .channel(Signal::RequestVelocity, "m/s", |t| {
+                if t < 0.2 {
+                    1.0
+                } else if t < 0.4 {
+                    -1.0
+                } else {
+                    0.0
+                }
+            })
+            .channel(Signal::RequestPosition, "m", |t| if t < 0.2 { t } else { (0.4 - t).max(0.0) })
+            .requests(&[(0.0, "follow"), (0.4, "rest")])
+            .finish();
+        let found = calm(&recording, &rules());
+        assert_eq!(found.len(), 1);
+        assert!((found[0].after.unwrap() - 0.2).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

@@ -135,8 +135,8 @@ impl Network {
             MotionTask::DriveProfile(_) | MotionTask::Plc(_) => DelayedReference::new(period, delay),
         };
         let requests = match &task {
-            MotionTask::Moves(moves) => Requests::of_program(moves.program(), delay),
-            MotionTask::DriveProfile(profile) => Requests::of_program(profile.moves().program(), delay),
+            MotionTask::Moves(moves) => Requests::of_program(moves.program(), period, delay),
+            MotionTask::DriveProfile(profile) => Requests::of_program(profile.moves().program(), period, delay),
             MotionTask::Plc(_) => Requests::of_cycles(period, delay),
         };
         let network = Self {

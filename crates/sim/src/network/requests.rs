@@ -17,9 +17,18 @@ const ROUNDING: f64 = 5e-10;
 #[derive(Debug, Clone)]
 pub(super) enum Requests {
     /// Those of a program that began at some time (s), `delay` seconds later.
-    Program { program: Box<Program>, delay: f64, begun: Option<f64> },
+    Program { program: Box<Program>, period: f64, delay: f64, running: Option<Running> },
     /// Those of function blocks.
     Cycles(Cycles),
+}
+
+/// A program under way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Running {
+    /// When it began (s), as its last cycle has it: later where its task was held up.
+    begun: f64,
+    /// When its last cycle was (s).
+    last: f64,
 }
 
 /// A request per cycle.
@@ -36,9 +45,9 @@ pub(super) struct Cycles {
 }
 
 impl Requests {
-    /// Those of `program`, which reach the loops `delay` (s) later.
-    pub(super) fn of_program(program: &Program, delay: f64) -> Self {
-        Self::Program { program: Box::new(program.clone()), delay, begun: None }
+    /// Those of `program`, whose task has cycles of `period` (s), and which reach the loops `delay` (s) later.
+    pub(super) fn of_program(program: &Program, period: f64, delay: f64) -> Self {
+        Self::Program { program: Box::new(program.clone()), period, delay, running: None }
     }
 
     /// Those of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
@@ -48,10 +57,10 @@ impl Requests {
         Self::Cycles(Cycles { period, delay, kept: VecDeque::with_capacity(room), interval: None })
     }
 
-    /// The program began at `t` (s).
-    pub(super) const fn begin(&mut self, t: f64) {
-        if let Self::Program { begun, .. } = self {
-            *begun = Some(t);
+    /// The program has a cycle at `t` (s), `passed` seconds after its beginning.
+    pub(super) fn goes_on(&mut self, t: f64, passed: f64) {
+        if let Self::Program { running, .. } = self {
+            *running = Some(Running { begun: t - passed, last: t });
         }
     }
 
@@ -65,8 +74,12 @@ impl Requests {
     /// The request at `t` (s), which does not go back.
     pub(super) fn at(&mut self, t: f64) -> Request {
         match self {
-            Self::Program { program, delay, begun } => {
-                let Some(passed) = begun.map(|begun| t - begun - *delay) else { return Request::Nothing };
+            Self::Program { program, period, delay, running } => {
+                let Some(Running { begun, last }) = running else { return Request::Nothing };
+                let passed = t - *begun - *delay;
+                if t - *delay - *last > MISSED * *period {
+                    return Request::Nothing;
+                }
                 if passed < -ROUNDING {
                     return Request::Stand;
                 }
