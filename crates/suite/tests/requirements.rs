@@ -98,7 +98,7 @@ fn what_harms_nothing_can_be_expected_too() {
 #[test]
 fn every_shipped_scenario_meets_its_requirements() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
-    let folders = ["", "demo", "plc", "setpoints"].map(|folder| repository.join(folder));
+    let folders = ["", "demo", "plc", "setpoints", "hardware", "hardware/faults"].map(|folder| repository.join(folder));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|kind| kind == "toml")).collect();
     files.sort();

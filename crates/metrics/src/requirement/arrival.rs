@@ -65,7 +65,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
                         task.time(last),
                         task.within(row),
                         task.length(bound),
-                        task.bound_by(&rest.rows)
+                        task.bound_by(&(task.begun(row)..rest.rows.end))
                     )
                 })
             }))

@@ -107,6 +107,13 @@ impl<'a> Task<'a> {
         made.map_or_else(String::new, |made| format!(" in `{}`", made.label))
     }
 
+    /// The row at which the move that is made at `row` began.
+    pub(super) fn begun(&self, row: usize) -> usize {
+        let time = self.recording.time_of(row);
+        let made = self.recording.moves.iter().rfind(|made| made.start <= time);
+        made.map_or(row, |made| self.recording.index_at(made.start)).min(row)
+    }
+
     /// A position of the axis in words.
     pub(super) fn length(&self, value: f64) -> Quantity<'_> {
         Quantity::new(value, &self.recording.about.axis_unit)
@@ -201,7 +208,8 @@ impl<'a> Task<'a> {
         let least = least.max(rounding);
         if span(request) > least {
             let ways = between_turning_points(rows.request, &all, least);
-            let ways = ways.into_iter().skip(usize::from(is_interrupted)).filter(|way| !way.is_empty());
+            let ways = ways.into_iter().skip(usize::from(is_interrupted));
+            let ways = ways.filter(|way| !way.is_empty() && !jumps(rows, &all, way, least));
             pieces.extend(ways.map(|way| (Piece::Way, Stretch::new(way))));
         }
     }
@@ -226,6 +234,16 @@ impl<'a> Task<'a> {
         }
         if swings { rest.clone() } else { rest.end - rest.len().div_ceil(REST)..rest.end }
     }
+}
+
+/// Whether the request jumps in `way` or where it meets others of `all`, by more than `least` beyond what it moves: a task that
+/// stood still for a while goes on where it was.
+fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) -> bool {
+    let (first, last) = (way.start.saturating_sub(1).max(all.start), way.end.min(all.end - 1));
+    (first..last).any(|row| {
+        let speed = rows.request_velocity[row].abs().max(rows.request_velocity[row + 1].abs());
+        (rows.request[row + 1] - rows.request[row]).abs() > 2.0 * rows.h * speed + least
+    })
 }
 
 /// Whether a motion was broken off by a silence of the task.
