@@ -102,7 +102,8 @@ fn choice(comparison: &Comparison<'_>) -> Option<String> {
     }
     let beats = |one: usize, other: usize| {
         let [vibration, time] = stands[one][other];
-        !vibration.is_more() && !time.is_more() && !(vibration.is_equal() && time.is_equal())
+        let is_better = matches!(vibration, Relation::Less(_)) || matches!(time, Relation::Less(_));
+        is_better && !vibration.is_more() && !time.is_more()
     };
     let (mut front, beaten): (Vec<usize>, Vec<usize>) =
         places.iter().partition(|one| !places.iter().any(|other| beats(*other, **one)));

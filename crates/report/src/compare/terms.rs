@@ -49,7 +49,7 @@ impl<'a> Comparison<'a> {
     /// The time at which `this` has reached its last target against that of `other`. A run that never does is later than all others.
     pub(super) fn arrival(&self, this: &Compared<'a>, other: &Compared<'a>) -> Option<Relation> {
         let both = [this.arrival()?, other.arrival()?];
-        Some(self.stands(both, 0.0, [this, other], |run| super::arrival::of(run)))
+        Some(self.stands(both, 0.0, [this, other], super::arrival::of))
     }
 
     fn stands(
