@@ -79,7 +79,8 @@ fn write_each(
     written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path, error })?;
     written.recording = Some(name.clone());
     written.note(name);
-    if !recording.signals.is_empty() {
+    // What a task requests alone has no edges that are worth a drawing.
+    if recording.signals.iter().any(|signal| signal.source != REQUEST_KIND.0) {
         let name = format!("{}{DIAGRAM}", job.id);
         let diagram = timing_diagram(recording, &TimingOptions::default())?;
         folder.file(&name)?.write(&diagram)?;

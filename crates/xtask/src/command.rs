@@ -4,7 +4,7 @@ use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 16] = [
+const COMMANDS: [(&str, &str); 17] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "set up, build, run the demo and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
