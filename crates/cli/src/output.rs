@@ -4,7 +4,7 @@ use crate::build_id;
 use crate::error::CliError;
 use crate::outputs::OutputFolder;
 use jiff::Timestamp;
-use servobench_metrics::{Metrics, Verdict};
+use servobench_metrics::{Metrics, REQUEST_KIND, Verdict};
 use servobench_plant::inverter;
 use servobench_plant::pmsm::Bounds;
 use servobench_report::{TimingOptions, timing_diagram};
