@@ -28,7 +28,7 @@ pub(crate) fn note(
     let made = phase.made;
     let length = made.end - made.start;
     let load = channel(recording, LOAD);
-    let basis = basis::of(recording, &phase.after, question);
+    let basis = basis::of(recording, &phase.rest, question);
     let at_rest = load.clone().and_then(|load| basis.map(|()| load));
     let settling = at_rest.clone().and_then(|load| settling_time(recording, load, phase, question.window));
     let unit = recording.about.axis_unit.as_str();
@@ -112,11 +112,11 @@ fn settling_time(
         return Err(Absence::WindowIsTheWay { label, window, distance, unit });
     }
     let (period, deviation) = (recording.rate.period(), |row: usize| (load[row] - made.to).abs());
-    let Some(outside) = phase.rows().rev().find(|&row| deviation(row) > window) else {
+    let Some(outside) = phase.until_rest_ends().rev().find(|&row| deviation(row) > window) else {
         return Ok(0.0);
     };
-    let inside = phase.rows().end - 1 - outside;
-    let watched = phase.after.len();
+    let inside = phase.rest.end - 1 - outside;
+    let watched = phase.rest.len();
     if inside == 0 || inside * DWELL < watched {
         return Err(Absence::NotSettled {
             label: made.label.clone(),
@@ -143,7 +143,7 @@ fn overshoot(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
 /// Target minus position, mean over the last tenth of the time before the next move. Where a mode rings, over whole periods
 /// of it, and without it: a mean over part of a period would be that of the vibration.
 fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<Mode>) -> f64 {
-    let rows = phase.after.clone();
+    let rows = phase.rest.clone();
     let count = rows.len().div_ceil(REST);
     if let Some(mode) = mode {
         let period = 1.0 / (mode.frequency * (1.0 - mode.damping * mode.damping).sqrt() * step);

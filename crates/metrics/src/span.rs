@@ -16,6 +16,8 @@ pub(crate) struct Phase<'a> {
     pub(crate) profile: Range<usize>,
     /// Rows from the end of the profile to just before the next move, or to the end of the recording.
     pub(crate) after: Range<usize>,
+    /// Of these, the rows until another motion is requested that is not a move: a velocity, a stop, a search for a switch.
+    pub(crate) rest: Range<usize>,
 }
 
 impl Phase<'_> {
@@ -23,6 +25,22 @@ impl Phase<'_> {
     pub(crate) fn rows(&self) -> Range<usize> {
         self.profile.start..self.after.end
     }
+
+    /// Rows of the profile and of the rest after it.
+    pub(crate) fn until_rest_ends(&self) -> Range<usize> {
+        self.profile.start..self.rest.end
+    }
+}
+
+/// The part of `after` in which nothing is requested to move, once what is requested has come to rest.
+fn rest_of(recording: &Recording, after: &Range<usize>) -> Range<usize> {
+    let requested = recording.channel(Signal::RequestVelocity).and_then(|values| values.get(after.clone()));
+    let Some(requested) = requested else { return after.clone() };
+    // The path of a set-point may end some rows after its profile.
+    let moves = |velocity: &f64| *velocity != 0.0;
+    let Some(rests) = requested.iter().position(|velocity| !moves(velocity)) else { return after.clone() };
+    let moves_again = requested[rests..].iter().position(moves).map(|row| after.start + rests + row);
+    after.start..moves_again.unwrap_or(after.end)
 }
 
 /// The moves of a recording with their rows.
@@ -34,7 +52,9 @@ pub(crate) fn phases(recording: &Recording) -> Vec<Phase<'_>> {
             let start = recording.index_at(made.start);
             let end = recording.index_at(made.end).max(start);
             let stop = next.map_or(recording.len(), |next| recording.index_at(next.start)).max(end);
-            Phase { made, profile: start..end, after: end..stop }
+            let after = end..stop;
+            let rest = rest_of(recording, &after);
+            Phase { made, profile: start..end, after, rest }
         })
         .collect()
 }

@@ -50,7 +50,7 @@ impl Residual {
 
     /// From the end of the profile to the next move. `search` says where a mode is looked for.
     pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, search: Search) -> Self {
-        Self::over(recording, &phase.after, phase.made.end, phase.made.to, question, search)
+        Self::over(recording, &phase.rest, phase.made.end, phase.made.to, question, search)
     }
 
     /// From `time` (s) to the next move. The amplitude is that at the end of the profile before it, where nothing has pushed since.
@@ -183,6 +183,23 @@ mod tests {
         let mode = residual.mode().unwrap();
         assert!((mode.frequency - 20.0).abs() < 1e-3 && (mode.amplitude - 1e-6).abs() < 1e-9, "{mode:?}");
         assert!((residual.peak_to_peak.unwrap() - 100e-6).abs() < 1e-9);
+    }
+
+    /// 1 µm at 20 Hz, and from 1 s on a motion that is not a move: a search for a switch, 10 mm far.
+    #[test]
+    fn a_rest_ends_where_something_else_is_requested() {
+        let position = |t: f64| 1.0 + 1e-6 * (TAU * 20.0 * t).sin() + if t < 1.0 { 0.0 } else { 10e-3 * (t - 1.0) };
+        let requested = |t: f64| if t < 1.0 { 0.0 } else { 10e-3 };
+        let recording = Build::new(1_000, 2_000)
+            .channel(LOAD, "m", position)
+            .channel(Signal::RequestVelocity, "m/s", requested)
+            .moves([planned(0.0, 0.01, 0.0, 1.0).made()])
+            .finish();
+        let residual =
+            Residual::after(&Checked::of(&recording), &phases(&recording)[0], &Question::default(), Search::Everywhere);
+        // Crests lie half a row beside one at most: (ωh)²/8 of 2 µm, 4 nm.
+        let found = residual.peak_to_peak.unwrap();
+        assert!((found - 2e-6).abs() < 5e-9, "{found}");
     }
 
     #[test]

@@ -136,7 +136,7 @@ fn the_value_of_a_run_is_the_largest_of_its_rests() {
     assert!(value(&self::run(&later).metrics, pp) < 10e-6);
     // From before the first one on, both.
     let sooner = text.replace("window = \"5 mm\"", "window = \"5 mm\"\nfrom = \"0.7 s\"");
-    assert!(value(&self::run(&sooner).metrics, pp) > 5e-3);
+    assert!(value(&self::run(&sooner).metrics, pp) > 4e-3, "it has died away by a fifth");
 }
 
 /// A window as large as the way holds a load that never moved: settling is not judged, and `check` says why.
