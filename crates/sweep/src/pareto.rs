@@ -25,20 +25,26 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// The places of [`front`] without those that another one on it beats when values are `equal` that are near to each other: no larger in
-/// either, and smaller in one. At least one is left.
+/// The places of [`front`] without those that a remaining one beats when values are `equal` that are near to each other: no larger in either,
+/// and smaller in one. A dense front is thinned by it and keeps its ends as far as they are apart.
 #[must_use]
-pub fn front_apart(points: &[(f64, f64)], equal: [impl Fn(f64, f64) -> bool; 2]) -> Vec<usize> {
-    let all = front(points);
+pub fn front_apart(points: &[(f64, f64)], equal: &[impl Fn(f64, f64) -> bool; 2]) -> Vec<usize> {
     let is_smaller = |one: f64, other: f64, k: usize| one < other && !equal[k](one, other);
     let beats = |one: &usize, other: &usize| {
         let ((x, y), (u, v)) = (points[*one], points[*other]);
         let is_larger = is_smaller(u, x, 0) || is_smaller(v, y, 1);
         !is_larger && (is_smaller(x, u, 0) || is_smaller(y, v, 1))
     };
-    let apart: Vec<usize> = all.iter().filter(|one| !all.iter().any(|other| beats(other, one))).copied().collect();
-    // Where what is equal is not the same share everywhere, each may beat the next in turn.
-    if apart.is_empty() { all } else { apart }
+    // From the second number upwards: what is as fast and calmer comes first, what is as calm and faster takes the place of others.
+    let mut kept: Vec<usize> = Vec::new();
+    for one in front(points).into_iter().rev() {
+        if !kept.iter().any(|other| beats(other, &one)) {
+            kept.retain(|other| !beats(&one, other));
+            kept.push(one);
+        }
+    }
+    kept.reverse();
+    kept
 }
 
 #[cfg(test)]
@@ -62,9 +68,15 @@ mod tests {
         // The second is as fast as the first and calmer; the third is slower and as calm.
         let points = [(1.0, 5.0), (1.005, 1.0), (1.5, 0.995), (2.0, 0.5), (f64::INFINITY, 0.1)];
         assert_eq!(front(&points), [0, 1, 2, 3, 4]);
-        assert_eq!(front_apart(&points, [near, near]), [1, 3, 4]);
-        assert_eq!(front_apart(&[(1.0, 1.0), (1.0, 1.0)], [near, near]), [0, 1], "none beats its equal");
-        assert!(front_apart(&[], [near, near]).is_empty());
+        assert_eq!(front_apart(&points, &[near, near]), [1, 3, 4]);
+        assert_eq!(front_apart(&[(1.0, 1.0), (1.0, 1.0)], &[near, near]), [0, 1], "none beats its equal");
+        assert!(front_apart(&[], &[near, near]).is_empty());
+        // Of a dense front each is as fast as the next, which is calmer: it is thinned, and not emptied from one end to the other.
+        let dense: Vec<(f64, f64)> = (0..500).map(|k| 1.0 + 0.002 * f64::from(k)).map(|x| (x, 1.0 / (x * x))).collect();
+        let apart = front_apart(&dense, &[near, near]);
+        let steps: Vec<f64> = apart.windows(2).map(|pair| dense[pair[1]].0 / dense[pair[0]].0).collect();
+        assert!(apart.len() < 400 && steps.iter().all(|step| *step < 1.02), "{steps:?}");
+        assert!(apart[0] < 10 && apart.last() == Some(&499), "{apart:?}");
     }
 
     /// Numbers of which many are equal.

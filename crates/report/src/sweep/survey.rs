@@ -112,7 +112,7 @@ impl<'t, 'a> Survey<'t, 'a> {
         let equal = |length: f64| {
             move |one: f64, other: f64| (one - other).abs() <= length.max(SAME * one.abs().min(other.abs()))
         };
-        servobench_sweep::front_apart(&pairs, [equal(0.0), equal(self.length)])
+        servobench_sweep::front_apart(&pairs, &[equal(0.0), equal(self.length)])
     }
 
     /// True where groups are left out of the front since they failed.

@@ -226,10 +226,13 @@ fn the_front_is_drawn_and_named() {
         svg.contains("hollow: misses a limit") && svg.contains(">order snap<") && svg.contains("that keeps all limits")
     );
     let big =
-        Sample::new(vec![names("setpoint.order", &["jerk", "snap"]), jerk(25), mass(13)], Arrangement::Grid, None);
+        Sample::new(vec![names("setpoint.order", &["jerk", "snap"]), jerk(60), mass(13)], Arrangement::Grid, None);
     let order = |value: &Value| if value.written() == "snap" { 4.0 } else { 3.0 };
     let table = big.table(|_, x| ringing(number(x, 1), number(x, 2), 5e4, order(&x[0])));
-    assert!(front("big", &table).contains("12 of the 13 combinations on the line are named"));
+    let svg = front("big", &table);
+    let (before, _) = svg.split_once(" combinations on the line are named").unwrap_or_else(|| panic!("{svg}"));
+    let count: usize = before.rsplit_once("12 of the ").unwrap().1.parse().unwrap();
+    assert!(count > 12, "{count}");
     map("big", &table);
 }
 
