@@ -140,6 +140,7 @@ fn a_winding_that_warms_up() {
                 to_ambient: 1e-9,
                 winding_capacity: capacity,
                 housing_capacity: 1e6,
+                winding_limit: 155.0,
             }),
         }),
         ..Effects::default()

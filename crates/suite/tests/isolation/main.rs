@@ -6,6 +6,7 @@ mod stub;
 
 use native::Native;
 use servobench_plant::{BodyState, Engine, EngineName, Input, Mechanics, MechanicsError, MechanicsSetup};
+use servobench_scenario::TimeBound;
 use servobench_suite::{
     AtATime, Broken, Engines, Job, Run, RunError, RunLimits, Source, WorkerCommand, WorkerError, Workers, execute,
     jobs, map_in_parallel,
@@ -129,9 +130,9 @@ fn a_limit_of_time_holds_without_a_worker_too() {
         execute(&job_of("endless", text, &[EngineName::Exact])[0], &ENGINES, &workers, &mut |_| {}).unwrap_err()
     };
     let own = endless.replacen("[axis]", "time_limit = \"50 ms\"\n[axis]", 1);
-    let longer = Some(Duration::from_hours(1));
-    for broken in [run(&endless, Some(Duration::from_millis(50))), run(&own, None), run(&own, longer)] {
-        let RunError::TimeLimit { limit, reached, length } = broken.error else { panic!("{}", broken.error) };
+    let longer = Some(TimeBound::AtMost(3600.0));
+    for broken in [run(&endless, Some(TimeBound::AtMost(0.05))), run(&own, None), run(&own, longer)] {
+        let RunError::TimeLimit { limit, reached, length, .. } = broken.error else { panic!("{}", broken.error) };
         assert_eq!((limit, length), (Duration::from_millis(50), 1e6));
         assert!((0.0..1e6).contains(&reached), "{reached}");
         let said = broken.error.to_string();

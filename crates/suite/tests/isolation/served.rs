@@ -80,16 +80,16 @@ fn nothing_is_left_of_a_worker() {
 /// One that is stuck cannot stop itself, and is ended a little later.
 #[test]
 fn a_limit_of_time_holds_for_one_that_is_stuck() {
-    let limits = RunLimits { time: Some(Duration::from_millis(200)), ..GENEROUS };
+    let limits = RunLimits { time: Some(TimeBound::AtMost(0.2)), ..GENEROUS };
     let broken = broken_in(&workers_that("hang", limits), &slide(&[EngineName::Mujoco])[0]);
-    let RunError::TimeLimit { limit, reached: 0.0, length } = broken.error else { panic!("{}", broken.error) };
+    let RunError::TimeLimit { limit, reached: 0.0, length, .. } = broken.error else { panic!("{}", broken.error) };
     assert_eq!((limit, length), (Duration::from_millis(200), 0.1));
 }
 
 /// One that is only slow stops itself, and leaves what it has.
 #[test]
 fn a_limit_of_time_leaves_a_recording() {
-    let limits = RunLimits { time: Some(Duration::from_millis(100)), ..GENEROUS };
+    let limits = RunLimits { time: Some(TimeBound::AtMost(0.1)), ..GENEROUS };
     let endless = SLIDE.replace("0.1 s", "1e6 s") + "[record]\nrate = \"1 Hz\"\n";
     let broken = broken_in(&workers_that("nothing", limits), &job_of("endless", &endless, &[EngineName::Mujoco])[0]);
     let RunError::TimeLimit { reached, .. } = broken.error else { panic!("{}", broken.error) };
