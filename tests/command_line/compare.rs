@@ -151,7 +151,7 @@ fn an_axis_that_does_not_move_never_wins() {
         fits(&text);
         let (before, conclusion) =
             text.split_once("free wins: the other one is out.").unwrap_or_else(|| panic!("{text}"));
-        assert!(before.contains("\nstuck is out: arrives: the load ended"), "{text}");
+        assert!(before.contains("\nstuck is out: follows: the load is"), "{text}");
         assert!(!conclusion.contains("is out"), "who is out stands before the conclusion: {text}");
     }
     // Nothing is made equal to it either.

@@ -220,7 +220,7 @@ fn the_picture_of_the_readme_is_that_of_its_sweep() {
     assert!(said(&output).lines().all(|line| line.chars().count() <= 80), "{}", said(&output));
     let shown = String::from_utf8(output.stdout).unwrap();
     let front: Vec<&str> = shown.lines().skip_while(|line| !line.starts_with("No other combination")).collect();
-    assert!(front.iter().take(4).any(|line| line.contains("jerk 100 m/s3, snap 1000 m/s4")), "{shown}");
+    assert!(front.iter().take(4).any(|line| line.contains("jerk 50 m/s3, snap 1000 m/s4")), "{shown}");
     for (drawn, kept) in [("sweep.svg", "jerk-or-snap.svg"), ("sweep-front.svg", "jerk-or-snap-front.svg")] {
         let (drawn, kept) = (fs::read(work.path().join(drawn)).unwrap(), repository().join("docs/images").join(kept));
         if std::env::var_os("SERVOBENCH_WRITE_DOCS").is_some() {

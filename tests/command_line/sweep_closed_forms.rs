@@ -27,11 +27,13 @@ fn number(row: &Row, heading: &str) -> f64 {
 const FREQUENCY: &str = "axis.load.frequency [Hz]";
 const AMPLITUDE: &str = "residual_vibration_amplitude [m]";
 
-/// An undamped load of 10 kg on a base that follows its set-point exactly. Its stiffness is what the frequency of a sweep replaces.
+/// An undamped load of 10 kg on a base that follows its set-point exactly. Its stiffness is what the frequency of a sweep replaces. Beside
+/// a move that is shorter than its period it stays behind, and nobody wants it to follow.
 fn undamped(run: &str, setpoint: &str, distance: &str) -> String {
     format!(
         "[run]\n{run}\n[axis]\nmotion = \"linear\"\n[axis.load]\nmass = \"10 kg\"\nstiffness = \"6e5 N/m\"\n\
-         [motor]\nkind = \"prescribed\"\n[setpoint]\n{setpoint}\n[[program]]\nmove_to = \"{distance}\"\n"
+         [motor]\nkind = \"prescribed\"\n[setpoint]\n{setpoint}\n[[program]]\nmove_to = \"{distance}\"\n\
+         [requirements]\nfollows = false\n"
     )
 }
 
@@ -70,12 +72,13 @@ fn residual_vibration_over_frequency_is_the_product_of_sines() {
         for row in &all {
             let frequency = number(row, FREQUENCY);
             let (exact, envelope) = residual(1.0, &boxes[..order], frequency);
-            let Some(amplitude) = measured(row, AMPLITUDE) else {
+            let amplitude = number(row, AMPLITUDE);
+            if amplitude == 0.0 {
                 // docs/metrics.md: a difference below eight roundings of the largest position is no vibration.
                 assert!(2.0 * exact < 8.0 * f64::EPSILON, "nothing at {frequency} Hz, where {exact} m are left");
                 silent.push(frequency);
                 continue;
-            };
+            }
             // Positions about 1 m are rounded to 1.1e-16 m; of the phases of the sines, up to 188 rad, one rounding is 3e-14,
             // and that part of the envelope, 0.2 mm at most, is less. Measured: 3.3e-16 m at most.
             assert!((amplitude - exact).abs() < 1e-15, "{frequency} Hz: {amplitude} m, closed form {exact} m");
@@ -179,8 +182,7 @@ impl Robustness {
         let point = |(row, without): (&Row, &Row)| Point {
             ratio: number(row, FREQUENCY) / self.modelled,
             unshaped: number(without, AMPLITUDE),
-            // Where nothing is measured the load does not oscillate: a zero of the shaper.
-            shaped: measured(row, AMPLITUDE).unwrap_or(0.0),
+            shaped: number(row, AMPLITUDE),
         };
         curves.iter().map(|curve| curve.iter().zip(curves[0]).map(point).collect()).collect()
     }

@@ -255,8 +255,8 @@ fn place<'a>(table: &'a mut Table, path: &[&str], nth: &mut usize) -> Option<&'a
 
 fn read(table: &Table, folder: &Path) -> Option<Scenario> {
     let read = parse("test.toml", &table.to_string(), Some(folder)).ok()?.scenario;
-    // The keys as they are written.
-    Some(Scenario { parameters: Vec::new(), made_of: Vec::new(), ..read })
+    // The keys as they are written, and what is said of them.
+    Some(Scenario { parameters: Vec::new(), made_of: Vec::new(), warnings: Vec::new(), ..read })
 }
 
 #[test]

@@ -129,6 +129,7 @@ pub(crate) const PLOTS: &[Plot] = &[
                 style::REFERENCE,
                 MIDDLE,
             ),
+            curve(&[Signal::RequestPosition.name()], "request", style::REQUEST, THIN),
         ],
         ..PLAIN
     },
@@ -147,6 +148,7 @@ pub(crate) const PLOTS: &[Plot] = &[
                 style::REFERENCE,
                 MIDDLE,
             ),
+            curve(&[Signal::RequestVelocity.name()], "request", style::REQUEST, THIN),
         ],
         ..PLAIN
     },
@@ -190,6 +192,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[
             curve(&[Signal::EffortMotor.name()], "motor", style::MOTOR, WIDE),
             curve(&[Signal::EffortReference.name()], "reference", style::REFERENCE, THIN),
+            curve(&[Signal::RequestEffort.name()], "request", style::REQUEST, THIN),
         ],
         ..PLAIN
     },

@@ -5,6 +5,8 @@ pub(crate) type Rgb = [u8; 3];
 
 /// What was asked for.
 pub(crate) const REFERENCE: Rgb = [175, 175, 175];
+/// Request of the task.
+pub(crate) const REQUEST: Rgb = [200, 170, 40];
 /// Motor side.
 pub(crate) const MOTOR: Rgb = [66, 135, 245];
 /// A body between motor and load.

@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_program_that_moves_an_axis_whose_drive_is_off_is_doubted() {
-        let off = format!("{MOVE}[drive]\nenabled = false\n")
+        let off = format!("{MOVE}[drive]\nenabled = false\n[axis.motor_side]\nmass = \"10 kg\"\n")
             .replace("kind = \"prescribed\"", "kind = \"ideal-source\"\nlimit = \"1 kN\"");
         let found = doubts(&off);
         let words = "the drive is off, and the program has 1 move: it is not executed";
