@@ -86,10 +86,11 @@ fn worst(moves: &[MoveMetrics], name: Name) -> Result<f64, Absence> {
                 worst = Ok(value);
             }
             (None, Some(Absence::NothingRecorded { .. } | Absence::RestTooShort { .. })) if k + 1 < moves.len() => {}
-            (None, Some(absence @ Absence::WindowIsTheWay { .. })) if matches!(worst, Err(Absence::NoMove)) => {
-                worst = Err(absence.clone());
+            (None, Some(absence @ Absence::WindowIsTheWay { .. })) => {
+                if matches!(worst, Err(Absence::NoMove)) {
+                    worst = Err(absence.clone());
+                }
             }
-            (None, Some(Absence::WindowIsTheWay { .. })) => {}
             (None, Some(absence)) => return Err(absence.clone()),
             (None, None) => {}
         }

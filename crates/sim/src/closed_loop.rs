@@ -126,6 +126,7 @@ impl ClosedLoop {
         self.account(shaft.position, now);
         let motor = self.as_mounted(shaft);
         let mut command = self.control(k, external, motor, now, recorder);
+        self.ask(k, external, now);
         if let Some(Controller::Voltage(voltage)) = external.controller {
             now.voltage_reference = voltage;
             command = PowerCommand::Voltage(self.state.power.in_the_stator(voltage, motor));
@@ -195,13 +196,8 @@ impl ClosedLoop {
         let Some(control) = &mut self.state.control else {
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
-                (now.request, now.request_kind) = match external.setpoint {
-                    Some(setpoint) => (setpoint, RequestKind::Follow),
-                    None => program.request_at(since, now.setpoint),
-                };
             }
-            now.reference = now.setpoint.x;
-            now.motor_reference = now.setpoint.x;
+            (now.reference, now.motor_reference) = (now.setpoint.x, now.setpoint.x);
             return PowerCommand::Output(0.0);
         };
         let reading = control.motor_encoder.read(motor);
@@ -242,10 +238,6 @@ impl ClosedLoop {
                 let command = drive::step(params, state, &demand, EffortLimits::NONE, &sensors);
                 let setpoint = &mut now.setpoint;
                 (setpoint.x, setpoint.v, setpoint.a, setpoint.j, setpoint.s) = (x, v, a, j, s);
-                (now.request, now.request_kind) = match external.setpoint {
-                    Some(setpoint) => (setpoint, RequestKind::Follow),
-                    None => program.request_at(since, now.setpoint),
-                };
                 let (reference, motor_reference) = state.references(params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
                 command
@@ -274,7 +266,6 @@ impl ClosedLoop {
                 let command = drive::step(params, state, demand, limits, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);
                 network.tell(now);
-                now.ask(network.request(t));
                 cuts_velocity = network.cuts_velocity();
                 (now.reference, now.motor_reference) = match network.reference(t) {
                     Some((reference, motor)) => (reference.x, motor.position),
@@ -300,6 +291,21 @@ impl ClosedLoop {
             master: cuts_velocity[1],
         };
         command
+    }
+
+    /// request(k): what the task wants at tick `k` comes to `now`.
+    #[inline(always)]
+    fn ask(&mut self, k: u64, external: &External, now: &mut Instant) {
+        let begun = self.state.begun.unwrap_or(k);
+        match &mut self.state.source {
+            Source::Program(program) => {
+                (now.request, now.request_kind) = match external.setpoint {
+                    Some(setpoint) => (setpoint, RequestKind::Follow),
+                    None => program.request_at(self.base_rate.time(Tick(k - begun)), now.setpoint),
+                };
+            }
+            Source::Network(network, _) => now.ask(network.request(self.base_rate.time(Tick(k)))),
+        }
     }
 
     /// The program's set-point of tick `k`, which comes next; `None` over a fieldbus.

@@ -120,7 +120,7 @@ fn disturbances(scenario: &Scenario) -> Vec<Disturbance> {
 
 /// Channels in which FMUs excite the axis, and what makes each an effort of the motor.
 fn excited(scenario: &Scenario) -> Vec<(Signal, f64)> {
-    let exciting = scenario.fmus.iter().filter(|fmu| fmu.excites).flat_map(|fmu| fmu.efforts());
+    let exciting = scenario.fmus.iter().filter(|fmu| fmu.excites).flat_map(servobench_scenario::Fmu::efforts);
     let scaled = exciting.map(|effort| {
         let scale = if effort == LoopSignal::LoadEffort { scenario.axis.transmission } else { 1.0 };
         (effort.signal(), scale)

@@ -58,14 +58,11 @@ pub(crate) fn changed_inputs(run: &RunResult, root: Option<&Path>) -> Vec<String
 fn again(run: &RunResult, root: Option<&Path>) -> Result<Source, LoadError> {
     let overrides: Vec<Override> = run.overrides.iter().filter_map(|written| written.parse().ok()).collect();
     let with = OverrideArgs { overrides, root: root.map(Path::to_owned) };
-    match &run.file {
-        Some(file) => sources::again(Path::new(file), &with),
-        None => {
-            let no_demo =
-                || LoadError::Read { path: PathBuf::from(&run.name), error: std::io::ErrorKind::NotFound.into() };
-            sources::demo(&with)?.into_iter().find(|demo| demo.scenario.name == run.name).ok_or_else(no_demo)
-        }
+    if let Some(file) = &run.file {
+        return sources::again(Path::new(file), &with);
     }
+    let no_demo = || LoadError::Read { path: PathBuf::from(&run.name), error: std::io::ErrorKind::NotFound.into() };
+    sources::demo(&with)?.into_iter().find(|demo| demo.scenario.name == run.name).ok_or_else(no_demo)
 }
 
 /// Reason why the files in `folder` are not those that `run` wrote; `None` where they are.

@@ -112,7 +112,8 @@ pub(super) fn complete_joints(recording: &mut Recording, rules: &Rules<'_>) {
     let unit = format!("{}/s", recording.about.axis_unit);
     for (event, speed) in recording.events.iter_mut().zip(speeds).filter(|(event, _)| is_joint(event)) {
         if let Some(speed) = speed {
-            event.message.push_str(&format!("; the load came there at {}", Quantity::new(speed, &unit)));
+            event.message += "; the load came there at ";
+            event.message += &Quantity::new(speed, &unit).to_string();
         }
         if let (Some((why, _)), Some(mark)) = (excuse(&times, event.start), &mut event.incident) {
             mark.excuse = Some(why.into());

@@ -102,11 +102,10 @@ pub(crate) fn dominant(
     }
     match (best, too_short) {
         (Some((_, found)), _) if order.is_whole || share >= EXPLAINED => Ok(found),
-        (Some(_), _) => Err(Unfit::NotModal { share }),
         (None, Some(periods)) => Err(Unfit::TooShort { periods }),
         (None, None) if elsewhere => Err(Unfit::Elsewhere),
         (None, None) if order.is_whole => Err(Unfit::Settles),
-        (None, None) => Err(Unfit::NotModal { share }),
+        _ => Err(Unfit::NotModal { share }),
     }
 }
 

@@ -62,7 +62,8 @@ pub(super) fn disturbed(recording: &Recording, rules: &Rules<'_>) -> Vec<Range<u
         let values = recording.channel(*signal).unwrap_or_default();
         let mut before = values.first().copied().unwrap_or_default();
         for (row, value) in values.iter().enumerate() {
-            if *value != before && (scale * (value - before)).abs() >= least {
+            let step = (scale * (value - before)).abs();
+            if step > 0.0 && step >= least {
                 rows.push(row..row + 1);
                 before = *value;
             }

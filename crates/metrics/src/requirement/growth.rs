@@ -96,9 +96,14 @@ mod tests {
     use crate::synthetic::Build;
     use core::f64::consts::TAU;
 
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few seconds")]
+    fn rows(length: f64) -> usize {
+        (1000.0 * length) as usize + 1
+    }
+
     /// At 1 kHz for `length` (s), the motor is off by `error(t)` from where it is to stand.
     fn standing_for(length: f64, error: impl Fn(f64) -> f64) -> Recording {
-        Build::new(1000, (1000.0 * length) as usize + 1)
+        Build::new(1000, rows(length))
             .channel(Signal::MotorPosition, "m", |t| 1.0 - error(t))
             .channel(Signal::RequestPosition, "m", |_| 1.0)
             .channel(Signal::RequestVelocity, "m/s", |_| 0.0)

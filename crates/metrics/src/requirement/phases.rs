@@ -107,8 +107,8 @@ mod tests {
         assert_eq!(between_turning_points(&values, &(0..1600), 0.01), [0..500, 500..1000, 1000..1500, 1500..1600]);
         let rippled: Vec<f64> = values.iter().enumerate().map(|(k, x)| x + 1e-3 * (k as f64).sin()).collect();
         assert_eq!(between_turning_points(&rippled, &(0..1600), 0.01).len(), 4);
-        assert_eq!(between_turning_points(&values, &(0..1600), 3.0), [0..1600]);
-        assert_eq!(between_turning_points(&[2.0; 9], &(3..9), 0.0), [3..9]);
+        assert_eq!(between_turning_points(&values, &(0..1600), 3.0), vec![0..1600]);
+        assert_eq!(between_turning_points(&[2.0; 9], &(3..9), 0.0), vec![3..9]);
         assert_eq!(between_turning_points(&[], &(0..0), 0.0), [0..0; 0]);
     }
 }

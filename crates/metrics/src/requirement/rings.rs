@@ -39,29 +39,26 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
     let least = (2.0 * window).max(rules.unseen());
     let all = swings(&position[rows.clone()], rows.start, least, 0.0);
     let period = recording.rate.period();
-    let (earlier, later) = match decay(rules) {
-        Some(decay) => {
-            // The beginning may fade faster, with poles of its own.
-            let (earlier, later) = halves(&all[all.len() / 4..])?;
-            let predicted = decay * (middle(later) - middle(earlier)) * period;
-            // Half of it has to be visible.
-            let is_visible = SHARE * predicted >= -SAME.ln();
-            if !is_visible || (mean(earlier) / mean(later)).ln() >= SHARE * predicted {
-                return None;
-            }
-            (earlier, later)
+    let (earlier, later) = if let Some(decay) = decay(rules) {
+        // The beginning may fade faster, with poles of its own.
+        let (earlier, later) = halves(&all[all.len() / 4..])?;
+        let predicted = decay * (middle(later) - middle(earlier)) * period;
+        // Half of it has to be visible.
+        let is_visible = SHARE * predicted >= -SAME.ln();
+        if !is_visible || (mean(earlier) / mean(later)).ln() >= SHARE * predicted {
+            return None;
         }
-        None => {
-            let quarter = rows.len() / 4;
-            let (before, from) = (rows.end - 2 * quarter, rows.end - quarter);
-            let third = all.iter().position(|swing| swing.end >= before)?;
-            let fourth = all.iter().position(|swing| swing.end >= from)?;
-            let (earlier, later) = (&all[third..fourth], &all[fourth..]);
-            if earlier.len() < SWINGS || later.len() < SWINGS || mean(later) < SAME * mean(earlier) {
-                return None;
-            }
-            (earlier, later)
+        (earlier, later)
+    } else {
+        let quarter = rows.len() / 4;
+        let (before, from) = (rows.end - 2 * quarter, rows.end - quarter);
+        let third = all.iter().position(|swing| swing.end >= before)?;
+        let fourth = all.iter().position(|swing| swing.end >= from)?;
+        let (earlier, later) = (&all[third..fourth], &all[fourth..]);
+        if earlier.len() < SWINGS || later.len() < SWINGS || mean(later) < SAME * mean(earlier) {
+            return None;
         }
+        (earlier, later)
     };
     let unit = recording.about.axis_unit.as_str();
     let [from, to] = [earlier.first()?.end, later.last()?.end].map(|row| Quantity::new(recording.time_of(row), "s"));

@@ -14,7 +14,7 @@ const LEFT: f64 = 0.01;
 /// Least share of the largest requested velocity that counts.
 const OF_LARGEST: f64 = 1e-3;
 /// Times the planned time.
-const TIMES: f64 = 2.0;
+const TIMES: usize = 2;
 /// The velocity is a mean over this time at least (s): of a load that rings, over a period.
 const MEAN: f64 = 0.02;
 /// Resolutions that an axis at rest moves in it.
@@ -48,10 +48,7 @@ fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
 }
 
 fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<String> {
-    let row = |time: f64| -> usize {
-        let rows = (time / rows.h).ceil();
-        if rows < 1e15 { rows as usize } else { usize::MAX / 2 }
-    };
+    let row = |time: f64| task.recording.index_at(time);
     let mean = task.rules.oscillation().map_or(MEAN, |slowest| slowest.frequency.recip().max(MEAN));
     let span = row(mean).max(1);
     let (start, end) = (stop.rows.start, stop.rows.end);
@@ -62,8 +59,7 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
         let rate = if servo.velocity_feedforward < 1.0 { servo.slowest_rate() } else { servo.bandwidth };
         TIME_CONSTANTS / rate
     });
-    let due =
-        start.saturating_add((TIMES * planned as f64) as usize).saturating_add(row(settling)).saturating_add(span);
+    let due = start.saturating_add(TIMES * planned).saturating_add(row(settling)).saturating_add(span);
     let is_last = end == task.recording.len();
     if due >= end && !is_last {
         return None;

@@ -132,9 +132,8 @@ impl Follower {
         let row = phase.rows.start;
         let wants = |kind| matches!(kind, RequestKind::Follow | RequestKind::Rest);
         let goes_on = match phase.kind {
-            RequestKind::Follow | RequestKind::Rest if wants(before) => return,
+            RequestKind::Follow | RequestKind::Rest | RequestKind::Velocity if wants(before) => return,
             RequestKind::Follow | RequestKind::Rest => before == RequestKind::Velocity,
-            RequestKind::Velocity if wants(before) => return,
             RequestKind::Velocity => false,
             RequestKind::Nothing | RequestKind::Stand | RequestKind::Effort => return,
         };

@@ -110,8 +110,7 @@ mod tests {
     fn drift_and_ripple_are_no_swings() {
         let drift: Vec<f64> = (0..1000).map(|k| f64::from(k) / 100.0).collect();
         assert_eq!(swings(&drift, 0, 1e-9, 0.0), []);
-        let ripple: Vec<f64> =
-            drift.iter().enumerate().map(|(k, x)| (TAU * x).sin() + 0.05 * f64::from(k as u32 % 2)).collect();
+        let ripple: Vec<f64> = drift.iter().enumerate().map(|(k, x)| (TAU * x).sin() + 0.05 * (k % 2) as f64).collect();
         let found = swings(&ripple, 0, 1e-9, 0.125);
         let large = found.iter().filter(|swing| swing.size > 1.0).count();
         // Before the first swing nothing is known that the ripple could be small beside: a quarter of a period, 25 rows.

@@ -308,7 +308,9 @@ mod tests {
         let signals = Signals { amplitude_error: 0.02, ..Signals::ideal(20e-6) };
         let errors = Some(EncoderErrors { signals: Some(signals), ..EncoderErrors::default() });
         let resolution = |increment, errors| Encoder { increment, errors }.resolution();
-        assert_eq!([resolution(None, None), resolution(Some(1e-9), None)], [0.0, 1e-9]);
+        for (increment, expected) in [(None, 0.0), (Some(1e-9), 1e-9)] {
+            assert!((resolution(increment, None) - expected).abs() < 1e-24);
+        }
         assert!((resolution(Some(1e-9), errors) / 63.66e-9 - 1.0).abs() < 1e-4);
         assert!((resolution(Some(1e-6), errors) / 1e-6 - 1.0).abs() < 1e-15);
     }

@@ -19,7 +19,7 @@ pub(super) enum Requests {
     /// Those of a program that began at some time (s), `delay` seconds later.
     Program { program: Box<Program>, period: f64, delay: f64, running: Option<Running> },
     /// Those of function blocks.
-    Cycles(Cycles),
+    Cycles(Box<Cycles>),
 }
 
 /// A program under way.
@@ -54,7 +54,8 @@ impl Requests {
     pub(super) fn of_cycles(period: f64, delay: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
         let room = (delay / period) as usize + 4;
-        Self::Cycles(Cycles { period, delay, kept: VecDeque::with_capacity(room), interval: None })
+        let kept = VecDeque::with_capacity(room);
+        Self::Cycles(Box::new(Cycles { period, delay, kept, interval: None }))
     }
 
     /// The program has a cycle at `t` (s), `passed` seconds after its beginning.
@@ -66,8 +67,8 @@ impl Requests {
 
     /// Takes the request of the cycle at `t` (s).
     pub(super) fn push(&mut self, t: f64, request: Request) {
-        if let Self::Cycles(Cycles { kept, .. }) = self {
-            kept.push_back((t, request));
+        if let Self::Cycles(cycles) = self {
+            cycles.kept.push_back((t, request));
         }
     }
 

@@ -138,12 +138,12 @@ fn a_double_integrator_under_position_and_velocity() {
     // The poles that fade last: a pair, or two real ones.
     let pair = stable.slowest_oscillating.unwrap();
     assert_eq!(stable.slowest_real, None);
-    let (half, square) = (1.0 - (0.7 + 0.14) / 2.0, 1.0 - 0.7 + 0.14_f64);
+    let (half, square) = (1.0 - 0.7_f64.midpoint(0.14), 1.0 - 0.7 + 0.14_f64);
     assert!((pair.growth / (square.ln() / 2.0 / h) - 1.0).abs() < 1e-9, "{pair:?}");
     assert!((pair.frequency / ((half / square.sqrt()).acos() / TAU / h) - 1.0).abs() < 1e-9, "{pair:?}");
     let slow = report(&cascade(0.7, 0.05));
     assert_eq!(slow.slowest_oscillating, None);
-    let (half, square) = (1.0 - (0.7 + 0.0175) / 2.0, 1.0 - 0.7 + 0.0175_f64);
+    let (half, square) = (1.0 - 0.7_f64.midpoint(0.0175), 1.0 - 0.7 + 0.0175_f64);
     let slowest = half + (half * half - square).sqrt();
     assert!((slow.slowest_real.unwrap().growth / (slowest.ln() / h) - 1.0).abs() < 1e-9, "{slow:?}");
 }
