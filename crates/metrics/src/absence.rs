@@ -45,7 +45,7 @@ pub enum Absence {
     },
     /// Rows that stand for many ticks are too far apart.
     #[error(
-        "rows at {} are too few to measure: {} at least, or `record.channels` that every tick has memory for",
+        "rows at {} are too few to measure: {} at least, or so few channels that every tick has memory for them",
         Quantity::new(*rate, "Hz"), Quantity::new(*needed, "Hz")
     )]
     TooFewRows {
@@ -147,7 +147,7 @@ pub enum Absence {
     #[error("no fieldbus tells what the drive limits")]
     NoBus,
     /// The scenario makes nothing wrong on its bus.
-    #[error("no `[[bus.fault]]` concerns the run")]
+    #[error("no fault of the bus is ordered")]
     NoBusFault,
     /// The mode dies before it has shown enough periods.
     #[error("the mode is damped so strongly that {periods:.1} of its periods are visible; this takes {needed}")]
@@ -197,8 +197,8 @@ fn only_where(signal: Signal) -> &'static str {
         },
         (Presence::WithInverter, _) => "; only an inverter that is not ideal has losses",
         (Presence::WithLink, _) => "; only a link with a capacitor of its own changes",
-        (Presence::WithEndStops, _) => "; only an axis with `[axis.end_stops]` has it",
-        (Presence::WithThermalModel, _) => "; only a motor with `[motor.thermal]` warms up",
+        (Presence::WithEndStops, _) => "; only an axis with end stops has it",
+        (Presence::WithThermalModel, _) => "; only a motor with a thermal model warms up",
         _ => "",
     }
 }

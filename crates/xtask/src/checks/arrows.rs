@@ -46,6 +46,7 @@ const PLAN: [(&str, May); 36] = [
         "sim",
         May::On(&[
             "base",
+            "config",
             "cia402",
             "motion",
             "planner",
