@@ -2,22 +2,26 @@
 //!
 //! A stretch is from one start of a motion to the next. In each of them alternations are counted that task and disturbances
 //! ([`excitation`](super::excitation)) do not explain, over every part of it: more than [`MOST`] are an oscillation. An alternation
-//! counts where the motor's error over [`NINE`] of them swings by more than the encoder sees, in the median: what an edge of the encoder,
-//! noise or a peak of one tick sends from limit to limit does not move the motor, or comes now and then. A part that is over stays what it is, so that a longer
-//! run has at least as many.
+//! counts where the motor's error over [`NINE`] of them swings as often by more than the encoder sees: what an edge of the encoder,
+//! noise or a peak of one tick sends from limit to limit does not move the motor, or comes now and then. A part that is over stays what
+//! it is, so that a longer run has at least as many.
 use super::Rules;
 use super::excitation::turns;
-use super::turning_points::ROUNDING;
+use super::turning_points::{ROUNDING, swings};
 use crate::quantity::Quantity;
 use servobench_signals::Signal;
 use servobench_trace::{LimitReversals, Recording};
+use std::ops::RangeInclusive;
 
 /// Alternations beyond those that are explained, at most.
 pub(super) const MOST: usize = 8;
 /// Alternations over which the motor's error has to swing.
 const NINE: usize = 9;
-/// An oscillation is regular: of the times from one of the nine to the next the longest is so many times the median, at most.
-const REGULAR: usize = 4;
+/// Swings of that error among them: about one from each to the next. A motion makes fewer, and a torque ripple more.
+const SWINGS: RangeInclusive<usize> = 5..=9;
+/// An oscillation is regular: of the times from one of the nine to the next but one, its periods, the longest is so many times the
+/// shortest, at most.
+const REGULAR: usize = 2;
 
 /// The worst swinging between limits, in words.
 pub(super) fn between_limits(recording: &Recording, rules: &Rules<'_>) -> Option<String> {
@@ -78,7 +82,7 @@ fn unexplained(alternations: &[f64], turns: &[f64], starts: &[f64]) -> Option<Sw
     worst
 }
 
-/// Those of `times` at which the motor's error swings over nine of them by more than the encoder sees.
+/// Those of `times` at which the motor's error swings over nine of them by more than the encoder sees, and as often.
 fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'_>) -> Vec<f64> {
     let rows: Vec<usize> = times.iter().map(|time| recording.index_at(*time).min(error.len())).collect();
     let mut counts = vec![false; times.len()];
@@ -86,7 +90,7 @@ fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'
     let unseen = rules.unseen().max(ROUNDING * largest);
     for k in 0..(rows.len() + 1).saturating_sub(NINE) {
         let nine = &rows[k..k + NINE];
-        if is_regular(nine) && median_swing(error, nine) > unseen {
+        if is_regular(nine) && SWINGS.contains(&swings_within(error, nine, unseen)) {
             counts[k..k + NINE].fill(true);
         }
     }
@@ -95,27 +99,18 @@ fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'
 
 /// Whether `rows` come as regularly as those of an oscillation.
 fn is_regular(rows: &[usize]) -> bool {
-    let mut gaps: Vec<usize> = rows.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    gaps.sort_unstable();
-    gaps.last().is_some_and(|longest| *longest <= REGULAR * gaps[gaps.len() / 2])
+    let periods = || rows.windows(3).map(|three| three[2] - three[0]);
+    periods().max() <= periods().min().map(|shortest| REGULAR * shortest)
 }
 
-/// From the lowest to the highest error between two neighbours of `rows`, without the drift from the first to the last: the median.
-fn median_swing(error: &[f64], rows: &[usize]) -> f64 {
-    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return 0.0 };
-    let at = |row: usize| error.get(row).or(error.last()).copied().unwrap_or_default();
-    let drift = (at(*last) - at(*first)) / (last - first).max(1) as f64;
-    let mut swings: Vec<f64> = rows
-        .windows(2)
-        .map(|pair| {
-            let values = (pair[0]..=pair[1]).map(|row| at(row) - drift * (row - first) as f64);
-            let (low, high) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-            high - low
-        })
-        .collect();
-    swings.sort_by(f64::total_cmp);
-    swings[swings.len() / 2]
+/// How often the error swings by more than `unseen` from the first of `rows` to the last, without the drift between them.
+fn swings_within(error: &[f64], rows: &[usize], unseen: f64) -> usize {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return 0 };
+    let values = error.get(*first..=*last).unwrap_or_default();
+    let (Some(begin), Some(end)) = (values.first(), values.last()) else { return 0 };
+    let drift = (end - begin) / (last - first).max(1) as f64;
+    let values: Vec<f64> = values.iter().enumerate().map(|(row, error)| error - drift * row as f64).collect();
+    swings(&values, 0, unseen, 0.0).len()
 }
 
 /// The way that is requested less that of the motor, at each row (axis unit).
@@ -176,7 +171,7 @@ mod tests {
     #[test]
     fn task_and_disturbances_explain_alternations() {
         for (hertz, is_found) in [(50.0, false), (25.0, true)] {
-            let found = between_limits(&reversing(60, 1e-3, |t| (TAU * hertz * t).sin()), &rules());
+            let found = between_limits(&reversing(60, 1e-3, |t| 1e-3 * (TAU * hertz * t).sin()), &rules());
             assert_eq!(found.is_some(), is_found, "request of {hertz} Hz: {found:?}");
             for (effort, is_felt) in [(20.0, true), (0.5, false)] {
                 let sine = Disturbance { start: 0.0, end: f64::INFINITY, effort, frequency: Some(hertz) };
@@ -202,9 +197,11 @@ mod tests {
     #[test]
     fn an_oscillation_is_regular() {
         let mut recording = reversing(0, 1e-3, |_| 0.0);
-        for (gaps, is_found) in [([7, 7, 7], true), ([1, 14, 1], false), ([1, 8, 8], true), ([2, 8, 2], true)] {
+        for (gaps, is_found) in
+            [([5, 5, 5, 5], true), ([1, 9, 1, 9], true), ([2, 9, 4, 7], true), ([1, 2, 9, 9], false)]
+        {
             let times = (0..40).scan(0.05, |time, k| {
-                *time += 2e-3 * f64::from(gaps[k % 3]);
+                *time += 2e-3 * f64::from(gaps[k % 4]);
                 Some(*time)
             });
             recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times: times.collect() }];
@@ -220,23 +217,20 @@ mod tests {
         assert!(between_limits(&reversing(12, 1e-3, |t| 0.155 - t), &rules()).is_some());
     }
 
-    /// Oracle: ten thousand alternations, all of them explained, of a motor that swings; of one that does not they are noise.
+    /// Ten thousand alternations, all of them explained, of a motor that swings; of one that the encoder does not see swing they are noise.
     #[test]
     fn what_is_not_kept_is_not_judged_as_none() {
-        for (size, count, is_found) in [
-            (1e-3, LimitReversals::MOST, true),
-            (1e-3, LimitReversals::MOST - 1, false),
-            (0.0, LimitReversals::MOST, false),
-        ] {
+        let most = LimitReversals::MOST;
+        for (increment, count, is_found) in [(0.0, most, true), (0.0, most - 1, false), (1e-3, most, false)] {
             let mut recording = Build::new(20_000, 20_001)
                 .channel(Signal::RequestVelocity, "m/s", |t| (TAU * 5000.0 * t + 0.1).sin())
-                .channel(Signal::MotorPosition, "m", |t| size * (TAU * 5000.0 * t).cos())
+                .channel(Signal::MotorPosition, "m", |t| 1e-3 * (TAU * 5000.0 * t).cos())
                 .finish();
             let times = (0..count).map(|k| 1e-4 * k as f64).collect();
             recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times }];
-            let found = between_limits(&recording, &rules());
+            let found = between_limits(&recording, &Rules { increment, ..rules() });
             let is_unknown = found.as_ref().is_some_and(|found| found.contains("what follows is not judged"));
-            assert_eq!((found.is_some(), is_unknown), (is_found, is_found), "{size} {count}: {found:?}");
+            assert_eq!((found.is_some(), is_unknown), (is_found, is_found), "{increment} {count}: {found:?}");
         }
     }
 
