@@ -89,7 +89,7 @@ class Calls:
             if phase.end == inf:
                 self.phases[number] = Phase(phase.kind, phase.begin, self.phases[number + 1].begin, phase.target, phase.size)
         for phase in [phase for phase in self.phases if phase.kind == "rest"]:
-            self.phases.append(Phase("swing", phase.begin, phase.end, phase.target, phase.size))
+            self.phases += [Phase(kind, phase.begin, phase.end, phase.target, phase.size) for kind in ("swing", "calm")]
         bounds = self.pace.bounds
         whole: Tree = {"bus": bus, "setpoint": setpoint_table(bounds, self.axis.unit)} | (tables or {}) | {"call": self.calls}
         whole.setdefault("plc", {"homing_required": False})

@@ -48,19 +48,22 @@ class Run:
 class Tolerance:
     """What is not seen."""
 
-    window: float
+    window: float | None
     """At rests (axis unit)."""
+    span: float
+    """Of the task."""
     increment: float
     noise: float
 
     def of(self, phase: Phase) -> float:
         least = max(10 * self.increment, 5 * self.noise)
         match phase.kind:
-            case "rest" | "swing":
-                # A window as wide as the way says nothing of an arrival.
-                return max(min(self.window, 0.05 * phase.size), least)
+            case "rest" | "swing" | "calm":
+                # Without a window a thousandth of the way; one as wide as the way says nothing of an arrival.
+                window = 1e-3 * phase.size if self.window is None else self.window
+                return max(min(window, 0.05 * phase.size), least)
             case "stand":
-                return max(self.window, least)
+                return max(1e-2 * self.span if self.window is None else self.window, least)
             case "way":
                 return max(0.01 * phase.size, least)
             case _:
@@ -79,12 +82,12 @@ class Settling:
     """A velocity is judged that is held so long (s)."""
 
 
-def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling) -> list[float]:
+def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling, tolerance: Tolerance) -> list[float]:
     """D of each phase: infinite where the run never came to it, not a number where the phase is too short to be judged."""
-    return [deviation(phase, healthy, run, settling) for phase in phases]
+    return [deviation(phase, healthy, run, settling, 0.2 * tolerance.of(phase)) for phase in phases]
 
 
-def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float:
+def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: float) -> float:
     begin, end = healthy.time(phase.begin), healthy.time(phase.end)
     shift = run.start - healthy.start
     if not isfinite(shift):
@@ -108,10 +111,12 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float
         case "way":
             return float(numpy.max(numpy.abs(load - numpy.interp(t, healthy.t, healthy.values["reference"] - healthy.offset))))
         case "rest":
-            late = t >= (t[0] + t[-1]) / 2
-            return abs(mean_of_cycles(load[late]) - phase.target)
+            return abs(mean_of_cycles(load, grain) - phase.target)
         case "swing":
             return swing(load) / 2
+        case "calm":
+            last = load[-len(load) // 3 :]
+            return float(last.max() - last.min()) / 2
         case "stand":
             late = t >= t[0] + settling.stand
             # Over a bus it stands where it was when its power came.
@@ -123,7 +128,7 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float
             return abs(slope(t[late], load[late]) - phase.target)
         case "effort":
             late = t >= (t[0] + t[-1]) / 2
-            return abs(float(numpy.mean(run.values["effort.motor"][inside][late])) - phase.target)
+            return float(numpy.median(numpy.abs(run.values["effort.motor"][inside][late] - phase.target)))
         case "stop":
             # Of the velocity at its beginning what is left at its end.
             late = t >= t[0] + 0.75 * (t[-1] - t[0])
@@ -153,7 +158,7 @@ def goes_on(t: numpy.ndarray, x: numpy.ndarray, since: float, floor: float) -> b
 
 def length_suffices(kind: str, length: float, settling: Settling) -> bool:
     match kind:
-        case "rest" | "swing":
+        case "rest" | "swing" | "calm":
             return length >= settling.rest
         case "stand":
             return length > settling.stand
@@ -172,14 +177,40 @@ def slope(t: numpy.ndarray, x: numpy.ndarray) -> float:
     return float(s @ (x - x.mean()) / (s @ s))
 
 
-def mean_of_cycles(x: numpy.ndarray) -> float:
-    """Mean over the last whole cycles: between crossings of the mean in the same direction, or of the last fifth where there are none."""
-    middle = (x.max() + x.min()) / 2
-    above = x > middle
-    rises = numpy.flatnonzero(above[1:] & ~above[:-1]) + 1
-    if len(rises) >= 3 and len(x) - rises[-1] < 2 * (rises[-1] - rises[-2]):
-        return float(x[rises[0] : rises[-1]].mean())
+def mean_of_cycles(x: numpy.ndarray, grain: float) -> float:
+    """Mean over the last whole cycle, from peak to peak; of the last fifth where nothing swings by more than `grain`, and of all where it
+    swings without such a cycle."""
+    peaks, valleys = reversals(x, max(0.02 * float(x.max() - x.min()), grain))
+    half = len(x) // 2
+    for ends in (peaks, valleys):
+        if len(ends) >= 2 and ends[-1] >= half:
+            return float(x[ends[-2] : ends[-1]].mean())
+    if peaks and valleys and max(peaks[-1], valleys[-1]) >= half:
+        return float(x.mean())
     return float(x[-max(1, len(x) // 5) :].mean())
+
+
+def reversals(x: numpy.ndarray, hysteresis: float) -> tuple[list[int], list[int]]:
+    """Indices of maxima and minima from which it goes back by more than a hysteresis."""
+    peaks: list[int] = []
+    valleys: list[int] = []
+    low = high = 0
+    rising = None
+    values = x.tolist()
+    for at, value in enumerate(values):
+        if value > values[high]:
+            high = at
+        if value < values[low]:
+            low = at
+        if rising is not False and value < values[high] - hysteresis:
+            if rising:
+                peaks.append(high)
+            rising, low = False, at
+        elif rising is not True and value > values[low] + hysteresis:
+            if rising is False:
+                valleys.append(low)
+            rising, high = True, at
+    return peaks, valleys
 
 
 @dataclass(frozen=True)
@@ -207,6 +238,9 @@ def judgement(
             continue
         tol = max(tolerance.of(phase), 4 * s)
         bad, good = max(8 * h, 4 * tol), max(2 * h, tol)
+        # A load that swings and dies out as its damping says is not bad, but neither is it good.
+        if phase.kind == "calm":
+            bad = inf
         if d > bad:
             word = "bad"
         elif d > good and word == "good":

@@ -22,7 +22,7 @@ class Phase:
     """A part of a task."""
 
     kind: str
-    """`way`, `rest`, `swing` at rest, `stand`, `velocity`, `effort` or `stop`; `homing` is not judged."""
+    """`way`, `rest`, `swing` at rest that goes on, or any that is no `calm`, `stand`, `velocity`, `effort` or `stop`; `homing` is not judged."""
     begin: Any
     """Time (s), or the output of a call that begins it: `move.Active`."""
     end: Any
@@ -110,7 +110,7 @@ def moves_of(steps: list[tuple[float, float]], pace: Pace, tail: float) -> tuple
         until = inf if following is None else following.start
         if until > move.end:
             phases.append(Phase("rest", move.end, until, move.target, size))
-            phases.append(Phase("swing", move.end, until, move.target, size))
+            phases += [Phase(kind, move.end, until, move.target, size) for kind in ("swing", "calm")]
     return phases, way.moves[-1].end + tail
 
 
@@ -191,7 +191,8 @@ def velocity(random: Random, axis: Axis, pace: Pace) -> Task:
     end, target = 2 * time + held, speed * (time + held)
     phases = [Phase("velocity", time, time + held, speed), Phase("stop", end, inf, speed)]
     # Its set-point is one of positions all the way.
-    phases += [Phase("way", 0.0, end, target, abs(target)), Phase("rest", end, inf, target, abs(target)), Phase("swing", end, inf, target, abs(target))]
+    phases.append(Phase("way", 0.0, end, target, abs(target)))
+    phases += [Phase(kind, end, inf, target, abs(target)) for kind in ("rest", "swing", "calm")]
     tables: Tree = {"setpoint": setpoint_table(pace.bounds, axis.unit), "program": steps}
     return Task("velocity, direct", tables, phases, pace.bounds.v, pace.bounds.a, pace.distance, 2 * time + held + pace.rest)
 

@@ -101,7 +101,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         axis = replace(axis, motor=replace(axis.motor, bias=0.0))
         axis = replace(axis, estimate=estimate(axis))
     twin = Twin(axis, task, tables, duration)
-    tolerance = Tolerance(window or 0.01 * task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise)
+    tolerance = Tolerance(window, task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise)
     family = Family(seed, program, twin, engine, tolerance, settling(axis), is_mjcf)
     number = 0
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
@@ -160,12 +160,11 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
     if task.name != "torque" and random.random() < 0.4:
         motor = replace(motor, coulomb=bare * random.decades(-2, -0.5))
     if task.name != "torque" and (random.random() < 0.4 or task.name.startswith("hold")):
-        bias = bare * random.decades(-1, 0)
-        if task.name == "hold over a bus":
-            # It sags before it has power, which friction has to hold.
+        bias = bare * random.decades(-1, -0.2)
+        if task.is_bus:
+            # Without power it would sag, and the link would lead it back: friction holds it.
             motor = replace(motor, coulomb=1.25 * bias)
-        # Points for a buffer count from where an axis has sagged to.
-        motor = replace(motor, bias=random.sign() * (min(bias, 0.8 * motor.coulomb) if task.name == "ip" else bias))
+        motor = replace(motor, bias=random.sign() * bias)
     axis = replace(axis, motor=motor, feedforward=forward, objects=task.objects, switches=task.switches)
     increment = None if random.random() < 0.3 else task.span * random.decades(-6.5, -4)
     if is_coarse:

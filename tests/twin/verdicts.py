@@ -32,6 +32,8 @@ from twins import ENGINES, PROGRAMS, Drawn, Family, Pair, draw_family, write, wr
 
 MOST_OF_MOVE = 0.1
 """A healthy machine that is off by more of its move is left out."""
+OF_TARGET = ("velocity", "effort", "stop")
+"""Phases whose D is a share of what is asked for, and not of a way."""
 MOST_DISCARDED = 0.1
 FEWEST_OF_CELL = 40
 MANY = 4000
@@ -146,11 +148,11 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     # The program begins a few cycles after power: when the set-point passes the middle of its first way.
     late = begun(phases, healthy) - healthy.start if family.twin.task.is_bus and not family.twin.task.tables.get("call") else 0.0
     healthy.start += late
-    of_healthy = deviations(phases, healthy, healthy, family.settling)
-    of_sisters = [deviations(phases, healthy, run(f"sister-{number}"), family.settling) for number in (0, 1)]
+    of_healthy = deviations(phases, healthy, healthy, family.settling, family.tolerance)
+    of_sisters = [deviations(phases, healthy, run(f"sister-{number}"), family.settling, family.tolerance) for number in (0, 1)]
     spread = [float(numpy.nanmax([abs(s - h) for s in (*others,)] or [0])) for h, *others in zip(of_healthy, *of_sisters)]
-    sizes = [phase.size or family.twin.task.span for phase in phases]
-    if any(d > MOST_OF_MOVE * size for d, size, phase in zip(of_healthy, sizes, phases) if phase.kind in ("way", "rest", "stand")):
+    sizes = [abs(phase.target) if phase.kind in OF_TARGET else phase.size or family.twin.task.span for phase in phases]
+    if any(d > MOST_OF_MOVE * size for d, size in zip(of_healthy, sizes)):
         tally.discarded += 1
         tally.cells[family.program, "(none)"]["discarded"] += 1
         if os.environ.get("TWIN_TRACE"):
@@ -170,10 +172,10 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
             right = False
             continue
         outcome = of_pair["outcome"]
-        found = deviations(phases, healthy, run(pair.name), family.settling)
+        found = deviations(phases, healthy, run(pair.name), family.settling, family.tolerance)
         tolerance = family.tolerance
         if pair.judge is not None and pair.judge.window is not None:
-            tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window))
+            tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window or 0.0))
         judged = judgement(phases, found, of_healthy, spread, tolerance)
         lost = ended_calls(outcome) - ended_calls(result("healthy")["outcome"])
         if outcome["ended"] or lost:
@@ -232,7 +234,7 @@ def wrong(judged: Judgement, outcome: dict[str, Any], pair: Pair) -> str | None:
     broken = {name for name, standing in outcome["standing"].items() if standing == "broken"}
     if judged.word != "good" or pair.change.harms or has_fault(outcome):
         return None
-    if broken and broken <= set(EXCUSED):
+    if broken & set(EXCUSED):
         return "to be checked"
     return "false red"
 
