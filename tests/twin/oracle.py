@@ -54,6 +54,8 @@ class Tolerance:
     """Of the task."""
     increment: float
     noise: float
+    droop: float
+    """By how much friction and bias displace loops without an integral."""
 
     def of(self, phase: Phase) -> float:
         least = max(10 * self.increment, 5 * self.noise)
@@ -61,9 +63,9 @@ class Tolerance:
             case "rest" | "swing" | "calm":
                 # Without a window a thousandth of the way; one as wide as the way says nothing of an arrival.
                 window = 1e-3 * phase.size if self.window is None else self.window
-                return max(min(window, 0.05 * phase.size), least)
+                return max(min(window, 0.05 * phase.size), least) + self.droop
             case "stand":
-                return max(1e-2 * self.span if self.window is None else self.window, least)
+                return max(1e-2 * self.span if self.window is None else self.window, least) + self.droop
             case "way":
                 return max(0.01 * phase.size, least)
             case _:
@@ -124,8 +126,8 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             target = phase.target if healthy.start == 0.0 else float(held.mean()) if len(held) else numpy.nan
             return float(numpy.max(numpy.abs(load[late] - target))) if late.any() else numpy.nan
         case "velocity":
-            late = t >= (t[0] + t[-1]) / 2
-            return abs(slope(t[late], load[late]) - phase.target)
+            half = len(t) // 2
+            return abs(float(load[-1] - load[half]) / float(t[-1] - t[half]) - phase.target)
         case "effort":
             late = t >= (t[0] + t[-1]) / 2
             return float(numpy.median(numpy.abs(run.values["effort.motor"][inside][late] - phase.target)))

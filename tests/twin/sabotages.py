@@ -153,6 +153,9 @@ def current_gain(random: Random, twin: Twin) -> Change | None:
     if motor is None:
         return None
     factor = random.decades(0, 2) ** random.sign()
+    if twin.axis.feedforward.get("effort"):
+        # The delay of a feedforward that waits for the current loop has a bound.
+        factor = max(factor, 0.3)
     axis = replace(twin.axis, pmsm=replace(motor, bandwidth=factor * motor.bandwidth))
     return Change(axis, note=f"bandwidth of the current loop times {factor:.3g}")
 

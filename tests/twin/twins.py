@@ -101,7 +101,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         axis = replace(axis, motor=replace(axis.motor, bias=0.0))
         axis = replace(axis, estimate=estimate(axis))
     twin = Twin(axis, task, tables, duration)
-    tolerance = Tolerance(window, task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise)
+    tolerance = Tolerance(window, task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise, droop(axis))
     family = Family(seed, program, twin, engine, tolerance, settling(axis), is_mjcf)
     number = 0
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
@@ -184,6 +184,13 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         return axis, max(10 * axis.grain, 10 * unit_of(task.span), task.span * random.decades(-4.5, -2))
     window = None if random.random() < 0.25 else max(20 * axis.grain, task.span * random.decades(-4, -2))
     return axis, window
+
+
+def droop(axis: Axis) -> float:
+    """By how much friction and bias displace a load whose velocity loop has no integral (axis unit)."""
+    if axis.integral_time is not None:
+        return 0.0
+    return axis.r * (axis.friction() + abs(axis.bias())) / (axis.velocity_gain * axis.position_gain)
 
 
 def settling(axis: Axis) -> Settling:

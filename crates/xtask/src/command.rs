@@ -28,7 +28,7 @@ const COMMANDS: [(&str, &str); 17] = [
     ),
     (
         "drill verdicts [--healthy | --proof]",
-        "hold verdicts on 20 000 sabotaged machines, on healthy ones alone, or with each rule switched off, against an oracle \
+        "hold verdicts on 20 000 sabotaged machines, on healthy ones alone, or that each rule is needed, against an oracle \
          (SERVOBENCH_SWEEP: how many)",
     ),
     ("dist", "pack binary, library, models and scenarios into one archive"),

@@ -1,7 +1,7 @@
 //! One run: which machine, what is wrong with it, by which file it is judged, and what it leaves.
 use crate::sabotage::{Sabotage, SabotagedEngine};
 use serde::{Deserialize, Serialize};
-use servobench_metrics::{Requirement, Standing, Verdict};
+use servobench_metrics::{Standing, Verdict};
 use servobench_plant::Engine;
 use servobench_scenario::{Loaded, Scenario, load};
 use servobench_signals::Signal;
@@ -32,9 +32,6 @@ pub(crate) struct Job {
     /// What is wrong with the machine that no file can say.
     #[serde(default)]
     sabotage: Vec<Sabotage>,
-    /// Requirements that are switched off.
-    #[serde(default)]
-    without: Vec<String>,
     /// Where the values of `channels` go, rows of 64-bit numbers, of every so many ticks.
     rows: Option<PathBuf>,
     #[serde(default)]
@@ -77,11 +74,7 @@ impl Job {
     /// Why there is no result, in words.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let mut scenario = scenario(&self.run)?;
-        let mut judged_by = self.judge.as_ref().map_or_else(|| Ok(scenario.clone()), scenario_at)?;
-        for name in &self.without {
-            let requirement: Requirement = name.parse().map_err(|()| format!("`{name}` is not a requirement"))?;
-            judged_by.requirements.lifted.push(requirement);
-        }
+        let judged_by = self.judge.as_ref().map_or_else(|| Ok(scenario.clone()), scenario_at)?;
         let then = self.then.as_ref().map(scenario_at).transpose()?;
         let channels = self.channels.iter().map(|name| signal(name)).collect::<Result<Vec<_>, _>>()?;
         scenario.record.channels = channels;

@@ -12,7 +12,7 @@ use std::process::Command;
 const PAIRS: &str = "20000";
 /// Healthy axes, unless it does.
 const HEALTHY: &str = "2000";
-/// Pairs for each rule that is switched off, unless it does.
+/// Pairs among which each rule is needed, unless it does.
 const PROOF: &str = "2000";
 /// Pairs among the tests.
 const PAIRS_IN_TESTS: &str = "400";
@@ -24,7 +24,7 @@ pub(crate) enum Drill {
     Pairs,
     /// Healthy axes alone.
     Healthy,
-    /// Pairs of twins with each rule of the verdict switched off in turn.
+    /// Pairs of twins, among them some for each rule of the verdict that pass without it.
     Proof,
 }
 
