@@ -12,8 +12,12 @@ const STICK: f64 = 1.5;
 const RESOLUTIONS: f64 = 10.0;
 /// The least step of a disturbance that begins the time again, of the largest disturbance.
 const STEP: f64 = 0.01;
-/// Times the deviation from which it starts.
+/// Times the deviation from which it starts, and the way in which the loop brakes a load that moves at the beginning.
 const INITIAL: f64 = 2.0;
+/// The least of the explained deflection that is left at any time: what integrators of increments and friction never take away.
+const LEFT: f64 = 0.01;
+/// In which the velocity at the beginning is read (s).
+const FIRST: f64 = 1e-3;
 
 /// Why the axis does not stand; `None` where it is not asked to, before it moves.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
@@ -44,6 +48,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         let place = rows.request[phase.rows.start];
         let is_told = rows.request[phase.rows.clone()].iter().all(|x| x.to_bits() == place.to_bits());
         let place = if is_told { place } else { rows.load[phase.rows.start] };
+        let braking = speed(&rows.load[phase.rows.clone()], rows.h) / servo.slowest_rate();
         let mut last = disturbed(phase.rows.start);
         let (mut time, mut decay) = (0.0, 1.0);
         for row in phase.rows.clone() {
@@ -54,10 +59,12 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
             }
             let elastic = deflection.elastic + deflection.elastic_per_effort * on_load.abs();
             let explained = TIMES * (deflection.explained(effort(last).max(effort((on_motor, on_load)))) + elastic);
-            let fading = explained * (1.0 + sigma * time) * decay;
+            // Three real poles at most: position, velocity and its integral.
+            let passed = sigma * time;
+            let fading = explained * ((1.0 + passed + passed * passed / 2.0) * decay).max(LEFT);
             let bound = if deflection.has_integral { window.max(fading) } else { fading.max(window + explained) }
                 + STICK * (deflection.stick + elastic)
-                + INITIAL * deflection.initial;
+                + INITIAL * (deflection.initial + braking);
             let off = (rows.load[row] - place).abs();
             if off.is_nan() || off > bound {
                 reasons.push(format!(
@@ -74,6 +81,16 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         }
     }
     Some(reasons)
+}
+
+/// |Velocity| at the first of `positions`, a row of `h` (s) apart: homing and a sag before power leave one.
+fn speed(positions: &[f64], h: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a millisecond")]
+    let rows = ((FIRST / h) as usize).clamp(1, positions.len().saturating_sub(1).max(1));
+    match (positions.first(), positions.get(rows)) {
+        (Some(first), Some(later)) => (later - first).abs() / (rows as f64 * h),
+        _ => 0.0,
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +122,16 @@ mod tests {
             .requests(&[(0.0, "stand")])
             .finish();
         broken(&Task::of(&recording, rules, &[])).unwrap().len()
+    }
+
+    /// Homing ends while the load still runs to where its drive has stopped: 5 mm/s at 50 1/s are 0.1 mm.
+    #[test]
+    fn a_load_that_moves_at_the_beginning_is_braked() {
+        let rules = Rules { servo: Some(SERVO), window: Some(1e-6), ..rules() };
+        let brakes = |way: f64, rate: f64| move |t: f64| way * (1.0 - (-rate * t).exp());
+        assert_eq!(found(&rules, 0.0, brakes(1e-4, 50.0)), 0);
+        assert_eq!(found(&rules, 0.0, brakes(5e-4, 10.0)), 1, "too late");
+        assert_eq!(found(&rules, 0.0, |t| 5e-3 * t), 1, "it goes on");
     }
 
     /// Oracle: 100 N at 1e-5 m/N are 1 mm, of which three times are allowed, fading with 20 1/s.

@@ -22,7 +22,7 @@ pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
     let bus = scenario.bus.as_ref();
     let position = params.blocks.position.as_ref().and_then(|shaping| shaping.integral_time);
     let (gain, position_integral_time, of_velocity) = match bus.map(|bus| (bus.mode, &bus.position_loop)) {
-        Some((BusMode::CyclicVelocity, Some(gains))) => (gains.gain, gains.integral_time, 1.0),
+        Some((BusMode::CyclicVelocity, Some(gains))) => (gains.gain, gains.integral_time, velocity_offset(bus)),
         Some((BusMode::CyclicVelocity | BusMode::ProfileVelocity, _)) => (0.0, None, 1.0),
         _ => (params.position_gain, position, params.feedforward.velocity + velocity_offset(bus)),
     };
