@@ -17,6 +17,7 @@ mod program_cursor;
 mod reference;
 mod requests;
 mod signals;
+mod targets;
 mod units;
 
 use crate::stepper::States;

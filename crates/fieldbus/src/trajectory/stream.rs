@@ -66,6 +66,18 @@ impl Stream {
         Self { encoding, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
     }
 
+    /// Cycles from the time at which the first table begins until it is followed: those in which the buffer is filled.
+    #[must_use]
+    pub fn filling(&self) -> usize {
+        let points = self.tables.first().map_or(0, |(_, points)| points.len().min(AHEAD));
+        match (self.encoding.adapted_time(), self.encoding.transfer()) {
+            (Some(_), _) => 0,
+            // The mode before them, the start behind them.
+            (None, PointTransfer::Serial) => points + 1,
+            (None, _) => points.saturating_sub(1),
+        }
+    }
+
     /// What goes over the serial interface in this cycle, once.
     pub const fn message(&mut self) -> Option<Message> {
         self.message.take()

@@ -5,6 +5,7 @@ use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
 use super::requests::Requests;
 use super::signals::Signals;
+use super::targets::Targets;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
@@ -136,7 +137,13 @@ impl Network {
         };
         let requests = match &task {
             MotionTask::Moves(moves) => Requests::of_program(moves.program(), period, delay),
-            MotionTask::DriveProfile(profile) => Requests::of_program(profile.moves().program(), period, delay),
+            MotionTask::DriveProfile(profile) => {
+                let program = profile.moves().program();
+                match bus.mode {
+                    scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program), period, delay),
+                    _ => Requests::of_program(program, period, delay + profile.filling() as f64 * period),
+                }
+            }
             MotionTask::Plc(_) => Requests::of_cycles(period, delay),
         };
         let network = Self {

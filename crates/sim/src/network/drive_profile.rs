@@ -72,6 +72,14 @@ impl DriveProfile {
         &self.moves
     }
 
+    /// Cycles by which the drive begins later than the program, since its buffer is filled first.
+    pub(super) fn filling(&self) -> usize {
+        match &self.orders {
+            Orders::Tables(stream) => stream.filling(),
+            Orders::Positions { .. } | Orders::Velocities { .. } => 0,
+        }
+    }
+
     /// What goes over the serial interface of the drive in this cycle.
     pub(super) const fn message(&mut self) -> Option<Message> {
         match &mut self.orders {

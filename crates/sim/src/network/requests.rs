@@ -3,6 +3,7 @@
 //! A program of moves is known beforehand and is asked at every tick. Function blocks give a request per cycle of theirs; a path
 //! between two cycles is the quintic polynomial through both, and before the second one is there the first one goes on.
 use super::reference::between;
+use super::targets::Targets;
 use crate::program::Program;
 use servobench_base::{Request, RequestKind, Setpoint};
 use servobench_motion::interpolate::Interval;
@@ -17,9 +18,18 @@ const ROUNDING: f64 = 5e-10;
 #[derive(Debug, Clone)]
 pub(super) enum Requests {
     /// Those of a program that began at some time (s), `delay` seconds later.
-    Program { program: Box<Program>, period: f64, delay: f64, running: Option<Running> },
+    Program { course: Course, period: f64, delay: f64, running: Option<Running> },
     /// Those of function blocks.
     Cycles(Box<Cycles>),
+}
+
+/// The way that a program asks for.
+#[derive(Debug, Clone)]
+pub(super) enum Course {
+    /// That of its moves.
+    Moves(Box<Program>),
+    /// That of a drive which is told targets.
+    Targets(Targets),
 }
 
 /// A program under way.
@@ -47,7 +57,12 @@ pub(super) struct Cycles {
 impl Requests {
     /// Those of `program`, whose task has cycles of `period` (s), and which reach the loops `delay` (s) later.
     pub(super) fn of_program(program: &Program, period: f64, delay: f64) -> Self {
-        Self::Program { program: Box::new(program.clone()), period, delay, running: None }
+        Self::Program { course: Course::Moves(Box::new(program.clone())), period, delay, running: None }
+    }
+
+    /// Those of a program whose drive is told `targets`.
+    pub(super) const fn of_targets(targets: Targets, period: f64, delay: f64) -> Self {
+        Self::Program { course: Course::Targets(targets), period, delay, running: None }
     }
 
     /// Those of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
@@ -75,7 +90,7 @@ impl Requests {
     /// The request at `t` (s), which does not go back.
     pub(super) fn at(&mut self, t: f64) -> Request {
         match self {
-            Self::Program { program, period, delay, running } => {
+            Self::Program { course, period, delay, running } => {
                 let Some(Running { begun, last }) = running else { return Request::Nothing };
                 let passed = t - *begun - *delay;
                 if t - *delay - *last > MISSED * *period {
@@ -85,6 +100,10 @@ impl Requests {
                     return Request::Stand;
                 }
                 let passed = passed.max(0.0);
+                let program = match course {
+                    Course::Moves(program) => program,
+                    Course::Targets(targets) => return targets.at(passed),
+                };
                 let setpoint = program.at(passed);
                 match program.request_at(passed, setpoint) {
                     (_, RequestKind::Nothing | RequestKind::Effort) => Request::Nothing,
