@@ -10,7 +10,7 @@ use servobench_suite::judge;
 use servobench_trace::{CallFate, Recording};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// One run.
 #[derive(Debug, Deserialize)]
@@ -73,9 +73,9 @@ impl Job {
     /// # Errors
     /// Why there is no result, in words.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
-        let mut scenario = scenario(&self.run)?;
-        let judged_by = self.judge.as_ref().map_or_else(|| Ok(scenario.clone()), scenario_at)?;
-        let then = self.then.as_ref().map(scenario_at).transpose()?;
+        let mut scenario = scenario_at(&self.run)?;
+        let judged_by = self.judge.as_ref().map_or_else(|| Ok(scenario.clone()), |path| scenario_at(path))?;
+        let then = self.then.as_ref().map(|path| scenario_at(path)).transpose()?;
         let channels = self.channels.iter().map(|name| signal(name)).collect::<Result<Vec<_>, _>>()?;
         scenario.record.channels = channels;
         let engine = SabotagedEngine {
@@ -136,11 +136,7 @@ const fn fate(fate: &CallFate) -> &'static str {
     }
 }
 
-fn scenario_at(path: &PathBuf) -> Result<Scenario, String> {
-    scenario(path)
-}
-
-fn scenario(path: &PathBuf) -> Result<Scenario, String> {
+fn scenario_at(path: &Path) -> Result<Scenario, String> {
     match load(path) {
         Ok(Loaded { scenario, .. }) => Ok(scenario),
         Err(error) => Err(format!("{}: {error}", path.display())),

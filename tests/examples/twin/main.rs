@@ -19,7 +19,9 @@ use std::{io, thread};
 
 fn main() {
     if std::env::args().nth(1).as_deref() == Some("--requirements") {
-        Requirement::ALL.iter().for_each(|name| println!("{name}"));
+        for name in Requirement::ALL {
+            println!("{name}");
+        }
         return;
     }
     let workers = thread::available_parallelism().map_or(1, usize::from);
