@@ -196,7 +196,7 @@ def droop(axis: Axis) -> float:
 def settling(axis: Axis) -> Settling:
     """By the slowest time constants that its gains make."""
     slow = 2 / axis.position_gain if axis.integral_time is None else max(2 / axis.position_gain, 2 * axis.integral_time)
-    return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=5 * slow)
+    return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=2.5 * slow)
 
 
 def tree(family: Family, axis: Axis, tables: Tree | None = None) -> Tree:

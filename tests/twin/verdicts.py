@@ -58,6 +58,8 @@ class Check:
 class Tally:
     """What came of the pairs."""
 
+    is_traced: bool = False
+    """Whether each pair is shown."""
     families: int = 0
     discarded: int = 0
     cells: dict[tuple[str, str], Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
@@ -151,13 +153,14 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     healthy.start += late
     of_healthy = deviations(phases, healthy, healthy, family.settling, family.tolerance)
     of_sisters = [deviations(phases, healthy, run(f"sister-{number}"), family.settling, family.tolerance) for number in (0, 1)]
-    spread = [float(numpy.nanmax([abs(s - h) for s in (*others,)] or [0])) for h, *others in zip(of_healthy, *of_sisters)]
+    apart = [[abs(d - h) for d in ds if not numpy.isnan(d - h)] for h, *ds in zip(of_healthy, *of_sisters)]
+    spread = [max(ds, default=0.0) for ds in apart]
     sizes = [abs(phase.target) if phase.kind in OF_TARGET else phase.size or family.twin.task.span for phase in phases]
     if any(d > MOST_OF_MOVE * size for d, size in zip(of_healthy, sizes)):
         tally.discarded += 1
         tally.cells[family.program, "(none)"]["discarded"] += 1
-        if os.environ.get("TWIN_TRACE"):
-            print("discarded", family.name, family.program, [f"{p.kind}:{d:.3g} of {s:.3g}" for p, d, s in zip(phases, of_healthy, sizes)])
+        if tally.is_traced:
+            print("discarded", family.name, family.program, [f"{phase.kind} {d:.3g}" for phase, d in zip(phases, of_healthy)])
         return True
     right = True
     outcome = result("healthy")["outcome"]
@@ -185,8 +188,9 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         if judged.word == "bad" and len(broken(outcome)) == 1:
             tally.alone.update(broken(outcome))
         kind = wrong(judged, outcome, pair)
-        if os.environ.get("TWIN_TRACE"):
-            print(pair.name, family.program, pair.sabotage, pair.change.note, judged, outcome["passed"], outcome["reasons"][:2], [f"{p.kind}:{d:.3g}" for p, d in zip(phases, found)])
+        if tally.is_traced:
+            by_phase = [f"{phase.kind} {d:.3g}" for phase, d in zip(phases, found)]
+            print(pair.name, family.program, pair.change.note, judged, outcome["passed"], outcome["reasons"][:2], by_phase)
         if kind:
             right = False
             cell[kind] += 1
@@ -288,7 +292,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--healthy", type=int, help="so many healthy axes alone")
     parser.add_argument("--proof", type=int, help="so many pairs, among them some for each requirement that pass without it")
     parser.add_argument("--seed", default="1")
-    parser.add_argument("--only", help="a family, by its seed: its files are kept")
+    parser.add_argument("--only", help="a family, by its seed: its pairs are shown, its files are kept")
     parser.add_argument("--programs", nargs="*", default=list(PROGRAMS))
     parser.add_argument("--sabotages", nargs="*", default=list(SABOTAGES))
     parser.add_argument("--keep", type=Path, help="where the scenarios of wrong verdicts go")
@@ -298,7 +302,7 @@ def options() -> argparse.Namespace:
 
 def sweep(given: argparse.Namespace, pairs: int, room: Path) -> Tally:
     """So many pairs."""
-    tally, runner = Tally(), Runner(given.program)
+    tally, runner = Tally(is_traced=bool(given.only)), Runner(given.program)
     count = given.healthy or -(-pairs // given.each)
     names = [given.only] if given.only else [f"{given.seed}-{number}" for number in range(count)]
     drawn = Drawn(
