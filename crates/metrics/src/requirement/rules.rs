@@ -62,7 +62,7 @@ pub struct Tolerances {
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Self { follows: 0.25, arrives: 0.05, velocity: 0.05, effort: 0.05 }
+        Self { follows: 0.05, arrives: 0.05, velocity: 0.05, effort: 0.05 }
     }
 }
 

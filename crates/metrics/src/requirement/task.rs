@@ -114,6 +114,14 @@ impl<'a> Task<'a> {
         made.map_or(row, |made| self.recording.index_at(made.start)).min(row)
     }
 
+    /// How far the request goes at a velocity right before and behind a way: a ramp is a part of that motion.
+    pub(super) fn beside(&self, way: &Range<usize>) -> f64 {
+        let Some(rows) = self.rows else { return 0.0 };
+        let touches = |phase: &&RequestPhase| phase.rows.end == way.start || phase.rows.start == way.end;
+        let held = self.phases.iter().filter(|phase| phase.kind == RequestKind::Velocity).filter(touches);
+        held.map(|phase| span(&rows.request[phase.rows.clone()])).sum()
+    }
+
     /// A position of the axis in words.
     pub(super) fn length(&self, value: f64) -> Quantity<'_> {
         Quantity::new(value, &self.recording.about.axis_unit)

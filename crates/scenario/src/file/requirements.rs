@@ -81,8 +81,8 @@ table! {
 table! {
     /// How far off the request the axis may be, as shares.
     pub(crate) struct Tolerance {
-        /// From the response of its loops, of the way between two turning points; default: 0.25.
-        follows: f64 = positive(Plain(&RATIO), "0.25"),
+        /// From the response of its loops, of the way between two turning points; default: 0.05.
+        follows: f64 = positive(Plain(&RATIO), "0.05"),
         /// From a target, of the way to it, where the window is not smaller; default: 0.05.
         arrives: f64 = positive(Plain(&RATIO), "0.05"),
         /// From a velocity that is held, of it; default: 0.05.
