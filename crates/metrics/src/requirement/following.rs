@@ -133,7 +133,8 @@ mod tests {
                 .finish()
         };
         assert_eq!(found(&build(&slow), &soft, &[]), [""; 0]);
-        assert_eq!(found(&build(&request), &soft, &[]).len(), 1, "a load that is faster is not right either");
+        assert_eq!(found(&build(&request), &soft, &[]), [""; 0], "a load that is nearer to the request follows better");
+        assert_eq!(found(&build(&|t| 1.2 * request(t)), &soft, &[]).len(), 1, "one that runs ahead does not");
         assert_eq!(found(&build(&|_| 0.0), &soft, &[]).len(), 1);
         assert_eq!(found(&build(&slow), &rules(), &[]).len(), 1);
     }

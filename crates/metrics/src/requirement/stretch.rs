@@ -72,7 +72,10 @@ impl Stretch {
 
     fn take(&mut self, row: usize, load: f64, request: f64, response: f64) {
         self.response = (self.response.0.min(response), self.response.1.max(response));
-        let off = (load - response).abs();
+        let (of_response, of_request) = (load - response, load - request);
+        // Nearer to the request than the linear loop, an axis follows all the better.
+        let is_between = of_response * of_request <= 0.0;
+        let off = if is_between { 0.0 } else { of_response.abs().min(of_request.abs()) };
         // What is not a number is as far off as can be.
         if off > self.worst.0 || off.is_nan() && self.worst.0.is_finite() {
             self.worst = (if off.is_nan() { f64::INFINITY } else { off }, row);
