@@ -135,17 +135,7 @@ impl Network {
             MotionTask::Moves(moves) => DelayedReference::of_program(period, delay, moves.program()),
             MotionTask::DriveProfile(_) | MotionTask::Plc(_) => DelayedReference::new(period, delay),
         };
-        let requests = match &task {
-            MotionTask::Moves(moves) => Requests::of_program(moves.program(), period, delay),
-            MotionTask::DriveProfile(profile) => {
-                let program = profile.moves().program();
-                match bus.mode {
-                    scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program), period, delay),
-                    _ => Requests::of_program(program, period, delay + profile.filling() as f64 * period),
-                }
-            }
-            MotionTask::Plc(_) => Requests::of_cycles(period, delay),
-        };
+        let requests = requests(&task, bus.mode, period, delay);
         let network = Self {
             task,
             model,
@@ -176,6 +166,21 @@ impl Network {
             signals: Signals::new(bus.mode == scenario::BusMode::InterpolatedPosition, recorder),
         };
         Ok((network, delays))
+    }
+}
+
+/// Requests of `task`, which has cycles of `period` (s), and whose set-points are followed `delay` (s) later.
+fn requests(task: &MotionTask, mode: scenario::BusMode, period: f64, delay: f64) -> Requests {
+    match task {
+        MotionTask::Moves(moves) => Requests::of_program(moves.program(), period, delay),
+        MotionTask::DriveProfile(profile) => {
+            let program = profile.moves().program();
+            match mode {
+                scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program), period, delay),
+                _ => Requests::of_program(program, period, delay + profile.filling() as f64 * period),
+            }
+        }
+        MotionTask::Plc(_) => Requests::of_cycles(period, delay),
     }
 }
 

@@ -48,8 +48,8 @@ impl Way {
         let (size, a, since) = (self.distance.abs(), self.acceleration, passed - self.start);
         let ramp = self.velocity / a;
         let duration = size / self.velocity + ramp;
-        // Without a distance neither is a number.
-        if !(since < duration) {
+        // Without a distance the duration is not a number.
+        if duration.is_nan() || since >= duration {
             return Request::Rest(self.from + self.distance);
         }
         let left = duration - since;
