@@ -152,7 +152,7 @@ def torque(random: Random, axis: Axis, pace: Pace) -> Task:
     calls = chain(axis, pace)
     held = random.uniform(0.2, 0.4)
     # It gets faster all the time.
-    effort = random.sign() * axis.total * 0.7 * pace.bounds.v / held / axis.r * random.uniform(0.3, 1)
+    effort = random.sign() * axis.total * 0.5 * pace.bounds.v / held / axis.r * random.uniform(0.3, 1)
     calls.call("MC_TorqueControl", "push", "power.Status", torque=quantity(effort, axis.effort_unit))
     calls.phases.append(Phase("effort", "push.InTorque", inf, effort))
     calls.length += held - 0.1
@@ -171,7 +171,7 @@ def homing(random: Random, axis: Axis, pace: Pace) -> Task:
     width = 0.3 * pace.distance
     home = {"from": quantity(min(edge, edge - width if leftwards else edge), axis.unit), "to": quantity(max(edge, edge + width if not leftwards else edge), axis.unit)}
     calls.call("MC_Home", "home", "power.Status")
-    calls.length += at / fast * 1.3 + 6 * fast / (0.5 * pace.bounds.a) + 1.5
+    calls.length += at / fast * 1.6 + 8 * fast / (0.5 * pace.bounds.a) + 2.5
     calls.phases.append(Phase("homing", "power.Status", "home.Done", edge))
     calls.move("move", {"after": "home.Done", "delay": quantity(round(pace.rest, 4), "s")}, random.sign() * pace.distance * random.uniform(0.6, 1))
     calls.length += 2 * pace.rest

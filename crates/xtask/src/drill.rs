@@ -17,7 +17,7 @@ pub(crate) use long::run as long;
 pub(crate) use many::run as many;
 pub(crate) use several::run as several;
 pub(crate) use sweeps::run as sweep;
-pub(crate) use verdicts::{Drill as Verdicts, in_tests as verdicts_in_tests, run as verdicts};
+pub(crate) use verdicts::{Drill as Verdicts, run as verdicts};
 
 use crate::failure::Failure;
 use crate::program;

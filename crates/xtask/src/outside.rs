@@ -87,11 +87,6 @@ impl Outside {
         installed.flat_map(commands).collect()
     }
 
-    /// Whether there is the environment that most of them share.
-    pub(crate) const fn has_common(&self) -> bool {
-        self.pythons[0].is_ok()
-    }
-
     /// Says what is left out, if anything is.
     pub(crate) fn report(&self) {
         for (group, python) in GROUPS.iter().zip(&self.pythons) {

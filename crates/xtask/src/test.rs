@@ -1,6 +1,5 @@
 //! `cargo xtask test`: everything that CI runs, in order, up to the first failure.
 use crate::bare_metal::BareMetal;
-use crate::drill;
 use crate::failure::Failure;
 use crate::outside::Outside;
 use crate::wheel;
@@ -68,10 +67,6 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     let mut steps = steps(workspace, engines)?;
     steps.extend(bare_metal.command(workspace).map(|command| Step::new("bare metal", command)));
     steps.extend(outside_clients(&outside, workspace));
-    if outside.has_common() {
-        let twins = drill::verdicts_in_tests(workspace, engines == Engines::All);
-        steps.extend(twins.map(|command| Step::new("sabotaged twins", command)));
-    }
     let report = || {
         bare_metal.report();
         outside.report();

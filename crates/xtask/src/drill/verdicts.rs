@@ -14,8 +14,6 @@ const PAIRS: &str = "20000";
 const HEALTHY: &str = "2000";
 /// Pairs among which each rule is needed, unless it does.
 const PROOF: &str = "2000";
-/// Pairs among the tests.
-const PAIRS_IN_TESTS: &str = "400";
 
 /// Which drill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,13 +47,6 @@ pub(crate) fn run(workspace: &Workspace, drill: Drill) -> Result<(), Failure> {
         command.args(["--seed", &seed]);
     }
     run_command(&mut command, 0)
-}
-
-/// What `cargo xtask test` runs: the build, and few pairs with fixed seeds.
-pub(crate) fn in_tests(workspace: &Workspace, has_mujoco: bool) -> [Command; 2] {
-    let mut command = judge(workspace, has_mujoco);
-    command.args(["--pairs", PAIRS_IN_TESTS]);
-    [build(workspace, has_mujoco), command]
 }
 
 fn build(workspace: &Workspace, has_mujoco: bool) -> Command {
