@@ -5,6 +5,8 @@ use super::task::{Piece, Task};
 /// Shares of the span of the response: of the way itself, and the most that window and deflection add.
 const OF_WINDOW: f64 = 0.5;
 const OF_DEFLECTION: f64 = 0.25;
+/// The least share of the way where no loop is known: its lag, or the swing of a load on a motor that follows exactly, is in it.
+const UNKNOWN_LOOP: f64 = 0.25;
 /// Increments of the encoder that are added.
 const INCREMENTS: f64 = 10.0;
 
@@ -14,6 +16,8 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     ways.peek().filter(|_| task.rules.driven != Driven::Not)?;
     let acceleration = task.requested_acceleration();
     let deflection = &task.rules.deflection;
+    let follows = task.rules.tolerances.follows;
+    let share_of_way = if task.rules.servo.is_some() { follows } else { follows.max(UNKNOWN_LOOP) };
     let elastic = deflection.elastic
         + deflection.elastic_per_acceleration * acceleration
         + deflection.elastic_per_effort * task.on_load;
@@ -21,7 +25,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let gives_way = elastic + deflection.droop(task.disturbance).max(deflection.explained_alone(task.disturbance));
     let left = ways.filter(|(_, way)| !task.is_excused(&way.rows)).filter_map(|(_, way)| {
         let span = way.span() + task.beside(&way.rows);
-        let share = task.rules.tolerances.follows * span;
+        let share = share_of_way * span;
         let bound = share.max(task.window(span).min(OF_WINDOW * span))
             + gives_way.min(OF_DEFLECTION * span)
             + INCREMENTS * task.rules.increment;
@@ -70,6 +74,19 @@ mod tests {
             .finish()
     }
 
+    /// A loop whose response is the request.
+    const AT_ONCE: Servo = Servo {
+        gain: 1e3,
+        position_integral_time: None,
+        velocity_feedforward: 1.0,
+        bandwidth: 1e6,
+        reference_weight: 1.0,
+        integral_time: None,
+        inertia_feedforward: 1.0,
+        viscous: 0.0,
+        viscous_feedforward: 0.0,
+    };
+
     fn found(recording: &Recording, rules: &Rules<'_>, expected: &[Expected]) -> Vec<String> {
         broken(&Task::of(recording, rules, expected)).unwrap_or_default()
     }
@@ -81,8 +98,8 @@ mod tests {
         assert_eq!(
             found(&recording, &rules(), &[]),
             [
-                "the load is 200 mm from where the loop would bring it at 499 ms in `move to 0.2 m`: more than 9.98 mm on a way of 200 mm; effort limit bound for 300 ms",
-                "the load is 200 mm from where the loop would bring it at 500 ms in `move to 0 m`: more than 9.98 mm on a way of 200 mm",
+                "the load is 200 mm from where the loop would bring it at 499 ms in `move to 0.2 m`: more than 49.9 mm on a way of 200 mm; effort limit bound for 300 ms",
+                "the load is 200 mm from where the loop would bring it at 500 ms in `move to 0 m`: more than 49.9 mm on a way of 200 mm",
             ]
             .map(str::to_owned)
         );
@@ -94,7 +111,8 @@ mod tests {
     #[test]
     fn the_bound_is_a_share_of_the_way_and_what_is_explained() {
         let behind = |share: f64, deflection: Deflection| {
-            found(&there_and_back(|x| (1.0 - share) * x), &Rules { deflection, ..rules() }, &[]).is_empty()
+            found(&there_and_back(|x| (1.0 - share) * x), &Rules { servo: Some(AT_ONCE), deflection, ..rules() }, &[])
+                .is_empty()
         };
         let rigid = Deflection::default();
         assert!(behind(0.04, rigid) && !behind(0.06, rigid));

@@ -15,7 +15,9 @@ pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
     let params = &drive.params;
     let [inertia, viscous] = inertia_and_viscous(scenario)?;
     let at_the_motor = params.transmission.powi(2) * inertia;
-    let bandwidth = effort_ratio(&scenario.actuator, params) * params.velocity.k_p / at_the_motor;
+    // Of a gain schedule the lowest: whoever is nearer to the request than the response follows, too.
+    let lowest = params.blocks.schedule.map_or((1.0, 1.0), |gains| (gains.position.min(1.0), gains.velocity.min(1.0)));
+    let bandwidth = lowest.1 * effort_ratio(&scenario.actuator, params) * params.velocity.k_p / at_the_motor;
     if !(bandwidth > 0.0 && bandwidth.is_finite()) {
         return None;
     }
@@ -24,7 +26,7 @@ pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
     let (gain, position_integral_time, of_velocity) = match bus.map(|bus| (bus.mode, &bus.position_loop)) {
         Some((BusMode::CyclicVelocity, Some(gains))) => (gains.gain, gains.integral_time, velocity_offset(bus)),
         Some((BusMode::CyclicVelocity | BusMode::ProfileVelocity, _)) => (0.0, None, 1.0),
-        _ => (params.position_gain, position, params.feedforward.velocity + velocity_offset(bus)),
+        _ => (lowest.0 * params.position_gain, position, params.feedforward.velocity + velocity_offset(bus)),
     };
     let fed_forward = [Some(params.feedforward.model), bus.map(|bus| drive.estimate.model(bus.effort_offset))];
     let (fed_inertia, fed_viscous) =
