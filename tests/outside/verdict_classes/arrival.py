@@ -12,6 +12,12 @@ SHARE = 0.02
 SWINGS = 8
 """So often more than is asked for effort may go from limit to limit."""
 NEAR_SWINGS = 3
+OF_WAY = 0.05
+"""A window counts up to this share of the way."""
+EXPLAINED = 0.1
+"""So much of the way droop and elastic deflection may explain."""
+BESIDES = frozenset({"follows", "stands", "rings", "velocity"})
+"""What a run that is bad otherwise may break, too."""
 
 
 def program(random: Random, loop: Loop, unit: str, distance: float, moves: int = 1) -> tuple[Course, Tree]:
@@ -46,24 +52,33 @@ def window_of(tree: Tree, unit: str) -> float | None:
 
 
 def arrives(
-    run: Run, course: Course, duration: float, window: float | None, increment: float = 0.0
+    run: Run, free: Run, course: Course, duration: float, window: float | None, increment: float = 0.0
 ) -> tuple[bool, bool]:
-    """Whether a target is missed, and whether that is within 2 % of not being so; `increment` is in the axis coordinate."""
+    """Whether the last target is missed, and whether that is not sure; `increment` is in the axis coordinate.
+
+    `free` is the same run without a limit of its effort: its error at rest is what loop, bias and disturbance explain. Between the window and
+    the window with all that may be explained nothing is judged, and neither are targets on the way, whose rest may be too short.
+    """
     missed = near = False
-    for last, until in course.sequences(duration):
+    sequences = list(course.sequences(duration))
+    for number, (last, until) in enumerate(sequences):
         if until <= last.end:
             missed = True
             near |= until > last.end - 0.02 * (last.end - last.start)
             continue
         near |= until < last.end + 0.02 * (last.end - last.start)
         inside = (run.t >= until - (until - last.end) / 10) & (run.t <= until)
-        allowed = window if window is not None else max(1e-3 * abs(last.target - last.origin), 10 * increment)
+        way = abs(last.target - last.origin)
+        given = window if window is not None else max(1e-3 * way, 10 * increment)
         if run.t[-1] < until - 2 * run.t[1] or not inside.any():
             # The numbers ended before.
             return True, near
         error = abs(float(numpy.mean(last.target - run.load[inside])))
-        missed |= error > allowed
-        near |= abs(error / allowed - 1) < SHARE
+        explained = float(numpy.max(numpy.abs(last.target - free.load[inside[: len(free.load)].nonzero()[0]]), initial=0.0))
+        least, most = min(given, OF_WAY * way), given + explained + EXPLAINED * way
+        is_missed = error > most * (1 + SHARE)
+        near |= least * (1 - SHARE) < error <= most * (1 + SHARE) or (is_missed and number + 1 < len(sequences))
+        missed |= is_missed
     return missed, near
 
 

@@ -8,14 +8,14 @@ from math import exp, log
 
 from draws import Random
 
-from .arrival import arrives, program, window_of
+from .arrival import BESIDES, arrives, program, window_of
 from .axes import FINE, Axis, draw_axis
 from .case import Case, quantity
 from .loop import Loop, run
 
 SHARE = 0.02
 """So near to the boundary, as a share of the gains, nothing is judged."""
-FOLLOWS = frozenset({"arrives", "bounded"})
+FOLLOWS = frozenset({"arrives", "bounded"}) | BESIDES
 """What a loop that is unstable may break besides."""
 
 
@@ -65,7 +65,8 @@ def judged(random: Random, axis: Axis, stable: bool, near: bool) -> Case:
         course, tables = program(random, loop, u.length, random.decades(-4, -2))
         duration = round(course.moves[-1].end + random.uniform(0.3, 1.0), 3)
         tree |= tables
-        missed, close = arrives(run(loop, course, duration), course, duration, window_of(tree, u.length))
+        found = run(loop, course, duration)
+        missed, close = arrives(found, found, course, duration, window_of(tree, u.length))
         if stable:
             near |= close
             breaks |= frozenset({"arrives"}) if missed else frozenset()
@@ -76,4 +77,4 @@ def judged(random: Random, axis: Axis, stable: bool, near: bool) -> Case:
     radius = loop.radius()
     turns = duration * loop.base / loop.position_every
     note = f"largest |eigenvalue| {radius:.9f}, growth over the run e^{turns * log(radius):.3g}"
-    return Case(tree, breaks, FOLLOWS if "stable" in breaks else frozenset(), near, note)
+    return Case(tree, breaks, FOLLOWS if breaks else frozenset(), near, note)

@@ -56,7 +56,7 @@ def draw(random: Random) -> Case | None:
     if duration > 2.5 or window is None:
         return None
     found = run(loop, course, duration)
-    missed, near = arrives(found, course, duration, window)
+    missed, near = arrives(found, found, course, duration, window)
     if missed or near:
         return None
     tree = axis.tables() | tables | {"limits": {}}

@@ -6,7 +6,7 @@ import numpy
 
 from draws import Random
 
-from .arrival import SHARE, arrives, program, swings, window_of
+from .arrival import BESIDES, SHARE, arrives, program, swings, window_of
 from .axes import Axis, draw_axis
 from .case import NOTHING, Case, Tree, quantity
 from .course import Course
@@ -14,6 +14,8 @@ from .loop import Loop, Run, run
 
 LONGEST = 2.5
 """No run is longer (s)."""
+FOLLOWS = 0.01
+"""An axis that follows is no further from where it goes without a limit than this share of its shortest way."""
 WIDTHS = 10
 """So many widths of the set-point's range positions may be outside of it."""
 
@@ -75,6 +77,13 @@ def outside(found: Run) -> float:
     return float(max(numpy.max(both) - high, low - numpy.min(both))) / (high - low)
 
 
+def follows(found: Run, free: Run, course: Course) -> bool:
+    """Whether the axis follows by far: the load goes where it goes without a limit of the effort."""
+    ticks = min(len(found.t), len(free.t))
+    shortest = min(abs(move.target - move.origin) for move in course.moves)
+    return float(numpy.max(numpy.abs(found.load[:ticks] - free.load[:ticks]))) < FOLLOWS * shortest
+
+
 def draw(random: Random) -> Case | None:
     """Moves under an effort limit."""
     axis = draw_loop(random)
@@ -84,17 +93,20 @@ def draw(random: Random) -> Case | None:
     loop, asked, share = drawn
     course, duration, length = asked.course, asked.duration, axis.units.length
     found = run(loop, course, duration, asked.push)
+    free = run(replace(loop, limit=float("inf")), course, duration, asked.push)
     tree = Axis(loop, axis.units).tables() | asked.tables
     tree["run"]["duration"] = quantity(duration, "s")
     tree["record"] = {"rate": f"{loop.base // loop.position_every} Hz"}
     increment = loop.r * (loop.increment or 0.0)
-    missed, near = arrives(found, course, duration, window_of(tree, length), increment)
+    missed, near = arrives(found, free, course, duration, window_of(tree, length), increment)
     swinging, close, often = swings(found, course, 1 if asked.push is None else 2)
     breaks = {name for name, is_broken in (("arrives", missed), ("stable", swinging)) if is_broken}
     farthest = outside(found)
     if farthest > WIDTHS:
         breaks.add("bounded")
     near |= close or abs(farthest / WIDTHS - 1) < SHARE
+    # Whether it followed on the way, though it arrived, is another class's: only who followed by far is good.
+    near |= not breaks and not follows(found, free, course)
     note = f"{share:.3g} of the effort that is needed, {often} swings from limit to limit beyond what is asked for"
     return lifted(random, tree, frozenset(breaks), near, f"{note}, {farthest:.3g} widths of the set-point's range outside of it")
 
@@ -103,9 +115,9 @@ def lifted(random: Random, tree: Tree, breaks: frozenset[str], near: bool, note:
     """Now and then a requirement is lifted, or the drive is off and nothing is asked."""
     if random.random() < 0.03:
         tree["drive"]["enabled"] = False
-        return Case(tree, NOTHING, is_near=False, note="the drive is off")
+        return Case(tree, frozenset({"executed"}), is_near=False, note="the drive is off")
     if random.random() < 0.15:
         name = random.choice(("arrives", "stable", "bounded"))
-        tree["requirements"] = {name: False}
+        tree["requirements"] = dict.fromkeys((name, *sorted(BESIDES)), False)
         breaks -= {name}
-    return Case(tree, breaks, is_near=near, note=note)
+    return Case(tree, breaks, BESIDES if breaks else NOTHING, near, note)
