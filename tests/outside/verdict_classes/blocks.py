@@ -13,6 +13,8 @@ from draws import Random
 EXECUTED = frozenset({"executed"})
 ARRIVES = frozenset({"arrives"})
 EXPECTED = frozenset({"expected"})
+CUT = frozenset({"stopped", "follows"})
+"""What a run that ends while the axis still moves may break, too."""
 
 
 def absolute(p: Program) -> None:
@@ -280,7 +282,7 @@ def draw(random: Random) -> Case:
             piece(p)
     if bad is not_homed:
         may_break = NOTHING
-    return Case(p.tree(), breaks, may_break, note=", ".join(piece.__name__ for piece in pieces))
+    return Case(p.tree(), breaks, may_break | CUT, note=", ".join(piece.__name__ for piece in pieces))
 
 
 def cut_short(p: Program) -> Case:
@@ -295,4 +297,4 @@ def cut_short(p: Program) -> Case:
     p.went(target, name)
     duration = begun + p.random.uniform(0.3, 0.8) * lasts
     breaks, may_break = too_short(p)
-    return Case(p.tree(duration), breaks, may_break, note=f"the last move needs {lasts:.3f} s, from {begun:.3f} s on")
+    return Case(p.tree(duration), breaks, may_break | CUT, note=f"the last move needs {lasts:.3f} s, from {begun:.3f} s on")

@@ -15,6 +15,8 @@ from .loop import Loop, run
 
 SHARE = 0.02
 """So near to the boundary, as a share of the gains, nothing is judged."""
+MARGIN = 0.4
+"""A loop that is stable with gains larger or smaller by this share follows its moves."""
 FOLLOWS = frozenset({"arrives", "bounded"}) | BESIDES
 """What a loop that is unstable may break besides."""
 
@@ -68,7 +70,8 @@ def judged(random: Random, axis: Axis, stable: bool, near: bool) -> Case:
         found = run(loop, course, duration)
         missed, close = arrives(found, found, course, duration, window_of(tree, u.length))
         if stable:
-            near |= close
+            # A loop beside its boundary swings about its path for so long that whether it follows is not judged.
+            near |= close or not all(other.is_stable() for other in loop.near_gains(MARGIN))
             breaks |= frozenset({"arrives"}) if missed else frozenset()
     else:
         speed = f"{u.length}/s"

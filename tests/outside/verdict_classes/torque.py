@@ -104,6 +104,8 @@ def draw(random: Random) -> Case | None:
     farthest = outside(found)
     if farthest > WIDTHS:
         breaks.add("bounded")
+    # Swings within a few increments of an encoder are no limit cycle.
+    near |= swinging and increment > 0.0
     near |= close or abs(farthest / WIDTHS - 1) < SHARE
     # Whether it followed on the way, though it arrived, is another class's: only who followed by far is good.
     near |= not breaks and not follows(found, free, course)
