@@ -1,7 +1,7 @@
 //! The request of the task: what moves, tables and function blocks want of an axis at an instant.
 use crate::setpoint::Setpoint;
 
-/// What the task wants of the axis at an instant, never what a drive, the loop of a master or an interpolation makes of it.
+/// Request of the task to the axis at an instant, never what a drive, the loop of a master or an interpolation makes of it.
 ///
 /// Positions are in the coordinate of the machine and count on over the turns of a modulo axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -218,7 +218,7 @@ impl State {
         self.power.state()
     }
 
-    /// Whether a limit of the drive is active (bit 11 of the statusword).
+    /// True where a limit of the drive is active (bit 11 of the statusword).
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.statusword.has(StatusBit::InternalLimitActive)
@@ -230,7 +230,7 @@ impl State {
         self.mode
     }
 
-    /// Whether the highest velocity (6080h) cut the target of csv.
+    /// True where the highest velocity (6080h) cut the target of csv.
     #[must_use]
     pub const fn cuts_velocity(&self) -> bool {
         match &self.running {

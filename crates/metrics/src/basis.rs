@@ -34,7 +34,7 @@ impl Question {
     }
 }
 
-/// Whether `rows` of `recording` are a basis.
+/// True where `rows` of `recording` are a basis.
 ///
 /// # Errors
 /// [`Absence::NothingRecorded`] without a row, [`Absence::RestTooShort`].

@@ -132,14 +132,14 @@ impl Name {
         matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime)
     }
 
-    /// Whether it is of what follows a profile, and needs a [basis](crate::Question::basis).
+    /// True where it is of what follows a profile, and needs a [basis](crate::Question::basis).
     #[must_use]
     pub const fn needs_basis(self) -> bool {
         matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime | Self::SteadyStateError)
             || matches!(self.scope(), Scope::AfterMove)
     }
 
-    /// Whether it is made of the rows of a recording; others are made of the plan.
+    /// True where it is made of the rows of a recording; others are made of the plan.
     #[must_use]
     pub const fn is_of_rows(self) -> bool {
         !matches!(

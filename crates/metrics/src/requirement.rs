@@ -193,7 +193,7 @@ impl Expectation {
         self.from <= 0.0 && !self.to.is_finite()
     }
 
-    /// Whether what comes at `time` (s) comes when it is expected.
+    /// True where what comes at `time` (s) comes when it is expected.
     #[must_use]
     pub fn is_open_at(&self, time: f64) -> bool {
         (self.from..=self.to).contains(&time)

@@ -151,7 +151,7 @@ fn larger<T>(one: Result<T, Absence>, two: Result<T, Absence>, size: impl Fn(&T)
     }
 }
 
-/// Whether an effort from outside changes within `rows`.
+/// True where an effort from outside changes within `rows`.
 fn is_pushed(recording: &Checked<'_>, rows: &Range<usize>) -> bool {
     let changes = |signal: Signal| {
         let values = channel(recording, signal).ok().and_then(|values| values.get(rows.clone()));

@@ -80,7 +80,7 @@ pub struct Axis {
     queue: Queue,
     ledger: Ledger,
     error: Option<AxisError>,
-    /// What the program wants of the axis in this cycle; until it has ended, that of the one before.
+    /// Request of the program in this cycle; until it has ended, that of the one before.
     request: Request,
     /// Bits of the drive's digital outputs.
     digital_outputs: u32,

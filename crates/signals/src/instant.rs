@@ -7,7 +7,7 @@ use servobench_plant::pmsm::{Power, Temperatures};
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Instant {
-    /// What the task wants of the load, where it wants a position or a velocity.
+    /// Request of the task to the load, where it is for a position or a velocity.
     pub request: Setpoint,
     /// The effort that it wants of the motor.
     pub requested_effort: f64,

@@ -375,7 +375,7 @@ impl Network {
         }
     }
 
-    /// Whether the drive cuts the velocity that it is sent, and the master what it sends.
+    /// True where the drive cuts the velocity that it is sent, and the master what it sends.
     pub(crate) const fn cuts_velocity(&self) -> [bool; 2] {
         [self.drive.1.cuts_velocity(), self.link.1.is_limited()]
     }

@@ -151,7 +151,7 @@ impl Program {
         Setpoint { x, v, a, j, s }
     }
 
-    /// What the task wants at `t` (s), where the set-point is `setpoint`, and which kind of request that is. Queries must not go back
+    /// Request of the task at `t` (s), where the set-point is `setpoint`, and its kind. Queries must not go back
     /// in time.
     #[inline(always)]
     pub(crate) fn request_at(&mut self, t: f64, setpoint: Setpoint) -> (Setpoint, RequestKind) {
@@ -296,7 +296,7 @@ impl Planned {
     }
 }
 
-/// Whether a plan ends at rest: a sum of commanded velocities leaves its rounding.
+/// True where a plan ends at rest: a sum of commanded velocities leaves its rounding.
 fn ends_at_rest(plan: &Plan) -> bool {
     let [peak, ..] = plan.largest();
     plan.end().v.abs() <= ROUNDING * peak

@@ -49,7 +49,7 @@ impl MasterLoop {
         self.largest / self.gain
     }
 
-    /// Whether the gain is beyond the largest one, by more than that can be off.
+    /// True where the gain is beyond the largest one, by more than that can be off.
     #[must_use]
     pub fn is_unstable(&self) -> bool {
         self.gain > self.largest * (1.0 + BOUND_OFF)

@@ -41,7 +41,7 @@ impl Pole {
         if natural == 0.0 { 0.0 } else { -self.growth / natural }
     }
 
-    /// Whether its oscillation can be seen.
+    /// True where its oscillation can be seen.
     #[must_use]
     pub fn oscillates(&self) -> bool {
         self.damping() < Self::RESONANT

@@ -107,7 +107,7 @@ impl Job {
         self.engine.runs_in_worker(kind)
     }
 
-    /// Whether it is measured from rows at `record.rate`, because every tick would take too much memory.
+    /// True where it is measured from rows at `record.rate`, because every tick would take too much memory.
     pub(crate) fn is_thinned(&self) -> bool {
         let Some(duration) = self.length() else { return false };
         is_too_much(duration * f64::from(self.scenario.base_rate.hertz()) + 1.0, self.channels())
@@ -151,7 +151,7 @@ impl Job {
     }
 }
 
-/// Whether so many rows of `channels` are not kept.
+/// True where so many rows of `channels` are not kept.
 fn is_too_much(rows: f64, channels: usize) -> bool {
     rows * channels as f64 * size_of::<f64>() as f64 > RECORDING_LIMIT * 1e9
 }

@@ -137,7 +137,7 @@ move_to = "20 mm"
     Unstable { text, program: 0.4, ten_periods: 10.0 / bandwidth }
 }
 
-/// Whether the run of `text` for `duration` (s) is red by swings or growth; a linear loop that is known to be unstable does not count.
+/// True where the run of `text` for `duration` (s) is red by swings or growth; a linear loop that is known to be unstable does not count.
 fn swings(text: &str, duration: f64) -> bool {
     let text = format!("[run]\nbase_rate = \"8 kHz\"\nduration = \"{duration} s\"\n{text}");
     let loaded =

@@ -12,7 +12,7 @@ pub struct Held {
     pub motor_reference: MotorReference,
     /// Velocity reference of the velocity loop at its last cycle (axis coordinate).
     pub velocity_reference: f64,
-    /// Whether the speed limit cut it.
+    /// True where the speed limit cut it.
     pub speed_is_cut: bool,
     /// Effort fed forward (motor coordinate).
     pub feedforward: f64,

@@ -33,7 +33,7 @@ const SAME: f64 = 0.03;
 pub(crate) struct Order {
     /// The fit.
     pub(crate) fit: Fit,
-    /// Whether nothing is left but what nobody asks for.
+    /// True where nothing is left but what nobody asks for.
     pub(crate) is_whole: bool,
 }
 

@@ -12,7 +12,7 @@ pub struct Deflection {
     pub per_effort: f64,
     /// Velocity error per effort of a velocity loop without integral, r/k_p; 0 with one.
     pub velocity_per_effort: f64,
-    /// Whether a loop has an integral, which takes the error away in time.
+    /// True where a loop has an integral, which takes the error away in time.
     pub has_integral: bool,
     /// Deflection of the springs between motor and load at rest: bias and friction of what is behind each, by its stiffness.
     pub elastic: f64,

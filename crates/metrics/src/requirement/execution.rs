@@ -46,7 +46,7 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
         .collect()
 }
 
-/// Whether the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
+/// True where the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
 fn loses_power(task: &Task<'_>, phase: &RequestPhase) -> bool {
     let Some(state) = task.recording.signal("drive", "state") else { return true };
     let [start, end] = [phase.rows.start, phase.rows.end].map(|row| task.recording.time_of(row));

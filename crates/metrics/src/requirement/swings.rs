@@ -97,7 +97,7 @@ fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'
     times.iter().zip(counts).filter_map(|(time, counts)| counts.then_some(*time)).collect()
 }
 
-/// Whether `rows` come as regularly as those of an oscillation.
+/// True where `rows` come as regularly as those of an oscillation.
 fn is_regular(rows: &[usize]) -> bool {
     let periods = || rows.windows(3).map(|three| three[2] - three[0]);
     periods().max() <= periods().min().map(|shortest| REGULAR * shortest)

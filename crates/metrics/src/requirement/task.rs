@@ -94,7 +94,7 @@ impl<'a> Task<'a> {
         of_loop.max(of_swing).max(SHORTEST)
     }
 
-    /// Whether an expected fault comes in `rows`, or where they end.
+    /// True where an expected fault comes in `rows`, or where they end.
     pub(super) fn is_excused(&self, rows: &Range<usize>) -> bool {
         let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));
         self.expected.iter().filter_map(|one| one.met).any(|at| (start - SEEN_WITHIN..end + SEEN_WITHIN).contains(&at))
@@ -244,7 +244,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Whether the request jumps in `way` or where it meets others of `all`, by more than `least` beyond what it moves: a task that
+/// True where the request jumps in `way` or where it meets others of `all`, by more than `least` beyond what it moves: a task that
 /// stood still for a while goes on where it was.
 fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) -> bool {
     let (first, last) = (way.start.saturating_sub(1).max(all.start), way.end.min(all.end - 1));
@@ -254,7 +254,7 @@ fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) ->
     })
 }
 
-/// Whether a motion was broken off by a silence of the task.
+/// True where a motion was broken off by a silence of the task.
 fn is_silence(before: &[RequestPhase]) -> bool {
     matches!(before, [moved, silent] if moved.kind == RequestKind::Follow && silent.kind == RequestKind::Nothing)
 }

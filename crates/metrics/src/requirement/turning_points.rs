@@ -20,7 +20,7 @@ pub(super) struct Swing {
 pub(super) struct TurningPoints {
     low: (usize, f64),
     high: (usize, f64),
-    /// Whether the signal rises to the next turning point, once there was one.
+    /// True where the signal rises to the next turning point, once there was one.
     rises: Option<bool>,
 }
 

@@ -5,7 +5,7 @@ use crate::command::{Command, Ending, Goal};
 use crate::state::AxisState;
 use servobench_base::Request;
 
-/// What the goal of a command wants of the axis while it runs, and once a course has passed its end.
+/// Wish of a command's goal while it runs, and once a course has passed its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Wanted {
     /// Nothing: the drive or the axis looks for a reference.

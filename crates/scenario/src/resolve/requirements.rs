@@ -16,9 +16,9 @@ pub(super) struct Known<'a> {
     pub(super) duration: Option<f64>,
     pub(super) has_bus: bool,
     pub(super) plc: Option<&'a Plc>,
-    /// Whether the travel has ends: `[axis.end_stops]`, or those of joints in a model of the user's own.
+    /// True where the travel has ends: `[axis.end_stops]`, or those of joints in a model of the user's own.
     pub(super) has_ends: bool,
-    /// Whether the motor has a thermal model.
+    /// True where the motor has a thermal model.
     pub(super) warms_up: bool,
 }
 

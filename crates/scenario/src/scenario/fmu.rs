@@ -15,7 +15,7 @@ pub struct Fmu {
     pub inputs: Vec<(String, InputSource)>,
     /// Outputs by variable with what each is.
     pub outputs: Vec<(String, LoopSignal)>,
-    /// Whether its efforts excite the axis, and explain that it swings.
+    /// True where its efforts excite the axis, and explain that it swings.
     pub excites: bool,
 }
 

@@ -10,7 +10,7 @@ use servobench_stability::{Boundaries, Depth, GainName, Instability, LEFT_OUT, L
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopStability {
     analysis: Analysis,
-    /// Whether the gains depend on the speed.
+    /// True where the gains depend on the speed.
     is_scheduled: bool,
 }
 
