@@ -173,6 +173,14 @@ impl Stream {
     }
 
     fn join(&mut self, p: &StreamParams, output: Command, read: Command, now: u64) -> Result<(), NoWay> {
+        // What comes first are echoes of the actual position: what their noise makes of an acceleration is over with their interval, and
+        // led to zero by the jerk of the recovery it would carry the axis away.
+        let output = match self.state {
+            Interpolation::Off | Interpolation::Wait => {
+                Command { setpoint: Setpoint { a: read.setpoint.a, ..output.setpoint }, ..output }
+            }
+            _ => output,
+        };
         let course = Course::join(output, read, &p.recovery, now);
         self.course = course.unwrap_or_else(|| Course::stop(output, &p.recovery, now));
         if course.is_some() { Ok(()) } else { Err(NoWay) }
