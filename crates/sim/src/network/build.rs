@@ -176,7 +176,7 @@ fn requests(task: &MotionTask, mode: scenario::BusMode, period: f64, delay: f64)
         MotionTask::DriveProfile(profile) => {
             let program = profile.moves().program();
             match mode {
-                scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program), period, delay),
+                scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program, period), period, delay),
                 _ => Requests::of_program(program, period, delay + profile.filling() as f64 * period),
             }
         }

@@ -6,6 +6,9 @@
 use crate::program::Program;
 use servobench_base::{Request, Setpoint};
 
+/// A time so little after a cycle, as a share of it, is in that cycle.
+const ROUNDING: f64 = 1e-6;
+
 /// Targets with their times.
 #[derive(Debug, Clone)]
 pub(super) struct Targets {
@@ -25,13 +28,14 @@ struct Way {
 }
 
 impl Targets {
-    /// Those of `program`.
-    pub(super) fn of(program: &Program) -> Self {
+    /// Those of `program`, each of which is told in the first cycle that comes to it; cycles are `period` (s) apart.
+    pub(super) fn of(program: &Program, period: f64) -> Self {
+        let told = |start: f64| (start / period - ROUNDING).ceil() * period;
         let way = |(start, from, plan): (f64, f64, &servobench_planner::Plan)| {
             let [velocity, acceleration, ..] = plan.limits().map(|sides| sides.above);
             let distance = plan.end().x;
             let velocity = velocity.min((acceleration * distance.abs()).sqrt());
-            Way { start, from, distance, velocity, acceleration }
+            Way { start: told(start), from, distance, velocity, acceleration }
         };
         Self { ways: program.plans().map(way).collect() }
     }
