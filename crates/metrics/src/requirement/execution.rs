@@ -10,6 +10,9 @@ use servobench_trace::{Call, CallFate};
 /// The state of the drive in which its loops follow, as recordings name it.
 const OPERATION_ENABLED: &str = "Operation enabled";
 
+/// A task is silent that requests nothing for so long (s).
+const SILENT: f64 = 0.02;
+
 /// Why the program is not executed; `None` where there is nothing to execute.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let Task { recording, rules, .. } = task;
@@ -18,11 +21,12 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         Some(EarlyEnd::Diverged { .. }) | None => None,
     };
     let unpowered = unpowered(task);
-    if recording.calls.is_empty() && gave_up.is_none() && unpowered.is_empty() {
+    let silent = silent(task);
+    if recording.calls.is_empty() && gave_up.is_none() && unpowered.is_empty() && silent.is_none() {
         return None;
     }
     let wrong = recording.calls.iter().filter_map(|call| wrong(call, rules.expected));
-    Some(gave_up.into_iter().chain(wrong).chain(unpowered).collect())
+    Some(gave_up.into_iter().chain(wrong).chain(unpowered).chain(silent).collect())
 }
 
 /// Motions without power: of a drive that is off, and those that a loss of power ended which no expected fault explains.
@@ -44,6 +48,17 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
             format!("the power is lost at {} in a motion{}", task.time(row), task.within(row))
         })
         .collect()
+}
+
+/// A task that has asked for something and falls silent for good, while the drive would follow.
+fn silent(task: &Task<'_>) -> Option<String> {
+    let [.., before, last] = task.phases.as_slice() else { return None };
+    let is_silence =
+        last.kind == RequestKind::Nothing && last.rows.len() as f64 * task.recording.rate.period() >= SILENT;
+    let is_told = task.recording.signal("drive", "state").is_some();
+    let begun = task.time(last.rows.start);
+    (is_silence && is_told && !task.is_excused(&before.rows) && !loses_power(task, last))
+        .then(|| format!("the task requests nothing any more from {begun} to the end of the run"))
 }
 
 /// True where the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
@@ -83,10 +98,32 @@ mod tests {
     use crate::requirement::tests::{expecting, rules};
     use crate::requirement::{Expected, Rules};
     use crate::synthetic::Build;
+    use servobench_signals::Signal;
     use servobench_trace::Recording;
 
     fn found(recording: &Recording, rules: &Rules<'_>, expected: &[Expected]) -> Option<Vec<String>> {
         broken(&Task::of(recording, rules, expected))
+    }
+
+    /// Without a program of calls, too; a drive that is not enabled does not follow, and a fault that is expected ends the task.
+    #[test]
+    fn a_task_that_falls_silent_is_not_executed() {
+        let silent = |from: f64, state: &str| {
+            let requests = [(0.0, "stand"), (0.1, "follow"), (from, "nothing")];
+            Build::new(1000, 1001)
+                .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
+                .requests(&requests)
+                .signal("drive", "state", &[(0.0, "Switched on"), (0.05, "Operation enabled"), (from, state)])
+                .finish()
+        };
+        let enabled = silent(0.5, "Operation enabled");
+        assert_eq!(
+            found(&enabled, &rules(), &[]).unwrap(),
+            ["the task requests nothing any more from 500 ms to the end of the run"]
+        );
+        let came = Expected { expectation: expecting("drive", "8611h", 0.0, 1.0), met: Some(0.5) };
+        assert_eq!(found(&enabled, &rules(), &[came]), None);
+        assert_eq!(found(&silent(0.99, "Operation enabled"), &rules(), &[]), None, "shorter than it takes to see it");
     }
 
     fn recording(fates: &[(bool, CallFate)]) -> Recording {
