@@ -28,6 +28,8 @@ const STEP: f64 = 1.1;
 const FADING: f64 = 0.85;
 /// How much further than in all windows before the first of them.
 const RECORD: f64 = 1.5;
+/// The longest of the swings takes so many times as long as the shortest, at most.
+const EVEN: usize = 3;
 /// Turning points are told apart by this share of the largest swing so far.
 const SHARE: f64 = 0.125;
 
@@ -72,13 +74,20 @@ fn grows(swings: &[Swing], shortest: [usize; 2]) -> Option<(usize, usize)> {
             .collect();
         let mut largest_before = 0.0_f64;
         for (k, four) in windows.windows(WINDOWS).enumerate() {
-            if is_growth(four) && four[WINDOWS - 1] > RECORD * largest_before {
-                return Some((swings[k * length].end, swings[(k + WINDOWS) * length - 1].end));
+            let (first, last) = (k * length, (k + WINDOWS) * length);
+            if is_growth(four) && four[WINDOWS - 1] > RECORD * largest_before && is_even(&swings[first..last]) {
+                return Some((swings[first].end, swings[last - 1].end));
             }
             largest_before = largest_before.max(four[0]);
         }
         None
     })
+}
+
+/// True where the swings take about as long as each other, as those of one oscillation do, and those of noise do not.
+fn is_even(swings: &[Swing]) -> bool {
+    let lengths = || swings.windows(2).map(|pair| pair[1].end - pair[0].end);
+    lengths().max() <= lengths().min().map(|shortest| EVEN * shortest.max(1))
 }
 
 fn is_growth(windows: &[f64]) -> bool {

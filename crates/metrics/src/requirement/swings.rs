@@ -19,6 +19,8 @@ pub(super) const MOST: usize = 8;
 const NINE: usize = 9;
 /// Swings of that error among them: about one from each to the next. A motion makes fewer, and a torque ripple more.
 const SWINGS: RangeInclusive<usize> = 5..=9;
+/// They are as large as each other: the largest is so many times the smallest, at most. Those of a motor that noise shakes are not.
+const EQUAL: f64 = 1.7;
 /// An oscillation is regular: of the times from one of the nine to the next but one, its periods, the longest is so many times the
 /// shortest, at most.
 const REGULAR: usize = 2;
@@ -90,7 +92,7 @@ fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'
     let unseen = rules.unseen().max(ROUNDING * largest);
     for k in 0..(rows.len() + 1).saturating_sub(NINE) {
         let nine = &rows[k..k + NINE];
-        if is_regular(nine) && SWINGS.contains(&swings_within(error, nine, unseen)) {
+        if is_regular(nine) && swings_along(error, nine, unseen) {
             counts[k..k + NINE].fill(true);
         }
     }
@@ -103,14 +105,18 @@ fn is_regular(rows: &[usize]) -> bool {
     periods().max() <= periods().min().map(|shortest| REGULAR * shortest)
 }
 
-/// How often the error swings by more than `unseen` from the first of `rows` to the last, without the drift between them.
-fn swings_within(error: &[f64], rows: &[usize], unseen: f64) -> usize {
-    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return 0 };
+/// True where the error swings by more than `unseen` from the first of `rows` to the last, as often and each time as far; without the
+/// drift between them.
+fn swings_along(error: &[f64], rows: &[usize], unseen: f64) -> bool {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return false };
     let values = error.get(*first..=*last).unwrap_or_default();
-    let (Some(begin), Some(end)) = (values.first(), values.last()) else { return 0 };
+    let (Some(begin), Some(end)) = (values.first(), values.last()) else { return false };
     let drift = (end - begin) / (last - first).max(1) as f64;
     let values: Vec<f64> = values.iter().enumerate().map(|(row, error)| error - drift * row as f64).collect();
-    swings(&values, 0, unseen, 0.0).len()
+    let all = swings(&values, 0, unseen, 0.0);
+    let (smallest, largest) =
+        all.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), one| (low.min(one.size), high.max(one.size)));
+    SWINGS.contains(&all.len()) && largest <= EQUAL * smallest
 }
 
 /// The way that is requested less that of the motor, at each row (axis unit).
