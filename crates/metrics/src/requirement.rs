@@ -13,6 +13,7 @@ mod fault;
 mod following;
 mod growth;
 mod harm;
+mod held_modes;
 mod judge;
 mod phases;
 mod rings;
@@ -29,6 +30,7 @@ mod velocity;
 
 pub use arrival::arrival_window;
 pub use deflection::Deflection;
+pub use held_modes::HeldMode;
 pub use judge::judge_requirements;
 pub use rules::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules, Tolerances};
 pub use servo::Servo;
@@ -249,6 +251,7 @@ pub(crate) mod tests {
             transmission: 1.0,
             bus_unit: 0.0,
             servo: None,
+            held_modes: Vec::new(),
             deflection: Deflection::default(),
             tolerances: Tolerances::default(),
             driven: Driven::ByLoops,

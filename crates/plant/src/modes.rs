@@ -21,6 +21,20 @@ pub struct Mode {
     pub damping: f64,
 }
 
+/// A mode in which the load follows a motor that is held to its position: it is at Σ `weight`·z of all modes, with
+/// z″ + `decay`·z′ + ω²·(z − y − `lead`·y′) = 0 where the motor is at y (axis coordinate).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldMode {
+    /// Share of the motor's position; those of all modes add up to 1.
+    pub weight: f64,
+    /// Undamped frequency ω (rad/s).
+    pub omega: f64,
+    /// 2·ζ·ω (1/s).
+    pub decay: f64,
+    /// Damping of the coupling behind the motor by its stiffness (s).
+    pub lead: f64,
+}
+
 /// Turns of the QR iteration for an eigenvalue; what has not converged by then does not.
 const MOST_TURNS: usize = 1000;
 /// A frequency below this share of the highest is that of the free chain as a whole: zero.
@@ -65,6 +79,23 @@ impl Chain {
             }
         }
         modes
+    }
+
+    /// The modes in which the load, the last body, follows the motor. Damping that couples modes is left out.
+    #[must_use]
+    pub fn held_modes(&self) -> Vec<HeldMode> {
+        let Some(first) = self.links().first() else { return Vec::new() };
+        let matrices = self.matrices(true);
+        let SymmetricEigen { eigenvalues, eigenvectors } = matrices.stiffness.clone().symmetric_eigen();
+        let root = |body: &crate::chain::Body| body.inertia.sqrt() / body.transmission;
+        let (near, far) = (root(&self.bodies()[1]), root(&self.bodies()[self.bodies().len() - 1]));
+        let modes = eigenvalues.iter().zip(eigenvectors.column_iter()).map(|(squared, shape)| HeldMode {
+            weight: shape[0] / near * shape[shape.len() - 1] / far * first.stiffness / squared,
+            omega: squared.sqrt(),
+            decay: (&matrices.damping * shape).dot(&shape),
+            lead: first.damping / first.stiffness,
+        });
+        modes.collect()
     }
 
     /// The eigenvalues λ of the damped chain (1/s): of velocities and stretches, so that the position of the whole is none of
@@ -171,6 +202,24 @@ mod tests {
         let motor = 2e-3 / 1e-4;
         let lost = (1e-2 / 1e-4 + 2e3) / motor + (90.0 + 2e3 + 300.0) / 40.0 + (5.0 + 300.0) / 11.0;
         assert!((trace / -lost - 1.0).abs() < 1e-11, "{trace} {lost}");
+    }
+
+    /// Oracles: at rest the load is where the motor is; from any place it is accelerated by the coupling to the body before it,
+    /// Σ weight·ω² = 0 where that is not the motor; one load has the coefficients of its equation of motion.
+    #[test]
+    fn a_load_follows_the_motor_in_its_modes() {
+        let bodies = vec![body(2e-3, 0.01, 0.0), body(40.0, 1.0, 90.0), body(11.0, 1.0, 5.0)];
+        let links = vec![Link { stiffness: 9e6, damping: 2e3 }, Link { stiffness: 4e5, damping: 300.0 }];
+        let modes = Chain::new(bodies, links).unwrap().held_modes();
+        let sum = |of: fn(&HeldMode) -> f64| modes.iter().map(of).sum::<f64>();
+        assert!((sum(|mode| mode.weight) - 1.0).abs() < 1e-12, "{modes:?}");
+        let largest = modes.iter().map(|mode| mode.omega.powi(2)).fold(0.0, f64::max);
+        assert!(sum(|mode| mode.weight * mode.omega.powi(2)).abs() < 1e-12 * largest, "{modes:?}");
+        let one =
+            Chain::new(vec![body(1.0, 1.0, 0.0), body(17.0, 1.0, 23.0)], vec![Link { stiffness: 3e5, damping: 410.0 }]);
+        let [mode] = one.unwrap().held_modes()[..] else { panic!("one mode") };
+        assert!((mode.weight - 1.0).abs() < 1e-14 && (mode.omega.powi(2) * 17.0 / 3e5 - 1.0).abs() < 1e-14, "{mode:?}");
+        assert!((mode.decay - 433.0 / 17.0).abs() < 1e-12 && (mode.lead - 410.0 / 3e5).abs() < 1e-15, "{mode:?}");
     }
 
     #[test]

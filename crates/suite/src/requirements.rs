@@ -23,6 +23,7 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         transmission: scenario.axis.transmission,
         bus_unit: scenario.bus.as_ref().map_or(0.0, |bus| bus.units.axis.abs() / f64::from(bus.units.drive)),
         servo: axle::servo(scenario),
+        held_modes: axle::held_modes(scenario),
         deflection: axle::deflection(scenario),
         tolerances: scenario.requirements.tolerances,
         driven: match scenario.actuator {

@@ -16,8 +16,6 @@ pub struct Deflection {
     pub has_integral: bool,
     /// Deflection of the springs between motor and load at rest: bias and friction of what is behind each, by its stiffness.
     pub elastic: f64,
-    /// That per acceleration (s²): the mass behind each spring by its stiffness.
-    pub elastic_per_acceleration: f64,
     /// That per effort on the load, in the load's coordinate.
     pub elastic_per_effort: f64,
     /// Friction of the load's side by stiffness, within which the load sticks.
@@ -36,7 +34,6 @@ impl Default for Deflection {
             velocity_per_effort: 0.0,
             has_integral: true,
             elastic: 0.0,
-            elastic_per_acceleration: 0.0,
             elastic_per_effort: 0.0,
             stick: 0.0,
             initial: 0.0,
@@ -48,6 +45,11 @@ impl Deflection {
     /// Position error of loops without integral while `disturbance` acts too.
     pub(super) fn explained(&self, disturbance: f64) -> f64 {
         self.per_effort * (self.effort + disturbance).min(self.max_effort)
+    }
+
+    /// That of the largest effort; 0 without a limit.
+    pub(super) fn largest(&self) -> f64 {
+        if self.max_effort.is_finite() { self.per_effort * self.max_effort } else { 0.0 }
     }
 
     /// That of the `disturbance` alone.

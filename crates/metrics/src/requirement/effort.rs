@@ -1,4 +1,4 @@
-//! `effort`: where a torque or a force is requested, the motor gives it for half of the time at least.
+//! `effort`: where a torque or a force is requested, the motor gives it for half of its second half at least.
 use super::rules::Driven;
 use super::task::Task;
 use crate::quantity::Quantity;
@@ -6,7 +6,7 @@ use crate::span::unit;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
 
-/// Share of the time.
+/// Share of the second half of the time.
 const OF_TIME: f64 = 0.5;
 /// Least share of the largest effort of the drive that counts.
 const OF_MOST: f64 = 1e-3;
@@ -30,7 +30,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let least = if most.is_finite() { OF_MOST * most } else { 0.0 };
     let unit = unit(recording, Signal::EffortMotor);
     let missed = phases.into_iter().filter(|phase| !task.is_excused(&phase.rows)).filter_map(|phase| {
-        let rows = phase.rows.clone();
+        let rows = phase.rows.start + phase.rows.len() / 2..phase.rows.end;
         let fits = |row: &usize| {
             (given[*row] - requested[*row]).abs() <= (task.rules.tolerances.effort * requested[*row].abs()).max(least)
         };
@@ -42,7 +42,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
                 Quantity::new(given[last], unit),
                 task.time(last),
                 Quantity::new(requested[last], unit),
-                task.time(rows.start)
+                task.time(phase.rows.start)
             )
         })
     });
@@ -56,7 +56,7 @@ mod tests {
     use crate::synthetic::Build;
 
     #[test]
-    fn an_effort_is_given_for_half_of_its_phase() {
+    fn an_effort_is_given_for_half_of_the_second_half_of_its_phase() {
         let found = |from: f64, share: f64| {
             let recording = Build::new(1000, 1001)
                 .channel(Signal::RequestEffort, "N m", |_| -2.0)
@@ -65,9 +65,9 @@ mod tests {
                 .finish();
             broken(&Task::of(&recording, &rules(), &[])).unwrap()
         };
-        assert_eq!(found(0.49, 1.0), [""; 0]);
-        assert_eq!(found(0.0, 0.951), [""; 0]);
-        assert_eq!(found(0.51, 1.0).len(), 1);
+        assert_eq!(found(0.74, 1.0), [""; 0]);
+        assert_eq!(found(0.0, 0.961), [""; 0]);
+        assert_eq!(found(0.76, 1.0).len(), 1);
         assert_eq!(found(0.0, 0.9), ["the motor gives -1.80 N·m at 1.00 s, where -2.00 N·m is requested from 0 s on"]);
     }
 }

@@ -1,5 +1,6 @@
 //! What a judgement needs to know besides the recording.
 use super::deflection::Deflection;
+use super::held_modes::HeldMode;
 use super::servo::Servo;
 use super::{Expectation, Requirement};
 use servobench_signals::Signal;
@@ -29,6 +30,8 @@ pub struct Rules<'a> {
     pub bus_unit: f64,
     /// The linear rigid loop, where there is one that is known.
     pub servo: Option<Servo>,
+    /// The modes in which the load follows the motor; none of a rigid axis, or one whose mechanics are not known.
+    pub held_modes: Vec<HeldMode>,
     /// By how much efforts displace the axis.
     pub deflection: Deflection,
     /// How far off what is requested the axis may be.
@@ -62,7 +65,7 @@ pub struct Tolerances {
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Self { follows: 0.05, arrives: 0.05, velocity: 0.05, effort: 0.05 }
+        Self { follows: 0.03, arrives: 0.05, velocity: 0.03, effort: 0.04 }
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Servo {
     pub viscous: f64,
     /// That which is fed forward (1/s).
     pub viscous_feedforward: f64,
+    /// True where the load's own encoder closes the position loop, and not the motor's.
+    pub is_closed_at_the_load: bool,
 }
 
 impl Servo {
@@ -98,12 +100,18 @@ impl Response {
         }
     }
 
-    /// To the next row: `x` and `v` are requested now, `gained` is what the requested velocity gains until then.
-    pub(super) fn step(&mut self, x: f64, v: f64, gained: f64) {
+    /// True where the load's own encoder closes the position loop.
+    pub(super) const fn is_closed_at_the_load(&self) -> bool {
+        self.servo.is_closed_at_the_load
+    }
+
+    /// To the next row: `x` and `v` are requested now, `gained` is what the requested velocity gains until then; the position loop
+    /// measures `measured`.
+    pub(super) fn step(&mut self, x: f64, v: f64, gained: f64, measured: f64) {
         let Servo {
             bandwidth, reference_weight, velocity_feedforward, inertia_feedforward, viscous_feedforward, ..
         } = self.servo;
-        let error = x - self.position;
+        let error = x - measured;
         let reference = self.gain * (error + self.position_integral) + velocity_feedforward * v;
         let before = self.velocity;
         let input = bandwidth * (reference_weight * reference + self.integral) + viscous_feedforward * v;
@@ -129,6 +137,7 @@ mod tests {
         inertia_feedforward: 0.0,
         viscous: 0.0,
         viscous_feedforward: 0.0,
+        is_closed_at_the_load: false,
     };
 
     /// Where the response is after `end` (s) of a request that moves at `v(t)`.
@@ -136,7 +145,7 @@ mod tests {
         let mut response = Response::new(servo, h);
         let (mut x, mut t) = (0.0, 0.0);
         while t < end - h / 2.0 {
-            response.step(x, v(t), v(t + h) - v(t));
+            response.step(x, v(t), v(t + h) - v(t), response.position());
             x += h * (v(t) + v(t + h)) / 2.0;
             t += h;
         }
@@ -168,7 +177,7 @@ mod tests {
     fn a_step_is_followed_as_the_poles_say() {
         let servo = Servo { bandwidth: 40.0, ..SOFT };
         let mut response = Response::new(servo, 1e-4);
-        (0..2_000).for_each(|_| response.step(1.0, 0.0, 0.0));
+        (0..2_000).for_each(|_| response.step(1.0, 0.0, 0.0, response.position()));
         let (a, t) = (20.0_f64, 0.2);
         let exact = 1.0 - (1.0 + a * t) * (-a * t).exp();
         assert!((response.position() - exact).abs() < 1e-3, "{} {exact}", response.position());
@@ -178,7 +187,7 @@ mod tests {
     fn no_bandwidth_makes_it_unstable() {
         let stiff = Servo { gain: 1e7, bandwidth: 1e9, integral_time: Some(0.05), ..SOFT };
         let mut response = Response::new(stiff, 1e-3);
-        (0..500).for_each(|_| response.step(1.0, 0.0, 0.0));
+        (0..500).for_each(|_| response.step(1.0, 0.0, 0.0, response.position()));
         assert!((response.position() - 1.0).abs() < 0.05, "{}", response.position());
     }
 }

@@ -42,7 +42,8 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         let at = |signal| task.recording.channel(signal).map_or(0.0, |values| values[row]);
         (at(Signal::DisturbanceMotor), at(Signal::DisturbanceLoad))
     };
-    let window = rules.window.unwrap_or(0.0).max(RESOLUTIONS * rules.resolution());
+    // Without a window the axis may give way as far as its largest effort explains.
+    let window = rules.window.unwrap_or_else(|| deflection.largest()).max(RESOLUTIONS * rules.resolution());
     let mut reasons = Vec::new();
     for phase in standing {
         let place = rows.request[phase.rows.start];
@@ -110,6 +111,7 @@ mod tests {
         inertia_feedforward: 0.0,
         viscous: 0.0,
         viscous_feedforward: 0.0,
+        is_closed_at_the_load: false,
     };
 
     /// Two seconds at 1 kHz, with a force on the load from 1 s on.

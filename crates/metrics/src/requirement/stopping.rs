@@ -1,9 +1,9 @@
 //! `stopped`: an axis that is stopped comes to rest in the time that its profile and its loops take.
-use super::phases::RequestPhase;
+use super::phases::{RequestPhase, between_turning_points};
 use super::rules::Driven;
 use super::stretch::Rows;
 use super::task::{ROUNDING, TIME_CONSTANTS, Task};
-use crate::extremes::most_of;
+use crate::extremes::{most_of, range_of};
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
@@ -17,6 +17,8 @@ const OF_LARGEST: f64 = 1e-3;
 const TIMES: usize = 2;
 /// The velocity is a mean over this time at least (s): of a load that rings, over a period.
 const MEAN: f64 = 0.02;
+/// Least share of the way after the stop by which a load swings.
+const OF_SWING: f64 = 0.05;
 /// Resolutions that an axis at rest moves in it.
 const RESOLUTIONS: f64 = 4.0;
 
@@ -69,7 +71,12 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     let resolution = RESOLUTIONS * task.rules.resolution() / (span as f64 * rows.h);
     let bound = (LEFT * before).max(OF_LARGEST * largest).max(resolution);
     let unit = format!("{}/s", task.recording.about.axis_unit);
-    let at = |last: usize| (last, rows.load_velocity(last.saturating_sub(span).max(start), last));
+    let cycle = last_cycle(rows, &stop.rows, RESOLUTIONS * task.rules.resolution());
+    let at = |last: usize| {
+        let velocity = rows.load_velocity(last.saturating_sub(span).max(start), last);
+        let of_cycle = cycle.as_ref().map(|cycle| rows.load_velocity(cycle.start, cycle.end));
+        (last, of_cycle.filter(|mean| mean.abs() < velocity.abs()).unwrap_or(velocity))
+    };
     let (last, velocity) = [due.min(end - 1), end - 1]
         .map(at)
         .into_iter()
@@ -83,6 +90,15 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
         Quantity::new(bound, &unit),
         task.bound_by(&(start..end))
     ))
+}
+
+/// The last whole cycle of a load that swings after a `stop`, by more than `least`, up to its end.
+fn last_cycle(rows: &Rows<'_>, stop: &Range<usize>, least: f64) -> Option<Range<usize>> {
+    let (low, high) = range_of(&rows.load[stop.clone()]);
+    let turns = between_turning_points(rows.load, stop, least.max(OF_SWING * (high - low)));
+    let [.., _, first, second, last] = turns.as_slice() else { return None };
+    // What comes after the last turn is shorter than half of a cycle.
+    (last.len() <= first.len().max(second.len())).then(|| first.start..last.start)
 }
 
 #[cfg(test)]
@@ -107,6 +123,27 @@ mod tests {
             .requests(&[(0.0, "velocity"), (1.0, "stand"), (next, "velocity")])
             .finish();
         broken(&Task::of(&recording, &rules(), &[])).unwrap()
+    }
+
+    /// A load on a soft coupling swings about where it stopped, at 4 Hz; one that drifts by 3 % of the velocity besides has not stopped.
+    #[test]
+    fn a_load_that_swings_has_stopped() {
+        let found = |drift: f64| {
+            let load = move |t: f64| {
+                let since = (t - 1.0).max(0.0);
+                t.min(1.0) + drift * since + 0.02 * (core::f64::consts::TAU * 4.0 * since).sin() * (-since).exp()
+            };
+            let recording = Build::new(1000, 2001)
+                .channel(Signal::RequestPosition, "m", |t| t.min(1.0))
+                .channel(Signal::RequestVelocity, "m/s", |t| if t < 1.0 { 1.0 } else { 0.0 })
+                .channel(Signal::SetpointPosition, "m", |t| t.min(1.0))
+                .channel(Signal::LoadPosition, "m", load)
+                .requests(&[(0.0, "velocity"), (1.0, "stand")])
+                .finish();
+            broken(&Task::of(&recording, &rules(), &[])).unwrap()
+        };
+        assert_eq!(found(0.0), [""; 0]);
+        assert_eq!(found(0.03).len(), 1);
     }
 
     #[test]

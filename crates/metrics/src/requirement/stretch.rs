@@ -1,6 +1,8 @@
 //! Stretches of a run, and how load, request and the response of the loop compare in them: one pass over the rows.
 use super::Rules;
+use super::held_modes::FlexibleLoad;
 use super::phases::RequestPhase;
+use super::rules::Driven;
 use super::servo::Response;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
@@ -16,6 +18,8 @@ pub(super) struct Stretch {
     pub(super) response: (f64, f64),
     /// Largest distance of the load from the response, and its row.
     pub(super) worst: (f64, usize),
+    /// Largest distance of the response from the request.
+    pub(super) lag: f64,
     /// Mean of load less request, and of request less response.
     pub(super) load_off: f64,
     pub(super) response_off: f64,
@@ -57,6 +61,7 @@ impl Stretch {
         Self {
             response: (f64::INFINITY, f64::NEG_INFINITY),
             worst: (0.0, rows.start),
+            lag: 0.0,
             load_off: 0.0,
             response_off: 0.0,
             load_velocity: 0.0,
@@ -80,6 +85,7 @@ impl Stretch {
         if off > self.worst.0 || off.is_nan() && self.worst.0.is_finite() {
             self.worst = (if off.is_nan() { f64::INFINITY } else { off }, row);
         }
+        self.lag = self.lag.max((request - response).abs());
         self.load_off += load - request;
         self.response_off += request - response;
         self.response_velocity = if row == self.rows.start { response } else { self.response_velocity };
@@ -99,7 +105,7 @@ impl Stretch {
 /// Measures `stretches`, which are in order, do not overlap and are each within phases that want a position, or one that wants a
 /// velocity.
 pub(super) fn measure(rows: &Rows<'_>, phases: &[RequestPhase], rules: &Rules<'_>, stretches: &mut [Stretch]) {
-    let mut follower = Follower { response: rules.servo.map(|servo| Response::new(servo, rows.h)), wanted: 0.0 };
+    let mut follower = Follower::new(rules, rows.h);
     let mut before = RequestKind::Nothing;
     let mut waiting = stretches.iter_mut();
     let mut now = waiting.next();
@@ -123,13 +129,20 @@ pub(super) fn measure(rows: &Rows<'_>, phases: &[RequestPhase], rules: &Rules<'_
     }
 }
 
-/// The response, and the position that is wanted of it.
+/// The response of motor and load, and the position that is wanted of them.
 struct Follower {
-    response: Option<Response>,
+    motor: Option<Response>,
+    load: FlexibleLoad,
     wanted: f64,
 }
 
 impl Follower {
+    fn new(rules: &Rules<'_>, h: f64) -> Self {
+        let motor = rules.servo.map(|servo| Response::new(servo, h));
+        let is_known = motor.is_some() || rules.driven == Driven::Exactly;
+        Self { motor, load: FlexibleLoad::new(if is_known { &rules.held_modes } else { &[] }, h), wanted: 0.0 }
+    }
+
     /// Where a request for a position or a velocity begins, the response is where the load is.
     fn begin(&mut self, rows: &Rows<'_>, phase: &RequestPhase, before: RequestKind) {
         let row = phase.rows.start;
@@ -141,8 +154,10 @@ impl Follower {
             RequestKind::Nothing | RequestKind::Stand | RequestKind::Effort => return,
         };
         self.wanted = rows.load[row];
-        if let Some(response) = &mut self.response {
-            response.put(rows.load[row], rows.load_velocity(row.saturating_sub(1), row), goes_on);
+        let velocity = rows.load_velocity(row.saturating_sub(1), row);
+        self.load.put(rows.load[row], velocity);
+        if let Some(motor) = &mut self.motor {
+            motor.put(rows.load[row], velocity, goes_on);
         }
     }
 
@@ -152,18 +167,26 @@ impl Follower {
             self.wanted = rows.request[row];
         }
         // A loop that is not stable has no response: the load is held to the request.
-        let response = self.response.as_ref().map(Response::position).filter(|position| position.is_finite());
+        let response = Some(self.load.position()).filter(|position| position.is_finite());
         (self.wanted, response.unwrap_or(self.wanted))
     }
 
     fn step(&mut self, rows: &Rows<'_>, kind: RequestKind, row: usize) {
         let velocity = rows.request_velocity[row];
         let next = rows.request_velocity.get(row + 1).copied().unwrap_or(velocity);
-        if let Some(response) = &mut self.response {
-            response.step(self.wanted, velocity, next - velocity);
-        }
+        let mut goes_to = self.wanted;
         if kind == RequestKind::Velocity {
-            self.wanted += rows.h * velocity;
+            goes_to += rows.h * velocity;
+        } else if let Some(next) = rows.request.get(row + 1) {
+            goes_to = *next;
+        }
+        if let Some(motor) = &mut self.motor {
+            let measured = if motor.is_closed_at_the_load() { self.load.position() } else { motor.position() };
+            motor.step(self.wanted, velocity, next - velocity, measured);
+        }
+        self.load.step(self.motor.as_ref().map_or(goes_to, Response::position));
+        if kind == RequestKind::Velocity {
+            self.wanted = goes_to;
         }
     }
 }

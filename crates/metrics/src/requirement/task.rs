@@ -132,12 +132,6 @@ impl<'a> Task<'a> {
         Quantity::new(self.recording.time_of(row), "s")
     }
 
-    /// The largest acceleration of the request, from row to row.
-    pub(super) fn requested_acceleration(&self) -> f64 {
-        let Some(rows) = self.rows else { return 0.0 };
-        rows.request_velocity.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max) / rows.h
-    }
-
     /// The limit of the drive that binds for the longest time in `rows`, as the end of a sentence.
     pub(super) fn bound_by(&self, rows: &Range<usize>) -> String {
         let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));

@@ -1,5 +1,6 @@
 //! `velocity`: where a velocity is requested and held, the load has it.
-use super::task::{Piece, Task};
+use super::stretch::Stretch;
+use super::task::{Piece, TIME_CONSTANTS, Task};
 use crate::quantity::Quantity;
 
 /// The most that droop explains, of the velocity.
@@ -22,11 +23,10 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         return None;
     }
     let unit = format!("{}/s", task.recording.about.axis_unit);
-    let droop = task.rules.deflection.velocity_droop(task.disturbance);
     let missed = holds.into_iter().filter(|(_, hold)| !task.is_excused(&hold.rows)).filter_map(|(velocity, hold)| {
         let scale = velocity.abs().max(AT_ZERO * largest);
         let of_loop = (velocity - hold.response_velocity).abs();
-        let bound = (task.rules.tolerances.velocity * scale + droop).min(OF_VELOCITY * scale) + of_loop;
+        let bound = (task.rules.tolerances.velocity * scale + droop(task, hold)).min(OF_VELOCITY * scale) + of_loop;
         let off = (hold.load_velocity - velocity).abs();
         (off.is_nan() || off > bound).then(|| {
             format!(
@@ -41,6 +41,19 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         })
     });
     Some(missed.collect())
+}
+
+/// Velocity error that bias, friction and disturbances explain. A loop of the position, where there is one, takes it away in time, but for
+/// that of a disturbance, which may have come late.
+fn droop(task: &Task<'_>, hold: &Stretch) -> f64 {
+    let deflection = &task.rules.deflection;
+    let time = hold.rows.len() as f64 * task.recording.rate.period();
+    let is_over = task.rules.servo.is_some_and(|servo| servo.gain * time >= TIME_CONSTANTS);
+    if is_over {
+        deflection.velocity_per_effort * task.disturbance.min(deflection.max_effort)
+    } else {
+        deflection.velocity_droop(task.disturbance)
+    }
 }
 
 #[cfg(test)]
@@ -63,17 +76,17 @@ mod tests {
     }
 
     #[test]
-    fn five_per_cent_and_the_droop_are_allowed_and_never_more_than_half() {
+    fn three_per_cent_and_the_droop_are_allowed_and_never_more_than_half() {
         assert_eq!(
             found(&rules(), 0.0),
-            ["the load moves at 0 m/s from 500 ms to 1.00 s, where 400 mm/s is requested (±20.0 mm/s)"]
+            ["the load moves at 0 m/s from 500 ms to 1.00 s, where 400 mm/s is requested (±12.0 mm/s)"]
         );
         let droops = |velocity_per_effort| Rules {
             deflection: Deflection { effort: 2.0, velocity_per_effort, ..Deflection::default() },
             ..rules()
         };
         for (rules, kept, missed) in
-            [(rules(), 0.951, 0.949), (rules(), -0.0, 1.051), (droops(0.02), 0.86, 0.84), (droops(1.0), 0.51, 0.49)]
+            [(rules(), 0.971, 0.969), (rules(), -0.0, 1.031), (droops(0.02), 0.88, 0.86), (droops(1.0), 0.51, 0.49)]
         {
             assert_eq!(found(&rules, missed).len(), 1, "{missed}");
             if kept > 0.0 {

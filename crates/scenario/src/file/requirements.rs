@@ -81,13 +81,13 @@ table! {
 table! {
     /// How far off the request the axis may be, as shares.
     pub(crate) struct Tolerance {
-        /// From the response of its loops, of the way between two turning points; default: 0.05.
+        /// From the response of its loops, of the way between two turning points; default: 0.03.
         follows: f64 = positive(Plain(&RATIO), "0.05"),
         /// From a target, of the way to it, where the window is not smaller; default: 0.05.
         arrives: f64 = positive(Plain(&RATIO), "0.05"),
-        /// From a velocity that is held, of it; default: 0.05.
+        /// From a velocity that is held, of it; default: 0.03.
         velocity: f64 = positive(Plain(&RATIO), "0.05"),
-        /// From an effort, of it; default: 0.05.
+        /// From an effort, of it; default: 0.04.
         effort: f64 = positive(Plain(&RATIO), "0.05"),
     }
 }

@@ -1,9 +1,9 @@
 //! The axis of a scenario as its requirements know it: the linear rigid loop, and where efforts displace it to.
 use servobench_drive::feedforward::Model;
 use servobench_drive::{Params, Stage};
-use servobench_metrics::{Deflection, Servo};
+use servobench_metrics::{Deflection, HeldMode, Servo};
 use servobench_plant::{Chain, pmsm};
-use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, LoopSignal, Scenario};
+use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Feedback, LoopSignal, Scenario};
 
 /// Effort that no model has in it, as a share of the largest one of the drive.
 const NOT_MODELLED: f64 = 0.05;
@@ -41,7 +41,20 @@ pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
         inertia_feedforward: fed_inertia / inertia,
         viscous: viscous / inertia,
         viscous_feedforward: fed_viscous / inertia,
+        is_closed_at_the_load: matches!(drive.position_feedback, Feedback::Load(_)),
     })
+}
+
+/// The modes in which the load follows the motor; none where the mechanics are not those of a chain.
+pub(super) fn held_modes(scenario: &Scenario) -> Vec<HeldMode> {
+    let modes = chain(scenario).map(Chain::held_modes).unwrap_or_default();
+    let known = modes.into_iter().map(|mode| HeldMode {
+        weight: mode.weight,
+        omega: mode.omega,
+        decay: mode.decay,
+        lead: mode.lead,
+    });
+    known.collect()
 }
 
 /// Where efforts displace the axis to.
@@ -86,7 +99,6 @@ fn springs(chain: &Chain) -> Deflection {
         let bias = sum(|body| body.bias.abs() / body.transmission.abs());
         all.elastic += (bias + friction) / link.stiffness;
         all.stick += friction / link.stiffness;
-        all.elastic_per_acceleration += sum(|body| body.inertia / body.transmission.powi(2)) / link.stiffness;
         all.elastic_per_effort += 1.0 / link.stiffness;
     }
     all
