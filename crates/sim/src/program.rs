@@ -31,6 +31,8 @@ struct Planned {
     deviation: Option<f64>,
     /// Whether the next move takes over from it.
     is_aborted: bool,
+    /// Whether its plan ends at rest.
+    ends_at_rest: bool,
     /// What it is, in a word or two.
     kind: &'static str,
 }
@@ -118,6 +120,7 @@ impl Program {
                         start,
                         end,
                         from,
+                        ends_at_rest: ends_at_rest(&plan),
                         plan,
                         deviation,
                         is_aborted: false,
@@ -222,11 +225,11 @@ impl Course {
     fn look_up(&mut self, t: f64) {
         let later = self.now.index + 1..self.moves.len();
         let index = later.take_while(|index| self.moves[*index].start <= t).last().unwrap_or(self.now.index);
-        let Some(Planned { start, from, plan, .. }) = self.moves.get(index) else { return };
+        let Some(Planned { start, from, plan, ends_at_rest, .. }) = self.moves.get(index) else { return };
         let now = &mut self.now;
         (now.plan_end, now.then) = if t < *start {
             (f64::NEG_INFINITY, RequestKind::Stand)
-        } else if ends_at_rest(plan) {
+        } else if *ends_at_rest {
             (start + plan.duration(), RequestKind::Rest)
         } else {
             (start + plan.duration(), RequestKind::Velocity)
@@ -289,7 +292,7 @@ impl Planned {
             cruise: (self.start + cruise.0 + delay, cruise.1),
             ending: match is_aborted {
                 true => Ending::Aborted,
-                false if ends_at_rest(plan) => Ending::AtRest,
+                false if self.ends_at_rest => Ending::AtRest,
                 false => Ending::InMotion,
             },
         }
@@ -298,8 +301,9 @@ impl Planned {
 
 /// True where a plan ends at rest: a sum of commanded velocities leaves its rounding.
 fn ends_at_rest(plan: &Plan) -> bool {
-    let [peak, ..] = plan.largest();
-    plan.end().v.abs() <= ROUNDING * peak
+    let velocity = plan.end().v.abs();
+    // The peak of a long plan takes time.
+    velocity <= 0.0 || velocity <= ROUNDING * plan.largest()[0]
 }
 
 /// The interpolation sub-mode.
