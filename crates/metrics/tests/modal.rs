@@ -64,10 +64,10 @@ fn nanometres_beside_a_metre() {
 }
 
 /// Random modes, undamped to ζ = 0.2, beside 1 m, half of them with an offset and a tail up to a hundred times larger.
-/// More cases: `SERVOBENCH_CASES=3000`.
+/// More cases: `SERVOBENCH_SWEEP=3000`.
 #[test]
 fn random_modes_with_offsets_and_tails() {
-    let cases = std::env::var("SERVOBENCH_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
+    let cases = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
     let mut random = Random::seeded(1);
     for _ in 0..cases {
         let seconds = random.logarithmic(0.1, 4.0);

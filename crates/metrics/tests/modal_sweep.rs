@@ -11,9 +11,9 @@ fn normal(random: &mut Random) -> f64 {
 /// From 0 to 1 while its argument goes from 0 to 1.
 type Way = fn(f64) -> f64;
 
-/// Size of a sweep; larger by `SERVOBENCH_CASES=3000`.
+/// Size of a sweep; larger by `SERVOBENCH_SWEEP=3000`.
 fn cases(usual: usize) -> usize {
-    std::env::var("SERVOBENCH_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+    std::env::var("SERVOBENCH_SWEEP").ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
 }
 
 /// `amplitude·e^{−ζωt}·cos(ω_d·t + phase)` at `rate` over `seconds`.

@@ -4,13 +4,15 @@ use servobench_metrics::{Signal, Vibration, vibration};
 use servobench_testkit::Random;
 
 const RATE: f64 = 8000.0;
-/// Records of each kind; larger by `SERVOBENCH_CASES=3000`.
+/// Records of each kind; more by `SERVOBENCH_SWEEP=3000`.
 const CASES: usize = 125;
+/// A mode as near to the frequency of an oscillation without one damping ratio is its own.
+const NEAR: f64 = 0.05;
 /// Records in a hundred that may have a mode nevertheless.
 const WRONG: usize = 1;
 
 fn cases() -> usize {
-    std::env::var("SERVOBENCH_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(CASES)
+    std::env::var("SERVOBENCH_SWEEP").ok().and_then(|text| text.parse().ok()).unwrap_or(CASES)
 }
 
 /// Of standard deviation 1, nearly normal: the sum of twelve.
@@ -149,4 +151,72 @@ fn tails() {
         })
         .collect();
     assert_rare("tails", &found);
+}
+
+/// A tail that comes to a stop on its way, as dry friction holds a load, with and without counts of an encoder: a constant from then on.
+#[test]
+fn held_tails() {
+    let mut random = Random::seeded(26);
+    let found: Vec<_> = (0..cases())
+        .map(|case| {
+            let (seconds, size) = (random.between(0.2, 1.0), random.logarithmic(1e-8, 1e-4));
+            let (tau, held) = (seconds * random.logarithmic(0.05, 1.0), seconds * random.between(0.05, 0.8));
+            let count = if case % 2 == 0 { 0.0 } else { size * random.logarithmic(1e-4, 3e-2) };
+            let rounded = |y: f64| if count > 0.0 { count * (y / count).round() } else { y };
+            let values: Vec<f64> = times(seconds).map(|t| rounded(size * (-t.min(held) / tau).exp())).collect();
+            of(&values, (4.0 * count).max(1e-3 * size))
+        })
+        .collect();
+    assert_rare("held tails", &found);
+}
+
+/// A load on a spring with dry friction alone: half a cosine after the other about ±`band`, each smaller by twice as much, until it is held.
+/// It has a frequency, but no damping ratio of its own; another frequency is not there.
+#[test]
+fn dry_friction() {
+    let mut random = Random::seeded(27);
+    let (mut found, mut elsewhere) = (Vec::new(), Vec::new());
+    for _ in 0..cases() {
+        let (frequency, size) = (random.logarithmic(5.0, 100.0), random.logarithmic(1e-8, 1e-4));
+        let band = size * random.logarithmic(0.02, 0.2);
+        let at = |t: f64| {
+            // Where the swing of this half period begins, until one begins within the band.
+            let (mut from, mut sign, mut left) = (size, 1.0, 2.0 * frequency * t);
+            while left > 1.0 && from > band {
+                (from, sign, left) = (from - 2.0 * band, -sign, left - 1.0);
+            }
+            if from <= band { sign * from } else { sign * (band + (from - band) * (PI * left).cos()) }
+        };
+        let seconds = (0.5 * size / band * random.between(1.0, 3.0)).max(4.0) / frequency / 2.0;
+        let values: Vec<f64> = times(seconds.min(2.0)).map(at).collect();
+        let vibration = of(&values, 1e-3 * size);
+        let is_its_own = vibration.mode().is_ok_and(|mode| (mode.frequency / frequency - 1.0).abs() < NEAR);
+        (if is_its_own { &mut found } else { &mut elsewhere }).push(vibration);
+    }
+    assert_rare("dry friction", &elsewhere);
+    assert!(found.len() * 50 <= cases(), "{} of {}: {found:?}", found.len(), cases());
+    assert!(found.iter().chain(&elsewhere).all(|vibration| vibration.amplitude > 0.0));
+}
+
+/// Lines, parabolas and ramps with an end, with noise or counts: what drifts does not swing.
+#[test]
+fn drifts() {
+    let mut random = Random::seeded(28);
+    let found: Vec<_> = (0..cases())
+        .map(|case| {
+            let (seconds, size) = (random.between(0.1, 1.0), random.logarithmic(1e-8, 1e-4));
+            let (slope, bend, end) = (size * random.signed(), size * random.signed(), random.between(0.1, 1.5));
+            let noise = if case % 3 == 0 { size * random.logarithmic(1e-4, 1e-1) } else { 0.0 };
+            let count = if case % 3 == 1 { size * random.logarithmic(1e-4, 1e-1) } else { 0.0 };
+            let rounded = |y: f64| if count > 0.0 { count * (y / count).round() } else { y };
+            let values: Vec<f64> = times(seconds)
+                .map(|t| {
+                    let u = (t / seconds).min(end);
+                    rounded(slope * u + bend * u * u) + noise * normal(&mut random)
+                })
+                .collect();
+            of(&values, (4.0 * count).max(1e-3 * size))
+        })
+        .collect();
+    assert_rare("drifts", &found);
 }

@@ -3,7 +3,9 @@ use super::fit::Fit;
 use super::model::{Component, Oscillation, tail};
 use super::order::Order;
 use super::series::Series;
-use super::{BAND, Mode, PERIODS, Signal};
+use super::swings::Swings;
+use super::{BAND, Mode, PERIODS, Signal, noise};
+use crate::extremes::range_of;
 use core::f64::consts::PI;
 
 /// Stronger damping is settling, not vibration; stronger growth ends in an error, not in a recording.
@@ -16,7 +18,7 @@ const IMITATED: f64 = 0.2;
 const CRUMB: f64 = 1e-7;
 /// A mode larger than this, in heights of the record, is one of several that all but cancel: no vibration anybody sees.
 const CANCELLING: f64 = 2.0;
-/// An oscillation is visible while its envelope is above 5 % of its largest value, e⁻³.
+/// An oscillation is visible while its envelope is above 5 % of its largest value, e⁻³, and above what nobody asks for.
 const VISIBLE: f64 = 3.0;
 /// What moves by less than this share of a mode's envelope for a quarter of its period stands still. At the least
 /// favourable instant a mode beside a drift of its own velocity still moves by 8 %.
@@ -24,12 +26,22 @@ const STILL: f64 = 0.01;
 /// Stillness is looked for while the envelope is above this share of its largest value; of a mode that has all but died
 /// away an encoder may see nothing.
 const LOUD: f64 = 0.2;
+/// The same in steps of a sensor, which may not see less.
+const INCREMENTS: f64 = 4.0;
+
+/// A mode that is seen for fewer periods may be the imitation of a motion that comes to a stop, by a few poles of much damping.
+const FEW_PERIODS: f64 = 5.0;
+/// A motion comes to a stop where a quarter of a period moves it by so many times what noise and encoder show at rest, and the next one by
+/// no more than that. Of what decays as such a mode does, a quarter moves by 1/22 of the one before at least.
+const STOPPED: f64 = 25.0;
+/// Means in a quarter of a period, of which a stop is told: noise is less in them.
+const MEANS: usize = 4;
 
 /// A fitted mode.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) mode: Mode,
-    /// Periods before its envelope has fallen to 5 %, as far as the record goes.
+    /// Periods before its envelope has fallen to 5 %, or to what nobody asks for, as far as the record goes.
     pub(crate) periods: f64,
 }
 
@@ -69,39 +81,55 @@ pub(crate) fn dominant(
 ) -> Result<Found, Unfit> {
     let span = signal.values.len() as f64 * signal.step;
     let seen = |found: Oscillation, time: f64| found.damped / (2.0 * PI) * time;
-    let visible = |found: Oscillation| seen(found, span.min(VISIBLE / found.decay.abs()));
+    let unseen = least.max(signal.resolution);
+    let visible = |found: Oscillation, largest: f64| {
+        seen(found, span.min(VISIBLE.min((largest / unseen).ln()) / found.decay.abs()))
+    };
     let share = explained(&order.fit, |found| seen(found, span) >= PERIODS);
-    let mut best: Option<((bool, f64), Found)> = None;
-    let (mut too_short, mut elsewhere) = (None::<f64>, false);
+    let mut best: Option<((bool, f64), f64, Found)> = None;
+    let (mut too_short, mut elsewhere, mut cancelling) = (None::<f64>, false, Vec::new());
     for (component, coefficients) in order.fit.parts() {
         let Some(found) = vibration(component) else { continue };
         let (frequency, damping) = (found.frequency(), found.damping());
         let amplitude = amplitude(found, coefficients, series);
         let envelope = |t: f64| amplitude * libm::exp(-found.decay * t);
         let largest = envelope(signal.start).max(envelope(signal.start + span));
-        if !(largest > least.max(signal.resolution).max(CRUMB) && largest < CANCELLING) {
+        if largest >= CANCELLING {
+            cancelling.push(component);
+            continue;
+        }
+        if largest <= unseen.max(CRUMB) {
             continue;
         }
         if seen(found, span) < PERIODS {
             too_short = Some(too_short.map_or(seen(found, span), |other| other.max(seen(found, span))));
         } else if near.is_some_and(|near| (frequency - near).abs() > BAND * near) {
             elsewhere = true;
-        } else if stands_still(signal, found, envelope) {
+        } else if stands_still(signal, found, envelope)
+            || visible(found, largest) < FEW_PERIODS && comes_to_a_stop(signal, found, unseen)
+        {
             return Err(Unfit::Sticks);
         } else if !order.is_whole && order.fit.peak() > IMITATED * largest {
             return Err(Unfit::NotModal { share });
         } else {
             // Mean of the squared envelope over the record.
             let energy = amplitude * amplitude * tail(2.0 * found.decay, span, span);
-            let rank = (visible(found) >= PERIODS, energy);
-            if best.is_none_or(|(other, _)| rank > other) {
+            let periods = visible(found, largest);
+            let rank = (periods >= PERIODS, energy);
+            if best.is_none_or(|(other, ..)| rank > other) {
                 let mode = Mode { amplitude, frequency, damping, share };
-                best = Some((rank, Found { mode, periods: visible(found) }));
+                best = Some((rank, largest, Found { mode, periods }));
             }
         }
     }
+    // What all but cancels may still be what swings: then a small mode beside it is a part of the imitation.
+    let among_larger = best.is_some_and(|(_, largest, _)| {
+        let rest = order.fit.sum_of(|component| cancelling.contains(&component));
+        !cancelling.is_empty() && Swings::of(&rest, series.step, 2.0 * largest).is_some()
+    });
     match (best, too_short) {
-        (Some((_, found)), _) if order.is_whole || share >= EXPLAINED => Ok(found),
+        (Some(_), _) if among_larger => Err(Unfit::NotModal { share }),
+        (Some((.., found)), _) if order.is_whole || share >= EXPLAINED => Ok(found),
         (None, Some(periods)) => Err(Unfit::TooShort { periods }),
         (None, None) if elsewhere => Err(Unfit::Elsewhere),
         (None, None) if order.is_whole => Err(Unfit::Settles),
@@ -109,18 +137,44 @@ pub(crate) fn dominant(
     }
 }
 
+/// Whether the record moves by more than `unseen` in a quarter of a period of the mode `found` and holds still in the next one; of a mode
+/// that grows, in the one before.
+fn comes_to_a_stop(signal: &Signal<'_>, found: Oscillation, unseen: f64) -> bool {
+    let rows = (quarter(signal, found) / MEANS).max(1);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / rows as f64;
+    let means: Vec<f64> = signal.values.chunks_exact(rows).map(mean).collect();
+    let noise = 2.0 * noise::DEVIATIONS * noise::deviation(signal.values) / (rows as f64).sqrt();
+    let quiet = signal.resolution.max(noise);
+    let range = |values: &[f64]| {
+        let (low, high) = range_of(values);
+        high - low
+    };
+    means.windows(2 * (MEANS + 1)).any(|means| {
+        let (before, after) = means.split_at(MEANS + 1);
+        let (moves, rests) = if found.decay < 0.0 { (after, before) } else { (before, after) };
+        let moves = range(moves);
+        moves > unseen.max(STOPPED * quiet) && range(rests) <= quiet.max(STILL * moves)
+    })
+}
+
+/// Rows of a quarter of a period; at least one.
+fn quarter(signal: &Signal<'_>, found: Oscillation) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: no whole quarter then")]
+    let quarter = (PI / (2.0 * found.damped * signal.step)).max(1.0) as usize;
+    quarter
+}
+
 /// Whether the record stands still for a quarter of a period while the mode `found` with this `envelope` is loud: then
 /// something else moves it, and a sum of modes only imitates that.
 fn stands_still(signal: &Signal<'_>, found: Oscillation, envelope: impl Fn(f64) -> f64) -> bool {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: no whole quarter then")]
-    let quarter = (PI / (2.0 * found.damped * signal.step)).max(1.0) as usize;
+    let quarter = quarter(signal, found);
     let time = |k: usize| signal.start + k as f64 * signal.step;
     let loud = LOUD * envelope(time(0)).max(envelope(time(signal.values.len())));
     signal.values.chunks_exact(quarter).enumerate().any(|(k, values)| {
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+        let (low, high) = range_of(values);
         let least = envelope(time(k * quarter)).min(envelope(time((k + 1) * quarter)));
         // Within the resolution it is not seen to move; two values stand still by chance.
-        quarter > 2 && least > loud.max(2.0 * signal.resolution) && high - low < STILL * least
+        quarter > 2 && least > loud.max(INCREMENTS * signal.resolution) && high - low < STILL * least
     })
 }
 
