@@ -73,6 +73,8 @@ class Axis:
     latency: float = 0.0
     commutation: float = 0.0
     from_load: bool = False
+    is_fmu: bool = False
+    """Whether its load is an FMU beside the axis."""
     stops: Tree = field(default_factory=dict)
     switches: Tree = field(default_factory=dict)
     objects: Tree = field(default_factory=dict)
@@ -127,7 +129,7 @@ class Axis:
         rotor = self.pmsm is not None and self.rotary_motor
         # A rotor has a part of the inertia of the motor's side.
         axis["motor_side"] = body(self.motor, motor_mass, 0.5 if rotor else 1.0)
-        if self.load is not None:
+        if self.load is not None and not self.is_fmu:
             axis["load"] = body(self.load, load_mass, 1.0)
             axis["load"]["stiffness"] = quantity(self.stiffness, "N/m" if self.linear_axis else "Nm/rad")
             axis["load"]["damping"] = quantity(self.damping, load_mass[2])
@@ -228,7 +230,9 @@ def estimate(axis: Axis) -> Tree:
         "coulomb": quantity(axis.friction() / r, effort),
         "bias": quantity(axis.bias() / r, effort),
     }
-    if axis.load is not None:
+    if axis.is_fmu:
+        table["motor_inertia"] = quantity(axis.total / r**2, inertia)
+    elif axis.load is not None:
         table |= {
             "load_inertia": quantity(axis.load.inertia, inertia),
             "load_viscous": quantity(axis.load.viscous, viscous),

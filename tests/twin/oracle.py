@@ -91,6 +91,9 @@ def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling, 
 
 def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: float) -> float:
     begin, end = healthy.time(phase.begin), healthy.time(phase.end)
+    if phase.end == inf and run.t[-1] > healthy.t[-1] + 1e-9:
+        # It runs longer, and is judged to its end.
+        end += float(run.t[-1] - healthy.t[-1])
     shift = run.start - healthy.start
     if not isfinite(shift):
         return inf
@@ -136,6 +139,35 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             late = t >= t[0] + 0.75 * (t[-1] - t[0])
             return abs(slope(t[late], load[late]))
     raise ValueError(phase.kind)
+
+
+@dataclass(frozen=True)
+class Harm:
+    """What a machine suffers although it may do its task."""
+
+    kind: str
+    size: float
+    """By how much it is beyond what it bears, as a share of what is bad."""
+
+
+def harms(run: Run, homed: str | None, stops: tuple[float, float] | None, hottest: float | None, seen: float) -> list[Harm]:
+    """Contacts with stops, by how far the load is in one (bad: more than `seen`, axis unit), but for those before power and in the
+    search of the switch, until `homed`; the temperature of the winding (bad: more than a twentieth above the hottest that it bears); and
+    what the trajectory buffer of the drive reports."""
+    found = []
+    if stops is not None:
+        # Until the search has ended it may touch one; where it never ends all of it is one.
+        after = run.t >= max(run.start if isfinite(run.start) else inf, run.rises(homed) if homed else 0.0)
+        beyond = numpy.maximum(stops[0] - run.load[after], run.load[after] - stops[1])
+        if len(beyond) and beyond.max() > 0:
+            found.append(Harm("end stop", float(beyond.max()) / seen))
+    winding = run.values.get("temperature.winding")
+    if hottest is not None and winding is not None and winding.max() > hottest:
+        found.append(Harm("winding", float(winding.max() - hottest) / (0.05 * hottest)))
+    reports = {state for _, state in run.signals.get("drive.buffer", [])} - {"none"}
+    if reports:
+        found.append(Harm(f"buffer: {', '.join(sorted(reports))}", inf))
+    return found
 
 
 def swing(x: numpy.ndarray) -> float:

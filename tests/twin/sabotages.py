@@ -29,6 +29,8 @@ class Change:
     note: str = ""
     harms: bool = False
     """Whether it is a harm by itself, so that a red verdict is never wrong."""
+    stops: tuple[float, float] | None = None
+    """Where stops are that the healthy machine does not have."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,10 @@ class Twin:
     def when(self, random: Random) -> float:
         """Some time of its program, or the beginning."""
         return 0.0 if random.random() < 0.4 else round(random.uniform(0.0, 0.9) * self.task.length, 3)
+
+    def on_the_way(self, random: Random) -> float:
+        """Some time of its program, while something is asked for."""
+        return round(random.uniform(0.1, 0.8) * self.task.length, 3)
 
     @property
     def needed(self) -> float:
@@ -85,7 +91,7 @@ def power_lost(random: Random, twin: Twin) -> Change | None:
 
 def load_stuck(random: Random, twin: Twin) -> Change | None:
     axis, load = twin.axis, twin.axis.load
-    if load is None:
+    if load is None or axis.is_fmu:
         return None
     at, size = twin.when(random), random.decades(-0.5, 1.5)
     stuck = replace(axis, load=replace(load, coulomb=load.coulomb + size * twin.needed / axis.r))
@@ -94,7 +100,7 @@ def load_stuck(random: Random, twin: Twin) -> Change | None:
 
 def uncoupled(random: Random, twin: Twin) -> Change | None:
     axis = twin.axis
-    if axis.load is None:
+    if axis.load is None or axis.is_fmu:
         return None
     at, factor = twin.when(random), random.decades(-8, -6)
     loose = replace(axis, stiffness=factor * axis.stiffness, damping=factor * axis.damping)
@@ -103,9 +109,9 @@ def uncoupled(random: Random, twin: Twin) -> Change | None:
 
 def coupling_soft(random: Random, twin: Twin) -> Change | None:
     axis = twin.axis
-    if axis.load is None:
+    if axis.load is None or axis.is_fmu:
         return None
-    at, factor = twin.when(random), random.decades(-4, -2)
+    at, factor = twin.when(random), random.decades(-5, -3)
     loose = replace(axis, stiffness=factor * axis.stiffness, damping=factor**0.5 * axis.damping)
     return Change(axis, then=loose, at=at, note=f"{factor:.3g} of the stiffness from {at} s")
 
@@ -126,7 +132,7 @@ def gravity(random: Random, twin: Twin) -> Change:
 
 def payload(random: Random, twin: Twin) -> Change:
     axis = twin.axis
-    at, factor = twin.when(random), random.decades(0, 2)
+    at, factor = 0.0 if axis.is_fmu else twin.when(random), random.decades(0, 2)
     if axis.load is not None:
         heavy = replace(axis, load=replace(axis.load, inertia=factor * axis.load.inertia))
     else:
@@ -137,13 +143,13 @@ def payload(random: Random, twin: Twin) -> Change:
 
 
 def velocity_gain(random: Random, twin: Twin) -> Change:
-    factor = random.decades(0.3, 2.3) ** random.sign()
+    factor = random.decades(0.8, 2.8) ** random.sign()
     axis = replace(twin.axis, velocity_gain=factor * twin.axis.velocity_gain)
     return Change(axis, note=f"velocity gain times {factor:.3g}")
 
 
 def position_gain(random: Random, twin: Twin) -> Change:
-    factor = random.decades(0.7, 2.7) ** random.sign()
+    factor = random.decades(1.3, 3.3) ** random.sign()
     axis = replace(twin.axis, position_gain=factor * twin.axis.position_gain)
     return Change(axis, note=f"position gain times {factor:.3g}")
 
@@ -172,14 +178,15 @@ def encoder_scaled(random: Random, twin: Twin) -> Change:
 
 
 def encoder_reversed(random: Random, twin: Twin) -> Change:
-    at = twin.when(random)
+    at = round(random.uniform(0, twin.duration), 4)
     hook = {"kind": "encoder-scaled", "at": at, "factor": -1.0}
     return Change(twin.axis, hooks=[hook], note=f"encoder reversed from {at} s")
 
 
 def encoder_late(random: Random, twin: Twin) -> Change:
-    late = random.decades(-3.3, -2)
-    return Change(replace(twin.axis, latency=late), note=f"encoder {late:.3g} s late")
+    at, late = twin.when(random), random.decades(-2.7, -0.7)
+    hook = {"kind": "encoder-late", "at": at, "by": late}
+    return Change(twin.axis, hooks=[hook], note=f"encoder {late:.3g} s late from {at} s")
 
 
 def encoder_noisy(random: Random, twin: Twin) -> Change:
@@ -190,7 +197,7 @@ def encoder_noisy(random: Random, twin: Twin) -> Change:
 def commutation(random: Random, twin: Twin) -> Change | None:
     if twin.axis.pmsm is None:
         return None
-    angle = random.sign() * min(180.0, random.decades(0.3, 2.3))
+    angle = random.sign() * random.decades(1.3, 2.255)
     return Change(replace(twin.axis, commutation=angle), note=f"commutation off by {angle:.4g} degrees")
 
 
@@ -211,8 +218,8 @@ def link_sag(random: Random, twin: Twin) -> Change | None:
     motor = twin.axis.pmsm
     if motor is None:
         return None
-    at, depth = round(random.uniform(0, 0.7) * twin.task.length, 4), 1 - random.decades(-2, 0)
-    length = round(random.decades(-1, 1) * twin.task.length, 4)
+    at, depth = round(random.uniform(0, 0.5) * twin.task.length, 4), 1 - random.decades(-3, -1)
+    length = round(random.decades(-0.7, 1) * twin.task.length, 4)
     link = {"capacitance": "470 uF", "source_resistance": f"{0.02 * motor.dc_link / 10} Ohm"}
     link["sag"] = {"start": f"{at} s", "duration": f"{length} s", "depth": depth}
     return Change(with_extra(twin.axis, {"drive.link": link}), note=f"link down by {depth:.3g} from {at} s for {length} s")
@@ -240,7 +247,9 @@ def end_stop_moved(random: Random, twin: Twin) -> Change | None:
     size = max((abs(phase.target) for phase in task.phases if phase.kind == "way"), default=0.0)
     if size == 0.0:
         return None
-    at = size * random.decades(-1, 0.2)
+    # Behind the farthest target, or before it.
+    away = random.decades(-2.5, -0.1)
+    at = size * (1 + away if random.random() < 0.35 else 1 - away)
     mass = axis.load.inertia if axis.load else axis.motor.inertia / axis.r**2
     # In it for some dozen ticks.
     stiffness = mass * (axis.base / 30) ** 2
@@ -249,7 +258,7 @@ def end_stop_moved(random: Random, twin: Twin) -> Change | None:
     per = "N/m" if axis.linear_axis else "Nm/rad"
     loss = "N s/m" if axis.linear_axis else "Nm s/rad"
     stops = {"negative": f"{-at} {unit}", "positive": f"{at} {unit}", "stiffness": f"{stiffness} {per}", "damping": f"{damping} {loss}"}
-    return Change(replace(axis, stops=stops), note=f"end stops at {at:.4g} of {size:.4g}", harms=True)
+    return Change(replace(axis, stops=stops), note=f"end stops at {at:.4g} of {size:.4g}", stops=(-at, at))
 
 
 def bus_of(twin: Twin, **keys: Any) -> dict[str, Any] | None:
@@ -258,15 +267,22 @@ def bus_of(twin: Twin, **keys: Any) -> dict[str, Any] | None:
 
 
 def frames_lost(random: Random, twin: Twin) -> Change | None:
-    at, cycles = twin.when(random), round(random.decades(0, 2))
+    at, cycles = twin.on_the_way(random), round(random.decades(0.7, 2.7))
     tables = bus_of(twin, fault=[{"kind": "lost", "start": f"{at} s", "cycles": cycles}])
-    return tables and Change(twin.axis, tables=tables, note=f"{cycles} frames lost from {at} s", harms=True)
+    return tables and Change(twin.axis, tables=tables, note=f"{cycles} frames lost from {at} s")
 
 
 def frames_late(random: Random, twin: Twin) -> Change | None:
-    at, ticks = twin.when(random), max(1, round(random.decades(-4, -2) * twin.axis.base))
+    at, ticks = twin.on_the_way(random), max(1, round(random.decades(-2.5, -0.5) * twin.axis.base))
     tables = bus_of(twin, fault=[{"kind": "late", "start": f"{at} s", "duration": "1000 s", "by": f"{ticks / twin.axis.base * 1e6} us"}])
-    return tables and Change(twin.axis, tables=tables, note=f"frames {ticks} ticks late from {at} s", harms=True)
+    return tables and Change(twin.axis, tables=tables, note=f"frames {ticks} ticks late from {at} s")
+
+
+def frames_frozen(random: Random, twin: Twin) -> Change | None:
+    """The values of the task are lost, so that the master has nothing new to send."""
+    at, cycles = twin.on_the_way(random), round(random.decades(1.5, 3.5))
+    tables = bus_of(twin, fault=[{"kind": "task-lost", "start": f"{at} s", "cycles": cycles}])
+    return tables and Change(twin.axis, tables=tables, note=f"{cycles} frames frozen from {at} s")
 
 
 def buffer_small(random: Random, twin: Twin) -> Change | None:
@@ -274,7 +290,7 @@ def buffer_small(random: Random, twin: Twin) -> Change | None:
     if twin.tables.get("bus", {}).get("mode") != "ip":
         return None
     delay = round(random.decades(0.3, 1.17))
-    return Change(twin.axis, tables=bus_of(twin, delay=delay), note=f"{delay} cycles on the way to a buffer", harms=True)
+    return Change(twin.axis, tables=bus_of(twin, delay=delay), note=f"{delay} cycles on the way to a buffer")
 
 
 def master_gain(random: Random, twin: Twin) -> Change | None:
@@ -283,6 +299,67 @@ def master_gain(random: Random, twin: Twin) -> Change | None:
     factor = random.decades(0, 2) ** random.sign()
     gain = factor * float(twin.tables["bus"]["position_gain"].removesuffix(" 1/s"))
     return Change(twin.axis, tables=bus_of(twin, position_gain=f"{gain} 1/s"), note=f"gain of the master times {factor:.3g}")
+
+
+def fmu_unstable(random: Random, twin: Twin) -> Change | None:
+    """A damping that drives: a share of the critical one of the load on its spring."""
+    axis = twin.axis
+    if not axis.is_fmu:
+        return None
+    share = random.decades(-2.5, -0.5)
+    critical = 2 * (axis.stiffness * axis.load.inertia) ** 0.5
+    return Change(replace(axis, damping=-share * critical), note=f"{-share:.3g} of the critical damping of the FMU")
+
+
+SHAKEN = 50
+"""So many time constants of the position loop a machine that is to be shaken rests longer."""
+
+
+def shaken(random: Random, twin: Twin) -> Change | None:
+    """A force that goes to and fro in the last rest of a task, far below what there is."""
+    axis, task = twin.axis, twin.task
+    rest = next((phase for phase in reversed(task.phases) if phase.kind == "rest"), None)
+    if rest is None or axis.integral_time is None:
+        return None
+    effort, frequency = random.decades(-1.2, 0.5) * twin.needed, random.uniform(0.3, 0.6) * axis.position_gain
+    start = twin.duration - 0.9 * SHAKEN / axis.position_gain
+    disturbance = {"on": "motor", "start": f"{start} s", "duration": "1000 s", "frequency": f"{frequency} Hz"}
+    disturbance["torque" if axis.rotary_motor else "force"] = f"{effort} {axis.effort_unit}"
+    tables = {"disturbance": [*twin.tables.get("disturbance", []), disturbance]}
+    return Change(axis, tables=tables, note=f"shaken by {effort / twin.needed:.3g} of the effort that is needed with {frequency:.4g} Hz")
+
+
+def cooling_weak(random: Random, twin: Twin) -> Change | None:
+    motor = twin.axis.pmsm
+    if motor is None or "motor.thermal" not in motor.extras:
+        return None
+    factor, thermal = random.decades(0, 2), dict(motor.extras["motor.thermal"])
+    for key, by in {"to_housing": factor, "to_ambient": factor, "winding_capacity": 1 / factor, "housing_capacity": 1 / factor}.items():
+        value, unit = thermal[key].split()
+        thermal[key] = f"{by * float(value)} {unit}"
+    return Change(with_extra(twin.axis, {"motor.thermal": thermal}), note=f"{factor:.3g} times warmer")
+
+
+def switch_wrong(random: Random, twin: Twin) -> Change | None:
+    """A home switch that closes where it should open, is not connected, or sits elsewhere; the last the machine may not notice."""
+    home = twin.task.switches.get("home")
+    if home is None:
+        return None
+    low, high = (float(home[key].split()[0]) for key in ("from", "to"))
+    edge, away = (low, 1.0) if low > 0 else (high, -1.0)
+    kind = random.choice(("inverted", "missing", "moved", "moved"))
+    span = abs(high - low)
+    match kind:
+        case "inverted":
+            ends = (edge, edge - away * 100 * twin.task.span)
+        case "missing":
+            ends = (1e3 * edge, 1e3 * edge + away * span)
+        case _:
+            edge *= random.decades(-1, 1)
+            ends = (edge, edge + away * span)
+    unit = twin.axis.unit
+    switches = {"home": {"from": f"{min(ends)} {unit}", "to": f"{max(ends)} {unit}"}}
+    return Change(replace(twin.axis, switches=switches), note=f"{edge:.4g} home switch {kind}")
 
 
 SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
@@ -312,13 +389,47 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "end stop moved": end_stop_moved,
     "frames lost": frames_lost,
     "frames late": frames_late,
+    "frames frozen": frames_frozen,
     "buffer small": buffer_small,
     "master gain": master_gain,
+    "fmu unstable": fmu_unstable,
+    "shaken": shaken,
+    "cooling weak": cooling_weak,
+    "switch wrong": switch_wrong,
 }
 
-NEEDS: dict[str, Callable[[Axis], bool]] = {
-    **dict.fromkeys(("current gain", "commutation", "phase lost", "link sag", "dead time"), lambda axis: axis.pmsm is not None),
+PARTS: dict[str, Callable[[Axis], bool]] = {
+    **dict.fromkeys(("current gain", "commutation", "phase lost", "link sag", "dead time", "cooling weak"), lambda axis: axis.pmsm is not None),
     **dict.fromkeys(("load stuck", "load uncoupled", "coupling soft"), lambda axis: axis.load is not None),
+    "fmu unstable": lambda axis: axis.load is not None and not axis.from_load,
     "gear ratio": lambda axis: axis.lead is not None,
+    "shaken": lambda axis: axis.integral_time is not None,
 }
 """Parts of an axis without which there is no such sabotage."""
+
+BUSES = ("csp", "csv", "pp", "ip", "blocks", "velocity", "stop", "hold over a bus", "torque", "homing")
+WAYS = ("moves", "sequences", "table", "velocity, direct", "csp", "csv", "pp", "ip", "blocks", "homing")
+OF_PROGRAMS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("frames lost", "frames late"), BUSES),
+    # The drive makes the way in the others, and what stands is sent the same all the time.
+    "frames frozen": ("csp", "csv", "pp", "ip", "blocks", "velocity", "stop", "torque"),
+    "buffer small": ("ip",),
+    "master gain": ("csv",),
+    "switch wrong": ("homing",),
+    "end stop moved": WAYS,
+    "shaken": WAYS,
+}
+"""Programs in which there are such sabotages; of the others all."""
+
+WITHOUT: dict[str, tuple[str, ...]] = {
+    # The loops of position and velocity are open, and so are the encoders for them.
+    "torque": ("position gain", "velocity gain", "power lost", *(f"encoder {kind}" for kind in ("frozen", "scaled", "reversed", "late", "noisy"))),
+    # The master closes the loop of position.
+    "csv": ("position gain",),
+}
+"""Sabotages that do nothing in a program."""
+
+
+def possible(program: str, names: list[str]) -> list[str]:
+    """Those of a list that a program can have."""
+    return [name for name in names if program in OF_PROGRAMS.get(name, (program,)) and name not in WITHOUT.get(program, ())]

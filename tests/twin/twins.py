@@ -1,5 +1,6 @@
 """Pairs of twins: a healthy machine with its task, and the same with a sabotage. All of it follows from a seed."""
 
+import shutil
 from dataclasses import dataclass, field, replace
 from math import pi
 from pathlib import Path
@@ -8,16 +9,19 @@ from typing import Any
 from draws import Random
 from verdict_classes.case import Tree, quantity, toml
 
+import fmu
 import mjcf
 from linear import has_margins
-from machine import Axis, draw_axis, estimate, increment_of, with_motor
+from machine import Axis, Pmsm, draw_axis, estimate, increment_of, with_motor
 from oracle import Settling, Tolerance
-from sabotages import NEEDS, SABOTAGES, Change, Twin
+from sabotages import PARTS, SABOTAGES, SHAKEN, Change, Twin, possible
 from bus_task import BUS, unit_of
 from task import DIRECT, Task, draw_pace, feedforward
 
 PROGRAMS = {**DIRECT, **BUS}
 ENGINES = ("exact", "exact", "exact", "exact", "exact", "rapier", "mujoco")
+FOREIGN = ("rapier", "mujoco")
+"""Engines for bodies that are a file of their own."""
 NEARLY_THE_SAME = 1 + 1e-9
 """The mass of a sister."""
 
@@ -28,6 +32,8 @@ class Judge:
 
     tables: Tree = field(default_factory=dict)
     """Tables of the file that it judges by."""
+    longer: float = 1.0
+    """How many times as long both machine and file run."""
     window: float | None = None
     lifted: str | None = None
     note: str = ""
@@ -57,8 +63,10 @@ class Family:
     pairs: list[Pair] = field(default_factory=list)
 
 
-NOT_BY_MJCF = ("gravity", "end stop moved")
+NOT_BY_MJCF = ("gravity", "end stop moved", "fmu unstable")
 """Sabotages that a file of bodies here does not have."""
+NOT_BY_FMU = ("load stuck", "load uncoupled", "coupling soft")
+"""Sabotages that a load as an FMU does not have, which is one from the beginning to the end."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +80,7 @@ class Drawn:
     lifts: list[str]
     """Requirements that a file may lift."""
     engines: tuple[str, ...]
+    """Those that the program has; rapier stands in for others."""
     is_coarse: bool = False
     """Whether encoders are anything from 256 lines to 2^24 counts, and windows as narrow as they allow."""
 
@@ -82,21 +91,30 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     # Programs in turn, and for each of them sabotages in turn.
     turn, at = divmod(int(seed.rpartition("-")[2]), len(drawn.programs))
     program = drawn.programs[at]
-    wanted = [drawn.sabotages[(turn * drawn.pairs + number) % len(drawn.sabotages)] for number in range(drawn.pairs)]
+    names = possible(program, drawn.sabotages)
+    wanted = [names[(turn * drawn.pairs + number) % len(names)] for number in range(drawn.pairs)] if names else []
     axis = draw_stable(random, wanted)
+    is_mjcf = mjcf.can_be(axis) and not set(wanted) & set(NOT_BY_MJCF) and random.random() < 0.5
+    if not is_mjcf and fmu.can_be(axis) and not set(wanted) & set(NOT_BY_FMU) and ("fmu unstable" in wanted or random.random() < 0.2):
+        axis = with_fmu(random, axis)
     # A master that feeds forward does so by its own keys.
     forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
     pace = draw_pace(random, axis, follows=bool(forward))
     task = PROGRAMS[program](random, axis, pace)
     axis, window = with_task(random, axis, task, forward, is_coarse=drawn.is_coarse)
+    if "shaken" in wanted:
+        # It rests long enough to see that a swing stays, and its window is small beside one.
+        task.length += SHAKEN / axis.position_gain
+        window = max(20 * axis.grain, task.span * random.decades(-4.3, -3.3))
     if program == "pp":
         # The drive takes the next target when it has reached the one before.
         unit = unit_of(task.span) * (1.0 if axis.linear_axis else pi / 180)
         axis = replace(axis, objects={"6067h": max(10, round((window or 1e-3 * task.span) / unit))})
     duration = round(task.length + random.uniform(0.02, 0.3), 4)
     tables = task.tables | ({"measure": {"window": quantity(window, axis.unit)}} if window else {})
-    engine = random.choice(drawn.engines)
-    is_mjcf = engine != "exact" and mjcf.can_be(axis) and random.random() < 0.5
+    engine = random.choice(FOREIGN if is_mjcf else ENGINES)
+    if engine not in drawn.engines:
+        engine = "rapier"
     if is_mjcf:
         axis = replace(axis, motor=replace(axis.motor, bias=0.0))
         axis = replace(axis, estimate=estimate(axis))
@@ -107,7 +125,9 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
         # A seed for each. In place of one that the machine cannot have comes any.
         of_pair = Random(f"pair {seed} {number}")
-        name = wanted[number] if number < len(wanted) else of_pair.choice(drawn.sabotages)
+        if not names:
+            break
+        name = wanted[number] if number < len(wanted) else of_pair.choice(names)
         change = SABOTAGES[name](of_pair, twin)
         if change is not None and not (is_mjcf and name in NOT_BY_MJCF):
             family.pairs.append(Pair(f"{seed}.{number}", name, change, draw_judge(of_pair, twin, drawn.lifts)))
@@ -115,7 +135,17 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     return family
 
 
-TRIES = 40
+TRIES = 60
+
+
+def with_fmu(random: Random, axis: Axis) -> Axis:
+    """The axis with an FMU for its load: soft enough for a force that is a tick late, and damped. As it was where that has no margins."""
+    load = replace(axis.load, viscous=0.0)
+    reduced = 1 / (1 / load.inertia + axis.r**2 / axis.motor.inertia)
+    omega = min((axis.stiffness / reduced) ** 0.5, 0.08 * axis.base)
+    damping = 2 * random.decades(-1.2, -0.7) * reduced * omega
+    soft = replace(axis, load=load, stiffness=reduced * omega**2, damping=damping, is_fmu=True)
+    return soft if has_margins(with_motor(random, soft, 0.1 * axis.r, 1.0) if axis.pmsm else soft) else axis
 
 
 def draw_stable(random: Random, wanted: list[str]) -> Axis:
@@ -124,7 +154,7 @@ def draw_stable(random: Random, wanted: list[str]) -> Axis:
     while True:
         axis = draw_axis(random)
         tries += 1
-        if tries < TRIES and not all(NEEDS[name](axis) for name in wanted if name in NEEDS):
+        if tries < TRIES and not all(PARTS[name](axis) for name in wanted if name in PARTS):
             continue
         # Nothing that is drawn later changes its loop but the motor, whose resistance and inductance hardly do.
         probe = with_motor(random, axis, 0.1 * axis.r, 1.0) if axis.pmsm else axis
@@ -134,7 +164,7 @@ def draw_stable(random: Random, wanted: list[str]) -> Axis:
 
 def draw_judge(random: Random, twin: Twin, lifts: list[str]) -> Judge | None:
     """Now and then something that would make a verdict look away: a wide window, a late look, few rows, a requirement that is lifted."""
-    kind = random.choice(("window", "from", "rate", "lift")) if random.random() < 0.2 else None
+    kind = random.choice(("window", "from", "rate", "lift", "longer")) if random.random() < 0.2 else None
     measure = dict(twin.tables.get("measure", {}))
     match kind:
         case "lift" if not lifts:
@@ -144,6 +174,9 @@ def draw_judge(random: Random, twin: Twin, lifts: list[str]) -> Judge | None:
             return Judge({"measure": measure | {"window": quantity(window, twin.axis.unit)}}, window=window, note=f"window {window:.3g}")
         case "from":
             return Judge({"measure": measure | {"from": quantity(0.95 * twin.duration, "s")}}, note="measured from the end")
+        case "longer" if twin.task.name != "torque":
+            times = random.decades(0, 0.6)
+            return Judge(longer=times, note=f"{times:.3g} times as long")
         case "rate":
             return Judge({"record": {"rate": f"{twin.axis.base // 400} Hz"}}, note="few rows")
         case "lift":
@@ -180,10 +213,31 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         axis = replace(axis, increment=increment_of(axis, finer * axis.increment), noise=finer * axis.noise)
     axis = replace(axis, seed=random.randint(1, 1000))
     axis = with_motor(random, axis, task.velocity, axis.effort(task.velocity, task.acceleration))
+    if axis.pmsm is not None and random.random() < 0.6:
+        axis = replace(axis, pmsm=replace(axis.pmsm, extras={"motor.thermal": thermal(axis.pmsm, axis.effort(task.velocity, task.acceleration), task.length)}))
+    if task.name.startswith("hold") and random.random() < 0.7:
+        # Something that it has to stand against.
+        effort = random.sign() * axis.effort(task.velocity, task.acceleration) * random.uniform(0.3, 0.7)
+        step = {"on": "motor", "start": quantity(round(random.uniform(0.5, 0.6) * task.length, 4), "s"), "duration": "1000 s"}
+        task.tables["disturbance"] = [step | {"torque" if axis.rotary_motor else "force": quantity(effort, axis.effort_unit)}]
     if is_coarse:
         return axis, max(10 * axis.grain, 10 * unit_of(task.span), task.span * random.decades(-4.5, -2))
     window = None if random.random() < 0.25 else max(20 * axis.grain, task.span * random.decades(-4, -2))
     return axis, window
+
+
+AMBIENT, HOTTEST = 40.0, 120.0
+"""Temperatures (°C) of the surroundings, and that the winding bears."""
+
+
+def thermal(motor: Pmsm, effort: float, length: float) -> Tree:
+    """`[motor.thermal]` of a motor that is small for its task: in its time the losses of the effort that is needed warm it by some 50 K at
+    most."""
+    loss = 1.5 * motor.resistance * (effort / motor.constant) ** 2
+    capacity = loss * length / 50
+    table = {"ambient": quantity(AMBIENT, "degC"), "limit": quantity(HOTTEST, "degC")}
+    table |= {"to_housing": quantity(30 / loss, "K/W"), "to_ambient": quantity(15 / loss, "K/W")}
+    return table | {"winding_capacity": quantity(capacity, "J/K"), "housing_capacity": quantity(20 * capacity, "J/K")}
 
 
 def droop(axis: Axis) -> float:
@@ -199,10 +253,10 @@ def settling(axis: Axis) -> Settling:
     return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=2.5 * slow)
 
 
-def tree(family: Family, axis: Axis, tables: Tree | None = None) -> Tree:
+def tree(family: Family, axis: Axis, tables: Tree | None = None, longer: float = 1.0) -> Tree:
     """The scenario of a machine that does the task of the family."""
-    whole = axis.tables() | family.twin.tables | (tables or {})
-    whole["run"] = whole["run"] | {"duration": quantity(family.twin.duration, "s")}
+    whole = axis.tables() | family.twin.tables | (tables or {}) | (fmu.tables(axis) if axis.is_fmu else {})
+    whole["run"] = whole["run"] | {"duration": quantity(longer * family.twin.duration, "s")}
     return whole
 
 
@@ -227,23 +281,25 @@ def write(folder: Path, family: Family) -> list[dict[str, Any]]:
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in family.twin.task.files.items():
         (folder / name).write_text(text)
+    if family.twin.axis.is_fmu:
+        shutil.copy(folder.parent / fmu.FILE, folder)
     jobs = []
 
     def job(name: str, axis: Axis, change: Change | None = None, judge: Judge | None = None) -> None:
         file = folder / f"{name}.toml"
-        tables = change.tables if change else None
-        put(file, family, axis, tree(family, axis, tables), f"{change.note} {change.hooks or ''}" if change else "")
+        tables, longer = change.tables if change else None, judge.longer if judge else 1.0
+        put(file, family, axis, tree(family, axis, tables, longer), f"{change.note} {change.hooks or ''}" if change else "")
         one = {"id": f"{family.name}/{name}", "run": str(file), "judge": str(folder / "healthy.toml"), "engine": family.engine}
         one |= {"rows": str(folder / f"{name}.f64"), "channels": channels(family), "every": every(family)}
         if change is not None and change.then is not None:
             then = folder / f"{name}-then.toml"
-            put(then, family, change.then, tree(family, change.then, tables), f"from {change.at} s on")
+            put(then, family, change.then, tree(family, change.then, tables, longer), f"from {change.at} s on")
             one |= {"then": str(then), "at": change.at}
         if change is not None and change.hooks:
             one["sabotage"] = change.hooks
         if judge is not None:
             by = folder / f"{name}-judge.toml"
-            put(by, family, family.twin.axis, tree(family, family.twin.axis, judge.tables), judge.note)
+            put(by, family, family.twin.axis, tree(family, family.twin.axis, judge.tables, longer), judge.note)
             one["judge"] = str(by)
         jobs.append(one)
 
@@ -260,7 +316,8 @@ def write_longer(folder: Path, family: Family, pair: Pair) -> dict[str, Any]:
     axis, duration = pair.change.axis, family.twin.duration
     name, effort = f"{pair.name}-longer", "torque" if axis.rotary_motor else "force"
     push = {"on": "motor", "start": quantity(duration, "s"), "duration": "2 ms", effort: quantity(0.2 * axis.limit, axis.effort_unit)}
-    whole = tree(family, axis, pair.change.tables) | {"disturbance": [push]}
+    whole = tree(family, axis, pair.change.tables)
+    whole["disturbance"] = [*whole.get("disturbance", []), push]
     whole["run"] = whole["run"] | {"duration": quantity(4 * duration, "s")}
     put(folder / f"{name}.toml", family, axis, whole)
     job = {"id": f"{family.name}/{name}", "run": str(folder / f"{name}.toml"), "engine": family.engine, "rows": str(folder / f"{name}.f64")}
@@ -272,7 +329,9 @@ def write_longer(folder: Path, family: Family, pair: Pair) -> dict[str, Any]:
 
 def channels(family: Family) -> list[str]:
     bus = ["bus.position"] if family.twin.task.is_bus else []
-    return ["load.position", "reference.position", "setpoint.position", "effort.motor", *bus]
+    motor = family.twin.axis.pmsm
+    warm = ["temperature.winding"] if motor is not None and "motor.thermal" in motor.extras else []
+    return ["load.position", "reference.position", "setpoint.position", "effort.motor", *bus, *warm]
 
 
 def every(family: Family) -> int:

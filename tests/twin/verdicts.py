@@ -23,12 +23,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "outside"))
 
 import numpy
 
+import fmu
 from bus_task import ENABLED
 from linear import is_stable
-from oracle import Judgement, Run, deviations, goes_on, judgement
+from oracle import Harm, Judgement, Run, deviations, goes_on, harms, judgement
 from sabotages import SABOTAGES
 from task import Phase, Task
-from twins import ENGINES, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
+from twins import ENGINES, HOTTEST, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
 
 MOST_OF_MOVE = 0.1
 """A healthy machine that is off by more of its move is left out."""
@@ -163,6 +164,10 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
             print("discarded", family.name, family.program, [f"{phase.kind} {d:.3g}" for phase, d in zip(phases, of_healthy)])
         return True
     right = True
+    if harms_of(family, None, healthy):
+        tally.discarded += 1
+        tally.cells[family.program, "(none)"]["discarded"] += 1
+        return True
     outcome = result("healthy")["outcome"]
     if not outcome["passed"]:
         right = False
@@ -176,7 +181,8 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
             right = False
             continue
         outcome = of_pair["outcome"]
-        found = deviations(phases, healthy, run(pair.name), family.settling, family.tolerance)
+        twin = run(pair.name)
+        found = deviations(phases, healthy, twin, family.settling, family.tolerance)
         tolerance = family.tolerance
         if pair.judge is not None and pair.judge.window is not None:
             tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window or 0.0))
@@ -184,6 +190,10 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         lost = ended_calls(outcome) - ended_calls(result("healthy")["outcome"])
         if outcome["ended"] or lost:
             judged = Judgement("bad", ", ".join(lost) or "end", numpy.inf, 0, 0, 0)
+        suffered = harms_of(family, pair, twin)
+        worst = max(suffered, key=lambda harm: harm.size, default=None)
+        if worst is not None and judged.word != "bad":
+            judged = Judgement("bad" if worst.size > 1 else "between", worst.kind, worst.size, worst.size, 1.0, 0.0)
         cell[judged.word] += 1
         if judged.word == "bad" and len(broken(outcome)) == 1:
             tally.alone.update(broken(outcome))
@@ -203,6 +213,15 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
             else:
                 tally.note(kind, line)
     return right
+
+
+def harms_of(family: Family, pair: Pair | None, run: Run) -> list[Harm]:
+    """What a machine of a family suffers."""
+    task, motor = family.twin.task, family.twin.axis.pmsm
+    homed = "home.Done" if task.name == "homing" else None
+    hottest = HOTTEST if motor is not None and "motor.thermal" in motor.extras else None
+    seen = max(family.tolerance.window or 1e-3 * task.span, 10 * family.tolerance.increment)
+    return harms(run, homed, pair.change.stops if pair else None, hottest, seen)
 
 
 def settle_checks(runner: Runner, tally: Tally) -> None:
@@ -310,9 +329,10 @@ def sweep(given: argparse.Namespace, pairs: int, room: Path) -> Tally:
         sabotages=given.sabotages,
         pairs=0 if given.healthy else given.each,
         lifts=[] if given.proof else requirements(given.program),
-        engines=ENGINES if given.mujoco else ENGINES[:-1],
+        engines=ENGINES if given.mujoco else tuple(name for name in ENGINES if name != "mujoco"),
         is_coarse=bool(given.healthy),
     )
+    fmu.build(room)
     for first in range(0, len(names), CHUNK):
         families = [draw_family(name, drawn) for name in names[first : first + CHUNK]]
         jobs = [job for family in families for job in write(room / family.name, family)]
@@ -326,6 +346,8 @@ def sweep(given: argparse.Namespace, pairs: int, room: Path) -> Tally:
             if not any((room / name).iterdir()):
                 (room / name).rmdir()
     runner.end()
+    if not given.only and not any(path.is_dir() for path in room.iterdir()):
+        (room / fmu.FILE).unlink()
     return tally
 
 
@@ -346,6 +368,7 @@ def main() -> int:
     """Draws, runs, judges; one if any verdict is wrong."""
     given, begun = options(), time.monotonic()
     room = given.keep or Path(tempfile.mkdtemp(prefix="servobench-twins-"))
+    room.mkdir(parents=True, exist_ok=True)
     print(f"seed {given.seed}")
     tally = sweep(given, given.proof or given.pairs, room)
     for kind in ("not run", "healthy is red", "false green", "false red"):

@@ -1,4 +1,5 @@
 //! One run: which machine, what is wrong with it, by which file it is judged, and what it leaves.
+use crate::fmus::Here;
 use crate::sabotage::{Sabotage, SabotagedEngine};
 use serde::{Deserialize, Serialize};
 use servobench_metrics::{Standing, Verdict};
@@ -85,11 +86,11 @@ impl Job {
             at: self.at,
             transmission: scenario.axis.transmission,
         };
-        let bench = Bench::new(&scenario, &engine).map_err(|error| error.to_string())?;
+        let bench = Bench::with_fmus(&scenario, &engine, &Here).map_err(|error| error.to_string())?;
         let outcome = bench.run(&mut |_| ());
         let ended = outcome.failure.as_ref().map(ToString::to_string);
-        let recording = outcome.recording;
-        let verdict = judge(&recording, outcome.failure, &judged_by).map_err(|error| error.to_string())?;
+        let mut recording = outcome.recording;
+        let verdict = judge(&mut recording, outcome.failure, &judged_by).map_err(|error| error.to_string())?;
         self.write_rows(&recording)?;
         Ok(self.outcome(&recording, &verdict, ended))
     }

@@ -7,6 +7,7 @@
 //! A job is a line of JSON ([`job::Job`]), its result another one ([`job::Outcome`]), in the order in which the runs end. The healthy
 //! twin of a machine gives the requirements with their tolerances; what is sabotaged in the other one the verdict is not told. Who draws
 //! the pairs, and judges the verdicts, is `tests/twin` (`cargo xtask drill verdicts`).
+mod fmus;
 mod job;
 mod sabotage;
 

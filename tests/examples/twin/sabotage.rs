@@ -5,6 +5,7 @@ use servobench_plant::{
     MjcfModel, Model,
 };
 use servobench_scenario::AxisMechanics;
+use std::collections::VecDeque;
 
 /// What is wrong with a machine, from a time `at` (s) on.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -20,6 +21,17 @@ pub(crate) enum Sabotage {
     EncoderFrozen { at: f64 },
     /// It counts `factor` for one, from where it is.
     EncoderScaled { at: f64, factor: f64 },
+    /// It tells where the motor was `by` seconds ago.
+    EncoderLate { at: f64, by: f64 },
+}
+
+/// What an encoder makes of the position of the motor.
+#[derive(Clone, Copy)]
+enum Error {
+    /// So much of its way.
+    Scale(f64),
+    /// That of so long ago (s).
+    Delay(f64),
 }
 
 /// An engine whose mechanics are sabotaged.
@@ -55,6 +67,7 @@ impl Engine for SabotagedEngine {
             engine: self.inner,
             seen: Vec::new(),
             frozen_at: None,
+            past: VecDeque::new(),
             tick: 0,
             step: setup.step,
             sabotage: self.sabotage.clone(),
@@ -79,6 +92,8 @@ struct Sabotaged {
     seen: Vec<BodyState>,
     /// Where the motor was when its encoder began to err.
     frozen_at: Option<f64>,
+    /// The motor of the last ticks, as long ago as its encoder is late.
+    past: VecDeque<BodyState>,
     tick: u64,
     step: f64,
 }
@@ -106,19 +121,31 @@ impl Sabotaged {
         let true_motor = self.seen[0];
         let is_alone = self.seen.len() == 1;
         for one in &self.sabotage {
-            let (at, factor) = match *one {
-                Sabotage::EncoderFrozen { at } => (at, 0.0),
-                Sabotage::EncoderScaled { at, factor } => (at, factor),
+            let (at, error) = match *one {
+                Sabotage::EncoderFrozen { at } => (at, Error::Scale(0.0)),
+                Sabotage::EncoderScaled { at, factor } => (at, Error::Scale(factor)),
+                Sabotage::EncoderLate { at, by } => (at, Error::Delay(by)),
                 _ => continue,
             };
             if is_alone && self.seen.len() == 1 {
                 let r = self.transmission;
                 self.seen.push(BodyState { position: r * true_motor.position, velocity: r * true_motor.velocity });
             }
+            if let Error::Delay(by) = error {
+                self.past.push_back(true_motor);
+                while self.past.len() as f64 > 1.0 + by / self.step {
+                    self.past.pop_front();
+                }
+            }
             if now >= at {
-                let origin = *self.frozen_at.get_or_insert(true_motor.position);
-                let position = origin + factor * (true_motor.position - origin);
-                self.seen[0] = BodyState { position, velocity: factor * true_motor.velocity };
+                self.seen[0] = match error {
+                    Error::Delay(_) => self.past[0],
+                    Error::Scale(factor) => {
+                        let origin = *self.frozen_at.get_or_insert(true_motor.position);
+                        let position = origin + factor * (true_motor.position - origin);
+                        BodyState { position, velocity: factor * true_motor.velocity }
+                    }
+                };
             }
         }
     }
