@@ -135,9 +135,9 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             late = t >= (t[0] + t[-1]) / 2
             return float(numpy.median(numpy.abs(run.values["effort.motor"][inside][late] - phase.target)))
         case "stop":
-            # Of the velocity at its beginning what is left at its end.
-            late = t >= t[0] + 0.75 * (t[-1] - t[0])
-            return abs(slope(t[late], load[late]))
+            # Of the velocity at its beginning what is left at its end; a load that rings has stopped.
+            late = t >= t[0] + 0.5 * (t[-1] - t[0])
+            return abs(velocity_of_cycles(t[late], load[late]))
     raise ValueError(phase.kind)
 
 
@@ -211,8 +211,20 @@ def slope(t: numpy.ndarray, x: numpy.ndarray) -> float:
     return float(s @ (x - x.mean()) / (s @ s))
 
 
+def velocity_of_cycles(t: numpy.ndarray, x: numpy.ndarray) -> float:
+    """Mean velocity over the last whole cycle, from peak to peak; over the last half where nothing swings."""
+    line = numpy.polynomial.Polynomial.fit(t, x, 1)
+    rest = x - line(t)
+    for ends in reversals(rest, 0.1 * float(rest.max() - rest.min())):
+        if len(ends) >= 2:
+            first, last = ends[-2], ends[-1]
+            return float(x[last] - x[first]) / float(t[last] - t[first])
+    half = len(t) // 2
+    return slope(t[half:], x[half:])
+
+
 def mean_of_cycles(x: numpy.ndarray, grain: float) -> float:
-    """Mean over the last whole cycle, from peak to peak; of the last fifth where nothing swings by more than `grain`, and of all where it
+    """Mean over the last whole cycle, from peak to peak; of the last tenth where nothing swings by more than `grain`, and of all where it
     swings without such a cycle."""
     peaks, valleys = reversals(x, max(0.02 * float(x.max() - x.min()), grain))
     half = len(x) // 2
@@ -221,7 +233,7 @@ def mean_of_cycles(x: numpy.ndarray, grain: float) -> float:
             return float(x[ends[-2] : ends[-1]].mean())
     if peaks and valleys and max(peaks[-1], valleys[-1]) >= half:
         return float(x.mean())
-    return float(x[-max(1, len(x) // 5) :].mean())
+    return float(x[-max(1, len(x) // 10) :].mean())
 
 
 def reversals(x: numpy.ndarray, hysteresis: float) -> tuple[list[int], list[int]]:

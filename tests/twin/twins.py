@@ -65,8 +65,9 @@ class Family:
 
 NOT_BY_MJCF = ("gravity", "end stop moved", "fmu unstable")
 """Sabotages that a file of bodies here does not have."""
-NOT_BY_FMU = ("load stuck", "load uncoupled", "coupling soft")
-"""Sabotages that a load as an FMU does not have, which is one from the beginning to the end."""
+NOT_BY_FMU = ("load stuck", "load uncoupled", "coupling soft", "cooling weak")
+"""Sabotages that a load as an FMU does not have, which is one from the beginning to the end; one that diverges turns a motor so fast that
+the steps of its thermal model have no end."""
 
 
 @dataclass(frozen=True)
@@ -93,15 +94,11 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     program = drawn.programs[at]
     names = possible(program, drawn.sabotages)
     wanted = [names[(turn * drawn.pairs + number) % len(names)] for number in range(drawn.pairs)] if names else []
-    axis = draw_stable(random, wanted)
-    is_mjcf = mjcf.can_be(axis) and not set(wanted) & set(NOT_BY_MJCF) and random.random() < 0.5
-    if not is_mjcf and fmu.can_be(axis) and not set(wanted) & set(NOT_BY_FMU) and ("fmu unstable" in wanted or random.random() < 0.2):
-        axis = with_fmu(random, axis)
-    # A master that feeds forward does so by its own keys.
-    forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
-    pace = draw_pace(random, axis, follows=bool(forward))
-    task = PROGRAMS[program](random, axis, pace)
-    axis, window = with_task(random, axis, task, forward, is_coarse=drawn.is_coarse)
+    while True:
+        axis, task, window, is_mjcf = draw_machine(random, program, wanted, is_coarse=drawn.is_coarse)
+        # Its encoder and its motor came last, and belong to its loop.
+        if has_margins(axis):
+            break
     if "shaken" in wanted:
         # It rests long enough to see that a swing stays, and its window is small beside one.
         task.length += SHAKEN / axis.position_gain
@@ -138,12 +135,26 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
 TRIES = 60
 
 
+def draw_machine(random: Random, program: str, wanted: list[str], *, is_coarse: bool) -> tuple[Axis, Task, float | None, bool]:
+    """An axis with its task and window; whether its bodies are a file of their own."""
+    axis = draw_stable(random, wanted)
+    is_mjcf = mjcf.can_be(axis) and not set(wanted) & set(NOT_BY_MJCF) and random.random() < 0.5
+    if not is_mjcf and fmu.can_be(axis) and not set(wanted) & set(NOT_BY_FMU) and ("fmu unstable" in wanted or random.random() < 0.2):
+        axis = with_fmu(random, axis)
+    # A master that feeds forward does so by its own keys.
+    forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
+    pace = draw_pace(random, axis, follows=bool(forward))
+    task = PROGRAMS[program](random, axis, pace)
+    axis, window = with_task(random, axis, task, forward, is_coarse=is_coarse)
+    return axis, task, window, is_mjcf
+
+
 def with_fmu(random: Random, axis: Axis) -> Axis:
     """The axis with an FMU for its load: soft enough for a force that is a tick late, and damped. As it was where that has no margins."""
     load = replace(axis.load, viscous=0.0)
     reduced = 1 / (1 / load.inertia + axis.r**2 / axis.motor.inertia)
-    omega = min((axis.stiffness / reduced) ** 0.5, 0.08 * axis.base)
-    damping = 2 * random.decades(-1.2, -0.7) * reduced * omega
+    omega = min((axis.stiffness / reduced) ** 0.5, 0.06 * axis.base)
+    damping = 2 * random.decades(-1.1, -0.7) * reduced * omega
     soft = replace(axis, load=load, stiffness=reduced * omega**2, damping=damping, is_fmu=True)
     return soft if has_margins(with_motor(random, soft, 0.1 * axis.r, 1.0) if axis.pmsm else soft) else axis
 
@@ -213,7 +224,7 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         axis = replace(axis, increment=increment_of(axis, finer * axis.increment), noise=finer * axis.noise)
     axis = replace(axis, seed=random.randint(1, 1000))
     axis = with_motor(random, axis, task.velocity, axis.effort(task.velocity, task.acceleration))
-    if axis.pmsm is not None and random.random() < 0.6:
+    if axis.pmsm is not None and not axis.is_fmu:
         axis = replace(axis, pmsm=replace(axis.pmsm, extras={"motor.thermal": thermal(axis.pmsm, axis.effort(task.velocity, task.acceleration), task.length)}))
     if task.name.startswith("hold") and random.random() < 0.7:
         # Something that it has to stand against.
