@@ -46,7 +46,16 @@ class Run:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What is not seen."""
+    """What is not seen. Issue 38 has for it the window at rests, 1 % of distance, velocity or effort elsewhere, 10 increments, 5 σ, and four
+    times the spread of two sisters. Besides:
+
+    - A rest without a given window has the default of the product, a thousandth of the way.
+    - A window is at most 5 % of the way, since a file that looks away (a window as wide as the way) must not decide what is bad.
+    - Standing has no distance: 1 % of the span of the task where no window is given.
+    - Loops without an integral are displaced by friction and bias, healthy or not, and by more where a sabotage makes more of these.
+    - The error of an effort is its median over the last half. The requirement allows what takes less than half of a phase; with the mean
+      4 of 300 pairs more are bad, each by a loss that is over, or comes, in that time.
+    """
 
     window: float | None
     """At rests (axis unit)."""
