@@ -221,14 +221,16 @@ def slope(t: numpy.ndarray, x: numpy.ndarray) -> float:
 
 
 def velocity_of_cycles(t: numpy.ndarray, x: numpy.ndarray) -> float:
-    """Mean velocity over the last whole cycle, from peak to peak; over the last half where nothing swings."""
+    """Mean velocity over the last whole cycle, from peak to peak; over all where it swings without one, over the last half where nothing
+    swings."""
     line = numpy.polynomial.Polynomial.fit(t, x, 1)
     rest = x - line(t)
-    for ends in reversals(rest, 0.1 * float(rest.max() - rest.min())):
+    both = reversals(rest, 0.1 * float(rest.max() - rest.min()))
+    for ends in both:
         if len(ends) >= 2:
             first, last = ends[-2], ends[-1]
             return float(x[last] - x[first]) / float(t[last] - t[first])
-    half = len(t) // 2
+    half = 0 if all(both) else len(t) // 2
     return slope(t[half:], x[half:])
 
 

@@ -383,6 +383,7 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "encoder late": encoder_late,
     "encoder noisy": encoder_noisy,
     "commutation": commutation,
+    "cooling weak": cooling_weak,
     "phase lost": phase_lost,
     "link sag": link_sag,
     "dead time": dead_time,
@@ -395,7 +396,6 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "master gain": master_gain,
     "fmu unstable": fmu_unstable,
     "shaken": shaken,
-    "cooling weak": cooling_weak,
     "switch wrong": switch_wrong,
 }
 
@@ -406,7 +406,8 @@ PARTS: dict[str, Callable[[Axis], bool]] = {
     "gear ratio": lambda axis: axis.lead is not None,
     "shaken": lambda axis: axis.integral_time is not None,
 }
-"""Parts of an axis without which there is no such sabotage."""
+"""Parts of an axis without which there is no such sabotage. Those that exclude each other stand apart in the list: neighbours are wanted of
+one machine."""
 
 BUSES = ("csp", "csv", "pp", "ip", "blocks", "velocity", "stop", "hold over a bus", "torque", "homing")
 WAYS = ("moves", "sequences", "table", "velocity, direct", "csp", "csv", "pp", "ip", "blocks", "homing")
