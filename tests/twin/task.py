@@ -189,8 +189,8 @@ def velocity(random: Random, axis: Axis, pace: Pace) -> Task:
     per = f"{axis.unit}/s"
     steps = [{"reach_velocity": quantity(speed, per), "hold": quantity(held, "s")}, {"reach_velocity": quantity(0.0, per)}]
     end, target = 2 * time + held, speed * (time + held)
-    phases = [Phase("velocity", time, time + held, speed), Phase("stop", end, inf, speed)]
-    # Its set-point is one of positions all the way.
+    phases = [Phase("velocity", time, time + held, speed)]
+    # Its set-point is one of positions all the way, so that its end is a rest.
     phases.append(Phase("way", 0.0, end, target, abs(target)))
     phases += [Phase(kind, end, inf, target, abs(target)) for kind in ("rest", "swing", "calm")]
     tables: Tree = {"setpoint": setpoint_table(pace.bounds, axis.unit), "program": steps}
