@@ -137,7 +137,7 @@ TRIES = 60
 
 def draw_machine(random: Random, program: str, wanted: list[str], *, is_coarse: bool) -> tuple[Axis, Task, float | None, bool]:
     """An axis with its task and window; whether its bodies are a file of their own."""
-    axis = draw_stable(random, wanted)
+    axis = draw_stable(random, wanted, program)
     is_mjcf = mjcf.can_be(axis) and not set(wanted) & set(NOT_BY_MJCF) and random.random() < 0.5
     if not is_mjcf and fmu.can_be(axis) and not set(wanted) & set(NOT_BY_FMU) and ("fmu unstable" in wanted or random.random() < 0.2):
         axis = with_fmu(random, axis)
@@ -159,13 +159,15 @@ def with_fmu(random: Random, axis: Axis) -> Axis:
     return soft if has_margins(with_motor(random, soft, 0.1 * axis.r, 1.0) if axis.pmsm else soft) else axis
 
 
-def draw_stable(random: Random, wanted: list[str]) -> Axis:
+def draw_stable(random: Random, wanted: list[str], program: str) -> Axis:
     """An axis with margins, that can have the sabotages that are wanted if one is found."""
     tries = 0
     while True:
         axis = draw_axis(random)
         tries += 1
-        if tries < TRIES and not all(PARTS[name](axis) for name in wanted if name in PARTS):
+        # A torque that is held shows the constant of a motor, and of an ideal source nothing.
+        is_seen = program != "torque" or "torque constant" not in wanted or axis.pmsm is not None
+        if tries < TRIES and not (is_seen and all(PARTS[name](axis) for name in wanted if name in PARTS)):
             continue
         # Nothing that is drawn later changes its loop but the motor, whose resistance and inductance hardly do.
         probe = with_motor(random, axis, 0.1 * axis.r, 1.0) if axis.pmsm else axis
