@@ -143,7 +143,7 @@ def hold(random: Random, axis: Axis, pace: Pace) -> Task:
     """Power, and nothing else."""
     calls = chain(axis, pace)
     calls.phases.append(Phase("stand", "power.Status", inf))
-    calls.length += 3 * pace.rest
+    calls.length += 4 * pace.rest
     return calls.task("hold over a bus", bus_table(random, axis, pace, random.choice(("csp", "csp", "csv"))))
 
 

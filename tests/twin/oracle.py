@@ -51,7 +51,8 @@ class Tolerance:
 
     - A rest without a given window has the default of the product, a thousandth of the way.
     - A window is at most 5 % of the way, since a file that looks away (a window as wide as the way) must not decide what is bad.
-    - Standing has no distance: 1 % of the span of the task where no window is given.
+    - Standing has no distance: 5e-5 of the span of the task where no window is given (with 1 % of it 13 of 600 reds that are right were
+      false).
     - Loops without an integral are displaced by friction and bias, healthy or not, and by more where a sabotage makes more of these.
     - The error of an effort is its median over the last half. The requirement allows what takes less than half of a phase; with the mean
       4 of 300 pairs more are bad, each by a loss that is over, or comes, in that time.
@@ -74,7 +75,7 @@ class Tolerance:
                 window = 1e-3 * phase.size if self.window is None else self.window
                 return max(min(window, 0.05 * phase.size), least) + self.droop
             case "stand":
-                return max(1e-2 * self.span if self.window is None else self.window, least) + self.droop
+                return max(5e-5 * self.span if self.window is None else self.window, least) + self.droop
             case "way":
                 return max(0.01 * phase.size, least)
             case _:
@@ -88,9 +89,18 @@ class Settling:
     rest: float
     """A rest has to be so long to be judged (s)."""
     stand: float
-    """What stands is judged so long after it began (s)."""
+    """What stands is judged so long after it began, and after a step of a disturbance (s)."""
     velocity: float
     """A velocity is judged that is held so long (s)."""
+    steps: tuple[float, ...] = ()
+    """When disturbances step (s)."""
+
+    def is_settled(self, t: numpy.ndarray, since: float) -> numpy.ndarray:
+        """Where what stands `since` then has come to rest again."""
+        found = t >= since + self.stand
+        for step in self.steps:
+            found &= (t < step) | (t >= step + self.stand)
+        return found
 
 
 def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling, tolerance: Tolerance) -> list[float]:
@@ -132,9 +142,9 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             last = load[-len(load) // 3 :]
             return float(last.max() - last.min()) / 2
         case "stand":
-            late = t >= t[0] + settling.stand
+            late = settling.is_settled(t + shift, t[0] + shift)
             # Over a bus it stands where it was when its power came.
-            held = healthy.load[(healthy.t >= begin + settling.stand) & (healthy.t <= end)]
+            held = healthy.load[settling.is_settled(healthy.t, begin) & (healthy.t <= end)]
             target = phase.target if healthy.start == 0.0 else float(held.mean()) if len(held) else numpy.nan
             return float(numpy.max(numpy.abs(load[late] - target))) if late.any() else numpy.nan
         case "velocity":

@@ -159,7 +159,7 @@ def current_gain(random: Random, twin: Twin) -> Change | None:
     if motor is None:
         return None
     factor = random.decades(0.3, 2.3) ** random.sign()
-    if twin.axis.feedforward.get("effort"):
+    if twin.axis.feedforward or twin.tables.get("bus", {}).get("velocity_offset"):
         # The delay of a feedforward that waits for the current loop has a bound.
         factor = max(factor, 0.7)
     axis = replace(twin.axis, pmsm=replace(motor, bandwidth=factor * motor.bandwidth))
@@ -322,7 +322,7 @@ def shaken(random: Random, twin: Twin) -> Change | None:
     rest = next((phase for phase in reversed(task.phases) if phase.kind == "rest"), None)
     if rest is None or axis.integral_time is None:
         return None
-    effort, frequency = random.decades(-1, 0.6) * twin.needed, random.uniform(0.3, 0.6) * axis.position_gain
+    effort, frequency = random.decades(-1.1, 0.7) * twin.needed, random.uniform(0.3, 0.6) * axis.position_gain
     start = twin.duration - 0.9 * SHAKEN / axis.position_gain
     disturbance = {"on": "motor", "start": f"{start} s", "duration": "1000 s", "frequency": f"{frequency} Hz"}
     disturbance["torque" if axis.rotary_motor else "force"] = f"{effort} {axis.effort_unit}"
@@ -334,7 +334,7 @@ def cooling_weak(random: Random, twin: Twin) -> Change | None:
     motor = twin.axis.pmsm
     if motor is None or "motor.thermal" not in motor.extras:
         return None
-    factor, thermal = random.decades(0, 2), dict(motor.extras["motor.thermal"])
+    factor, thermal = random.decades(0.3, 2.3), dict(motor.extras["motor.thermal"])
     for key, by in {"to_housing": factor, "to_ambient": factor, "winding_capacity": 1 / factor, "housing_capacity": 1 / factor}.items():
         value, unit = thermal[key].split()
         thermal[key] = f"{by * float(value)} {unit}"

@@ -144,7 +144,7 @@ def of_moves(name: str, axis: Axis, pace: Pace, steps: list[tuple[float, float]]
 
 def hold(random: Random, axis: Axis, pace: Pace) -> Task:
     """Nothing but to stand, which gravity makes a task."""
-    length = random.uniform(2, 5) * pace.rest
+    length = random.uniform(3, 6) * pace.rest
     return Task("hold", {}, [Phase("stand", 0.0, inf)], pace.bounds.v, pace.bounds.a, pace.distance, length)
 
 

@@ -117,7 +117,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         axis = replace(axis, estimate=estimate(axis))
     twin = Twin(axis, task, tables, duration)
     tolerance = Tolerance(window, task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise, droop(axis))
-    family = Family(seed, program, twin, engine, tolerance, settling(axis), is_mjcf)
+    family = Family(seed, program, twin, engine, tolerance, settling(axis, task), is_mjcf)
     number = 0
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
         # A seed for each. In place of one that the machine cannot have comes any.
@@ -153,7 +153,7 @@ def with_fmu(random: Random, axis: Axis) -> Axis:
     """The axis with an FMU for its load: soft enough for a force that is a tick late, and damped. As it was where that has no margins."""
     load = replace(axis.load, viscous=0.0)
     reduced = 1 / (1 / load.inertia + axis.r**2 / axis.motor.inertia)
-    omega = min((axis.stiffness / reduced) ** 0.5, 0.06 * axis.base)
+    omega = min((axis.stiffness / reduced) ** 0.5, 0.04 * axis.base)
     damping = 2 * random.decades(-1.1, -0.7) * reduced * omega
     soft = replace(axis, load=load, stiffness=reduced * omega**2, damping=damping, is_fmu=True)
     return soft if has_margins(with_motor(random, soft, 0.1 * axis.r, 1.0) if axis.pmsm else soft) else axis
@@ -260,10 +260,11 @@ def droop(axis: Axis) -> float:
     return axis.r * (axis.friction() + abs(axis.bias())) / (axis.velocity_gain * axis.position_gain)
 
 
-def settling(axis: Axis) -> Settling:
+def settling(axis: Axis, task: Task) -> Settling:
     """By the slowest time constants that its gains make."""
     slow = 2 / axis.position_gain if axis.integral_time is None else max(2 / axis.position_gain, 2 * axis.integral_time)
-    return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=2.5 * slow)
+    steps = tuple(float(one["start"].removesuffix(" s")) for one in task.tables.get("disturbance", []))
+    return Settling(rest=max(8 / axis.position_gain, 5 * axis.integral_time if axis.integral_time else 0.0), stand=5 * slow, velocity=2.5 * slow, steps=steps)
 
 
 def tree(family: Family, axis: Axis, tables: Tree | None = None, longer: float = 1.0) -> Tree:
