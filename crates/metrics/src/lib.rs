@@ -42,7 +42,7 @@ pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
     Deflection, Disturbance, Driven, EarlyEnd, Expectation, Expected, HeldMode, JUDGED_BY, LinearLoop, Occasion,
-    Oscillation, Poles, REQUEST_KIND, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances,
+    Oscillation, Poles, REQUEST_KIND, Readings, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances,
     arrival_window, judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;

@@ -32,7 +32,7 @@ pub use arrival::arrival_window;
 pub use deflection::Deflection;
 pub use held_modes::HeldMode;
 pub use judge::judge_requirements;
-pub use rules::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules, Tolerances};
+pub use rules::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules, Tolerances};
 pub use servo::Servo;
 
 use crate::incident::Incident;
@@ -246,6 +246,7 @@ pub(crate) mod tests {
             window: None,
             increment: 0.0,
             noise: 0.0,
+            motor: Readings::default(),
             disturbances: Vec::new(),
             excited: Vec::new(),
             transmission: 1.0,

@@ -1,7 +1,7 @@
 //! From a scenario to what its run is held to beside its limits.
 mod axle;
 
-use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Rules};
+use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules};
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, DisturbedBody, Feedback, LoopSignal, Scenario};
 use servobench_signals::Signal;
@@ -18,6 +18,7 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         window: scenario.measure.window,
         increment: increment(scenario),
         noise: noise(scenario),
+        motor: motor_readings(scenario),
         disturbances: disturbances(scenario),
         excited: excited(scenario),
         transmission: scenario.axis.transmission,
@@ -94,6 +95,17 @@ pub(crate) fn increment(scenario: &Scenario) -> f64 {
 /// Noise of that encoder (axis unit, effective).
 fn noise(scenario: &Scenario) -> f64 {
     of_encoder(scenario, |encoder| encoder.errors.map_or(0.0, |errors| errors.noise))
+}
+
+/// What the encoder at the motor tells apart, and its noise (axis unit): it closes the velocity loop.
+fn motor_readings(scenario: &Scenario) -> Readings {
+    let of_motor = |length: fn(&Encoder) -> f64| {
+        scenario.actuator.encoder().map_or(0.0, |motor| scenario.axis.transmission.abs() * length(&motor))
+    };
+    Readings {
+        increment: of_motor(Encoder::resolution),
+        noise: of_motor(|encoder| encoder.errors.map_or(0.0, |errors| errors.noise)),
+    }
 }
 
 /// A length of the encoder that closes the position loop, in the axis unit; 0 without one.

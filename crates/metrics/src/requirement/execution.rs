@@ -5,7 +5,7 @@ use super::task::Task;
 use super::{Expectation, Occasion};
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
-use servobench_trace::{Call, CallFate};
+use servobench_trace::{Call, CallFate, Ending};
 
 /// The state of the drive in which its loops follow, as recordings name it.
 const OPERATION_ENABLED: &str = "Operation enabled";
@@ -50,15 +50,39 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
         .collect()
 }
 
-/// A task that has asked for something and falls silent for good, while the drive would follow.
+/// A task that falls silent for good before it is done, while the drive would follow, unless the load comes to what was planned.
 fn silent(task: &Task<'_>) -> Option<String> {
     let [.., before, last] = task.phases.as_slice() else { return None };
     let is_silence =
         last.kind == RequestKind::Nothing && last.rows.len() as f64 * task.recording.rate.period() >= SILENT;
     let is_told = task.recording.signal("drive", "state").is_some();
-    let begun = task.time(last.rows.start);
-    (is_silence && is_told && !task.is_excused(&before.rows) && !loses_power(task, last))
-        .then(|| format!("the task requests nothing any more from {begun} to the end of the run"))
+    let is_excused = task.is_excused(&before.rows) || loses_power(task, last);
+    if !is_silence || !is_told || is_excused || is_done(task, before, last) {
+        return None;
+    }
+    Some(format!("the task requests nothing any more from {} to the end of the run", task.time(last.rows.start)))
+}
+
+/// True where nothing was planned any more when the task fell `silent`, or the load does it nevertheless.
+fn is_done(task: &Task<'_>, before: &RequestPhase, silent: &RequestPhase) -> bool {
+    let Some(rows) = &task.rows else { return false };
+    let end = silent.rows.end - 1;
+    let middle = usize::midpoint(silent.rows.start, end);
+    let begun = task.recording.time_of(silent.rows.start);
+    let planned = task.recording.moves.iter().rfind(|made| made.end > begun);
+    match (before.kind, planned) {
+        (RequestKind::Velocity, _) => {
+            let wanted = rows.request_velocity[before.rows.end - 1];
+            (rows.load_velocity(middle, end) - wanted).abs() <= task.rules.tolerances.velocity * wanted.abs()
+        }
+        (RequestKind::Rest | RequestKind::Stand, None) => true,
+        (_, Some(made)) if made.ending == Ending::AtRest => {
+            let way = (made.to - made.from).abs();
+            let window = task.window(way).min(task.rules.tolerances.arrives * way).max(task.rules.resolution());
+            (rows.load[end] - made.to).abs() <= window && (rows.load[middle] - made.to).abs() <= window
+        }
+        _ => false,
+    }
 }
 
 /// True where the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
@@ -97,7 +121,7 @@ mod tests {
     use super::*;
     use crate::requirement::tests::{expecting, rules};
     use crate::requirement::{Expected, Rules};
-    use crate::synthetic::Build;
+    use crate::synthetic::{Build, planned};
     use servobench_signals::Signal;
     use servobench_trace::Recording;
 
@@ -105,25 +129,36 @@ mod tests {
         broken(&Task::of(recording, rules, expected))
     }
 
-    /// Without a program of calls, too; a drive that is not enabled does not follow, and a fault that is expected ends the task.
+    /// A task that falls silent at `from` in a motion to 0.1 m that takes until 0.9 s; the load is at `load(t)`.
+    fn silent(from: f64, state: &str, load: fn(f64) -> f64) -> Recording {
+        Build::new(1000, 2001)
+            .channel(Signal::RequestPosition, "m", |t| 0.125 * (t - 0.1))
+            .channel(Signal::RequestVelocity, "m/s", |_| 0.125)
+            .channel(Signal::LoadPosition, "m", load)
+            .requests(&[(0.0, "stand"), (0.1, "follow"), (from, "nothing")])
+            .signal("drive", "state", &[(0.0, "Switched on"), (0.05, "Operation enabled"), (from, state)])
+            .moves([planned(0.1, 0.9, 0.0, 0.1).made()])
+            .finish()
+    }
+
+    /// A drive that is not enabled does not follow, a fault that is expected ends the task, and what comes to its target does it.
     #[test]
     fn a_task_that_falls_silent_is_not_executed() {
-        let silent = |from: f64, state: &str| {
-            let requests = [(0.0, "stand"), (0.1, "follow"), (from, "nothing")];
-            Build::new(1000, 1001)
-                .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
-                .requests(&requests)
-                .signal("drive", "state", &[(0.0, "Switched on"), (0.05, "Operation enabled"), (from, state)])
-                .finish()
-        };
-        let enabled = silent(0.5, "Operation enabled");
+        let halfway = |_: f64| 0.05;
+        let enabled = silent(0.5, "Operation enabled", halfway);
         assert_eq!(
             found(&enabled, &rules(), &[]).unwrap(),
             ["the task requests nothing any more from 500 ms to the end of the run"]
         );
         let came = Expected { expectation: expecting("drive", "8611h", 0.0, 1.0), met: Some(0.5) };
         assert_eq!(found(&enabled, &rules(), &[came]), None);
-        assert_eq!(found(&silent(0.99, "Operation enabled"), &rules(), &[]), None, "shorter than it takes to see it");
+        assert_eq!(found(&silent(1.99, "Operation enabled", halfway), &rules(), &[]), None, "too short to be seen");
+        assert_eq!(
+            found(&silent(0.5, "Operation enabled", |t| (0.125 * (t - 0.1)).clamp(0.0, 0.1)), &rules(), &[]),
+            None
+        );
+        let done = Recording { moves: Vec::new(), ..enabled };
+        assert_eq!(found(&done, &rules(), &[]).unwrap().len(), 1, "nobody knows where it was to go");
     }
 
     fn recording(fates: &[(bool, CallFate)]) -> Recording {

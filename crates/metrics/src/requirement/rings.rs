@@ -1,8 +1,8 @@
 //! `rings`: what swings after a motion dies out as the linear loop says.
 //!
 //! From the end of a motion to the next one, the motor must not go on to swing by more than twice the window: its decay is at least
-//! [`SHARE`] of that of the pole that oscillates and fades last. Where no such pole is known, the last quarter of the time must not swing
-//! by [`SAME`] of the quarter before. A load that a loop with known poles lets ring dies out as its damping says: that is for limits.
+//! [`SHARE`] of that of the pole that oscillates and fades last, or of the slowest one where none does. Where poles are not known, the
+//! last quarter of the time must not swing by [`SAME`] of the quarter before. A load that a loop with known poles lets ring dies out as its damping says: that is for limits.
 use super::Rules;
 use super::arrival::arrival_window;
 use super::calm::{Calm, calm};
@@ -16,8 +16,9 @@ use servobench_trace::Recording;
 const SHARE: f64 = 0.5;
 /// What is left from quarter to quarter of something that does not die out.
 const SAME: f64 = 0.98;
-/// Swings on either side of a comparison: three periods.
+/// Swings on either side of a comparison: three periods, and half of that where the poles say what to expect.
 const SWINGS: usize = 6;
+const SWINGS_OF_POLE: usize = 3;
 
 /// What goes on to swing after a motion; `None` where the axis comes to rest nowhere, or no loop is closed.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
@@ -55,7 +56,7 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
         let third = all.iter().position(|swing| swing.end >= before)?;
         let fourth = all.iter().position(|swing| swing.end >= from)?;
         let (earlier, later) = (&all[third..fourth], &all[fourth..]);
-        if earlier.len() < SWINGS || later.len() < SWINGS || mean(later) < SAME * mean(earlier) {
+        if earlier.len() < SWINGS || later.len() < SWINGS || median(later) < SAME * median(earlier) {
             return None;
         }
         (earlier, later)
@@ -66,22 +67,30 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
     Some(format!("the motor goes on to swing by {size} after a motion, from {from} to {to}"))
 }
 
-/// Decay of the pole that oscillates and fades last (1/s), of a loop that is known.
+/// Decay of the pole that oscillates and fades last, or of the slowest one where none does (1/s), of a loop that is known.
 fn decay(rules: &Rules<'_>) -> Option<f64> {
     if rules.linear_loop != LinearLoop::Stable || rules.not_analysed.is_some() {
         return None;
     }
-    rules.poles.and_then(|poles| poles.oscillating).map(|oscillation| oscillation.decay)
+    let poles = rules.poles?;
+    poles.oscillating.map(|oscillation| oscillation.decay).or(poles.slowest_real)
 }
 
 /// The earlier and the later half, with enough swings in each.
 fn halves(swings: &[Swing]) -> Option<(&[Swing], &[Swing])> {
     let (earlier, later) = swings.split_at(swings.len() / 2);
-    (earlier.len() >= SWINGS).then_some((earlier, later))
+    (earlier.len() >= SWINGS_OF_POLE).then_some((earlier, later))
 }
 
 fn mean(swings: &[Swing]) -> f64 {
     swings.iter().map(|swing| swing.size).sum::<f64>() / swings.len() as f64
+}
+
+/// Of a beginning that fades, or begins later, it takes little.
+fn median(swings: &[Swing]) -> f64 {
+    let mut sizes: Vec<f64> = swings.iter().map(|swing| swing.size).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    sizes[sizes.len() / 2]
 }
 
 /// The mean row of their ends.

@@ -20,6 +20,8 @@ pub struct Rules<'a> {
     pub increment: f64,
     /// Noise of its readings (axis unit, effective).
     pub noise: f64,
+    /// The same of the encoder at the motor, which closes the velocity loop; it may be the same one.
+    pub motor: Readings,
     /// Efforts that the scenario orders, which explain that the axis swings.
     pub disturbances: Vec<Disturbance>,
     /// Channels in which an FMU excites the axis, each with the factor that makes it an effort of the motor.
@@ -48,6 +50,15 @@ pub struct Rules<'a> {
     pub ended: Option<EarlyEnd>,
     /// Highest temperature that the winding bears (°C); `None` where it does not warm up.
     pub winding_limit: Option<f64>,
+}
+
+/// What an encoder tells of a position.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Readings {
+    /// One increment, or the error of its signals within a period if that is wider (axis unit); 0 of an ideal one.
+    pub increment: f64,
+    /// Noise (axis unit, effective).
+    pub noise: f64,
 }
 
 /// How far off what is requested the axis may be, as shares.
@@ -152,9 +163,10 @@ impl Rules<'_> {
         self.increment.max(self.bus_unit)
     }
 
-    /// The largest swing that the encoder does not tell from none (axis unit).
+    /// The largest swing of the motor that an encoder does not tell from none (axis unit).
     pub(super) const fn unseen(&self) -> f64 {
-        (INCREMENTS * self.increment).max(NOISE * self.noise)
+        let increment = self.increment.max(self.motor.increment);
+        (INCREMENTS * increment).max(NOISE * self.noise.max(self.motor.noise))
     }
 
     pub(crate) const fn has_diverged(&self) -> bool {

@@ -17,7 +17,7 @@ const OF_LARGEST: f64 = 1e-3;
 const TIMES: usize = 2;
 /// The velocity is a mean over this time at least (s): of a load that rings, over a period.
 const MEAN: f64 = 0.02;
-/// Least share of the way after the stop by which a load swings.
+/// Least share of its way after the stop by which a load swings.
 const OF_SWING: f64 = 0.05;
 /// Resolutions that an axis at rest moves in it.
 const RESOLUTIONS: f64 = 4.0;
@@ -71,7 +71,7 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     let resolution = RESOLUTIONS * task.rules.resolution() / (span as f64 * rows.h);
     let bound = (LEFT * before).max(OF_LARGEST * largest).max(resolution);
     let unit = format!("{}/s", task.recording.about.axis_unit);
-    let cycle = last_cycle(rows, &stop.rows, RESOLUTIONS * task.rules.resolution());
+    let cycle = last_cycle(rows, &((start + planned).min(end - 1)..end), RESOLUTIONS * task.rules.resolution());
     let at = |last: usize| {
         let velocity = rows.load_velocity(last.saturating_sub(span).max(start), last);
         let of_cycle = cycle.as_ref().map(|cycle| rows.load_velocity(cycle.start, cycle.end));
@@ -92,10 +92,10 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     ))
 }
 
-/// The last whole cycle of a load that swings after a `stop`, by more than `least`, up to its end.
-fn last_cycle(rows: &Rows<'_>, stop: &Range<usize>, least: f64) -> Option<Range<usize>> {
-    let (low, high) = range_of(&rows.load[stop.clone()]);
-    let turns = between_turning_points(rows.load, stop, least.max(OF_SWING * (high - low)));
+/// The last whole cycle of a load that swings in the time `after` a stop, by more than `least`, up to its end.
+fn last_cycle(rows: &Rows<'_>, after: &Range<usize>, least: f64) -> Option<Range<usize>> {
+    let (low, high) = range_of(&rows.load[after.clone()]);
+    let turns = between_turning_points(rows.load, after, least.max(OF_SWING * (high - low)));
     let [.., _, first, second, last] = turns.as_slice() else { return None };
     // What comes after the last turn is shorter than half of a cycle.
     (last.len() <= first.len().max(second.len())).then(|| first.start..last.start)
