@@ -47,11 +47,6 @@ impl Deflection {
         self.per_effort * (self.effort + disturbance).min(self.max_effort)
     }
 
-    /// That of the largest effort; 0 without a limit.
-    pub(super) fn largest(&self) -> f64 {
-        if self.max_effort.is_finite() { self.per_effort * self.max_effort } else { 0.0 }
-    }
-
     /// That of the `disturbance` alone.
     pub(super) fn explained_alone(&self, disturbance: f64) -> f64 {
         self.per_effort * disturbance.min(self.max_effort)

@@ -5,7 +5,7 @@ use super::task::Task;
 use super::{Expectation, Occasion};
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
-use servobench_trace::{Call, CallFate, Ending};
+use servobench_trace::{Call, CallFate, Ending, Move};
 
 /// The state of the drive in which its loops follow, as recordings name it.
 const OPERATION_ENABLED: &str = "Operation enabled";
@@ -50,39 +50,51 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
         .collect()
 }
 
-/// A task that falls silent for good before it is done, while the drive would follow, unless the load comes to what was planned.
+/// A task that falls silent before it is done, while the drive would follow, unless the load makes what was planned meanwhile.
 fn silent(task: &Task<'_>) -> Option<String> {
-    let [.., before, last] = task.phases.as_slice() else { return None };
-    let is_silence =
-        last.kind == RequestKind::Nothing && last.rows.len() as f64 * task.recording.rate.period() >= SILENT;
     let is_told = task.recording.signal("drive", "state").is_some();
-    let is_excused = task.is_excused(&before.rows) || loses_power(task, last);
-    if !is_silence || !is_told || is_excused || is_done(task, before, last) {
-        return None;
-    }
-    Some(format!("the task requests nothing any more from {} to the end of the run", task.time(last.rows.start)))
+    let mut pairs = task.phases.windows(2).filter(|pair| {
+        let rows = &pair[1].rows;
+        let is_silence =
+            pair[1].kind == RequestKind::Nothing && rows.len() as f64 * task.recording.rate.period() >= SILENT;
+        is_told && is_silence && !task.is_excused(&pair[0].rows) && !loses_power(task, &pair[1])
+    });
+    let pair = pairs.find(|pair| !is_done(task, &pair[0], &pair[1]))?;
+    let [from, to] = [pair[1].rows.start, pair[1].rows.end - 1].map(|row| task.time(row));
+    Some(format!("the task requests nothing from {from} to {to}, and what was planned is not made"))
 }
 
 /// True where nothing was planned any more when the task fell `silent`, or the load does it nevertheless.
 fn is_done(task: &Task<'_>, before: &RequestPhase, silent: &RequestPhase) -> bool {
     let Some(rows) = &task.rows else { return false };
     let end = silent.rows.end - 1;
-    let middle = usize::midpoint(silent.rows.start, end);
-    let begun = task.recording.time_of(silent.rows.start);
-    let planned = task.recording.moves.iter().rfind(|made| made.end > begun);
-    match (before.kind, planned) {
-        (RequestKind::Velocity, _) => {
-            let wanted = rows.request_velocity[before.rows.end - 1];
-            (rows.load_velocity(middle, end) - wanted).abs() <= task.rules.tolerances.velocity * wanted.abs()
-        }
-        (RequestKind::Rest | RequestKind::Stand, None) => true,
-        (_, Some(made)) if made.ending == Ending::AtRest => {
-            let way = (made.to - made.from).abs();
-            let window = task.window(way).min(task.rules.tolerances.arrives * way).max(task.rules.resolution());
-            (rows.load[end] - made.to).abs() <= window && (rows.load[middle] - made.to).abs() <= window
-        }
-        _ => false,
+    let is_last = silent.rows.end == task.recording.len();
+    if before.kind == RequestKind::Velocity {
+        let wanted = rows.request_velocity[before.rows.end - 1];
+        let middle = usize::midpoint(silent.rows.start, end);
+        let off = (rows.load_velocity(middle, end) - wanted).abs();
+        return !is_last || off <= task.rules.tolerances.velocity * wanted.abs();
     }
+    let (begun, over) = (task.recording.time_of(silent.rows.start), task.recording.time_of(silent.rows.end));
+    let is_planned = |made: &&Move| made.end > begun;
+    let mut planned = task.recording.moves.iter().filter(is_planned).peekable();
+    if planned.peek().is_none() {
+        return !is_last || matches!(before.kind, RequestKind::Rest | RequestKind::Stand);
+    }
+    // At the target of each before the next one begins, if that is in the silence.
+    while let Some(made) = planned.next() {
+        let next = planned.peek().map_or(f64::INFINITY, |next| next.start);
+        if next > over && !is_last {
+            return true;
+        }
+        let way = (made.to - made.from).abs();
+        let window = task.window(way).min(task.rules.tolerances.arrives * way).max(task.rules.resolution());
+        let last = task.recording.index_at(next.min(over)).saturating_sub(1).min(end);
+        if made.ending != Ending::AtRest || (rows.load[last] - made.to).abs() > window {
+            return false;
+        }
+    }
+    true
 }
 
 /// True where the drive leaves Operation enabled in `phase`; a task that only falls silent leaves it there.
@@ -148,7 +160,7 @@ mod tests {
         let enabled = silent(0.5, "Operation enabled", halfway);
         assert_eq!(
             found(&enabled, &rules(), &[]).unwrap(),
-            ["the task requests nothing any more from 500 ms to the end of the run"]
+            ["the task requests nothing from 500 ms to 2.00 s, and what was planned is not made"]
         );
         let came = Expected { expectation: expecting("drive", "8611h", 0.0, 1.0), met: Some(0.5) };
         assert_eq!(found(&enabled, &rules(), &[came]), None);

@@ -20,7 +20,7 @@ const NINE: usize = 9;
 /// Swings of that error among them: about one from each to the next. A motion makes fewer, and a torque ripple more.
 const SWINGS: RangeInclusive<usize> = 5..=9;
 /// They are as large as each other: the largest is so many times the smallest, at most. Those of a motor that noise shakes are not.
-const EQUAL: f64 = 1.7;
+const EQUAL: f64 = 1.6;
 /// An oscillation is regular: of the times from one of the nine to the next but one, its periods, the longest is so many times the
 /// shortest, at most.
 const REGULAR: usize = 2;

@@ -61,10 +61,15 @@ pub(super) fn held_modes(scenario: &Scenario) -> Vec<HeldMode> {
 pub(super) fn deflection(scenario: &Scenario) -> Deflection {
     let chain = chain(scenario);
     let r = scenario.axis.transmission.abs();
-    let of_bodies: f64 = chain.map_or(0.0, |chain| {
-        let bodies = chain.bodies().iter();
-        bodies.map(|body| (body.bias.abs() + body.friction.breakaway()) * r / body.transmission.abs()).sum()
-    });
+    let of_bodies: f64 = match (chain, scenario.actuator.drive()) {
+        (Some(chain), _) => {
+            let bodies = chain.bodies().iter();
+            bodies.map(|body| (body.bias.abs() + body.friction.breakaway()) * r / body.transmission.abs()).sum()
+        }
+        // Of bodies in a file the drive knows it.
+        (None, Some(drive)) => r * (drive.estimate.bias.abs() + drive.estimate.coulomb),
+        (None, None) => 0.0,
+    };
     let max_effort = scenario.actuator.rated_effort().unwrap_or(f64::INFINITY);
     let not_modelled = if max_effort.is_finite() { NOT_MODELLED * max_effort } else { 0.0 };
     let initial = &scenario.initial;
