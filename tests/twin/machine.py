@@ -14,6 +14,10 @@ RATES = [(4_000, 1, 1, 1), (4_000, 1, 1, 2), (8_000, 1, 1, 2), (8_000, 1, 2, 4),
 """Base rate; base ticks per turn of current, velocity and position loop."""
 
 
+LEAST_TORQUE = 1.6
+"""What a healthy drive can give, as a share of what its task takes."""
+
+
 @dataclass(frozen=True)
 class Body:
     """Of the motor's side in the motor coordinate, of the load in that of the axis."""
@@ -298,7 +302,7 @@ def draw_axis(random: Random) -> Axis:
 
 def with_motor(random: Random, axis: Axis, velocity: float, needed: float) -> Axis:
     """The same axis with the limit of its effort, by what its task needs, and with a synchronous motor that gives that much."""
-    axis = replace(axis, limit=needed * random.uniform(1.6, 4))
+    axis = replace(axis, limit=needed * random.uniform(LEAST_TORQUE, 4))
     axis = replace(axis, estimate=estimate(axis))
     if axis.pmsm is None:
         return axis

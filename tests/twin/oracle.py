@@ -27,6 +27,9 @@ class Run:
     """When its program began (s), which times of phases count from."""
     offset: float = 0.0
     """Position of the machine less that of the task, once it has homed."""
+    silence: tuple[float, float] | None = None
+    """From when to when nothing is asked, because a fault of the bus that its file orders loses or delays values, until the set-point is
+    where it would be without."""
 
     @property
     def load(self) -> numpy.ndarray:
@@ -75,7 +78,7 @@ class Tolerance:
                 window = 1e-3 * phase.size if self.window is None else self.window
                 return max(min(window, 0.05 * phase.size), least) + self.droop
             case "stand":
-                return max(5e-5 * self.span if self.window is None else self.window, least) + self.droop
+                return max(5e-5 * self.span if self.window is None else min(self.window, 0.05 * self.span), least) + self.droop
             case "way":
                 return max(0.01 * phase.size, least)
             case _:
@@ -128,6 +131,8 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
     # Of a phase that the run's end cuts off what is there is judged, if it is the most of it.
     inside = (run.t >= begin + shift) & (run.t <= end + shift)
     expected = (end - begin) * len(healthy.t) / max(healthy.t[-1], 1e-9)
+    if run.silence is not None and is_left_out(phase, run, begin + shift, end + shift):
+        return numpy.nan
     if inside.sum() < FEWEST or inside.sum() < 0.9 * expected:
         return inf if run.t[-1] < end + shift - 0.1 * (end - begin) and run.t[-1] < healthy.t[-1] - 1e-6 else numpy.nan
     t, load = run.t[inside] - shift, run.load[inside] - run.offset
@@ -158,6 +163,53 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             late = t >= t[0] + 0.5 * (t[-1] - t[0])
             return abs(velocity_of_cycles(t[late], load[late]))
     raise ValueError(phase.kind)
+
+
+def is_left_out(phase: Phase, run: Run, begin: float, end: float) -> bool:
+    """Whether a silence interrupts what is judged of a phase. Nothing is asked then (section A1 of issue 38), but where the machine is at the
+    end counts: a last rest is judged in any case."""
+    assert run.silence is not None
+    if phase.kind == "rest" and phase.end == inf:
+        return False
+    first = (begin + end) / 2 if phase.kind in ("velocity", "effort", "stop") else begin
+    return run.silence[0] < end and run.silence[1] > first
+
+
+def silence(run: Run, healthy: Run, start: float, end: float, seen: float) -> tuple[float, float]:
+    """Of a fault of the bus between two times (s): it lasts until the link interpolates again, and the set-point of the drive is, by less
+    than `seen`, where that of the healthy twin is at the same time."""
+    states = run.signals.get("link.interpolation", [])
+    for (since, state), (until, _) in zip(states, [*states[1:], (inf, "")]):
+        if state in ("Run2", "Run3", "Underflow") and since <= end + 0.01 and until > start:
+            end = max(end, until)
+    after = run.t > end
+    expected = numpy.interp(run.t[after] - run.start + healthy.start, healthy.t, healthy.values["setpoint.position"])
+    away = numpy.flatnonzero(abs(run.values["setpoint.position"][after] - expected) > seen)
+    return start, float(run.t[after][away[-1]]) if len(away) else end
+
+
+ALTERNATIONS = 9
+"""So many from one limit to the other, one after the other, are a cycle."""
+
+
+def cycles(run: Run, ratio: float, limits: dict[str, float], floor: float) -> bool:
+    """Whether the motor goes on to swing about its reference between two limits: in nine swings that follow each other, larger than `floor`
+    and equal within a third, an effort or a voltage comes to within a tenth of its two limits in turn."""
+    error = ratio * run.values["motor.position"] - run.values["reference"]
+    peaks, valleys = reversals(error, floor)
+    ends = sorted([*peaks, *valleys])
+    sizes = numpy.abs(numpy.diff(error[ends]))
+    for first in range(len(ends) - ALTERNATIONS):
+        some = sizes[first : first + ALTERNATIONS]
+        if some.max() > 1.5 * some.min():
+            continue
+        for name, limit in limits.items():
+            between = [run.values[name][a : b + 1] for a, b in zip(ends[first:], ends[first + 1 : first + ALTERNATIONS + 1])]
+            if all(part.max() >= 0.9 * limit or part.min() <= -0.9 * limit for part in between):
+                both = numpy.concatenate(between)
+                if both.max() >= 0.9 * limit and both.min() <= -0.9 * limit:
+                    return True
+    return False
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import shutil
 from dataclasses import dataclass, field, replace
-from math import pi
+from math import log10, pi
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from verdict_classes.case import Tree, quantity, toml
 import fmu
 import mjcf
 from linear import has_margins
-from machine import Axis, Pmsm, draw_axis, estimate, increment_of, with_motor
+from machine import LEAST_TORQUE, Axis, Pmsm, draw_axis, estimate, increment_of, with_motor
 from oracle import Settling, Tolerance
 from sabotages import PARTS, SABOTAGES, SHAKEN, Change, Twin, possible
 from bus_task import BUS, unit_of
@@ -60,6 +60,8 @@ class Family:
     tolerance: Tolerance
     settling: Settling
     is_mjcf: bool = False
+    is_alone: bool = False
+    """Healthy machines alone; to each there is one with a finer encoder, which tells what its own costs."""
     pairs: list[Pair] = field(default_factory=list)
 
 
@@ -117,7 +119,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         axis = replace(axis, estimate=estimate(axis))
     twin = Twin(axis, task, tables, duration)
     tolerance = Tolerance(window, task.span, axis.r * (axis.increment or 0.0), axis.r * axis.noise, droop(axis))
-    family = Family(seed, program, twin, engine, tolerance, settling(axis, task), is_mjcf)
+    family = Family(seed, program, twin, engine, tolerance, settling(axis, task), is_mjcf, drawn.is_coarse)
     number = 0
     while len(family.pairs) < drawn.pairs and number < 20 * drawn.pairs:
         # A seed for each. In place of one that the machine cannot have comes any.
@@ -215,7 +217,8 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
     increment = None if random.random() < 0.3 else task.span * random.decades(-6.5, -4)
     if is_coarse:
         # Counts of a revolution; of a linear motor of 20 mm.
-        increment = (2 * pi if axis.rotary_motor else 0.02) * axis.r * random.decades(-7.2, -3.1)
+        turn = (2 * pi if axis.rotary_motor else 0.02) * axis.r
+        increment = turn * 10 ** random.uniform(-7.2, max(-7.1, min(-3.1, log10(coarsest(axis, task) / turn))))
     noise = increment is not None and random.random() < 0.2
     if increment is not None:
         axis = replace(axis, increment=increment_of(axis, increment / axis.r), noise=increment * random.uniform(0.2, 2) / axis.r if noise else 0.0)
@@ -237,6 +240,16 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         return axis, max(10 * axis.grain, 10 * unit_of(task.span), task.span * random.decades(-4.5, -2))
     window = None if random.random() < 0.25 else max(20 * axis.grain, task.span * random.decades(-4, -2))
     return axis, window
+
+
+def coarsest(axis: Axis, task: Task) -> float:
+    """The increment (axis unit) of which one in a tick of the velocity loop, and its noise of up to two increments at most, asks for as much
+    effort as there is. Beyond it, a loop is a relay: it is cut off more in one direction than in the other, moves 4 to 9 % slower or
+    faster than it is told, and swings by tens of increments; with a finer encoder each of 44 such machines does its task. An engineer
+    would filter the velocity, or set the gain lower, so these are no healthy machines."""
+    tick = axis.velocity_every / axis.base
+    most = LEAST_TORQUE * axis.effort(task.velocity, task.acceleration)
+    return axis.r * most * (tick + axis.filter_time) / axis.velocity_gain / 3
 
 
 AMBIENT, HOTTEST = 40.0, 120.0
@@ -283,6 +296,14 @@ def put(path: Path, family: Family, axis: Axis, whole: Tree, note: str = "") -> 
     path.write_text((f"# {note}\n" if note else "") + toml(whole))
 
 
+def refined(axis: Axis) -> Axis:
+    """The same with an encoder without noise that is a thousand times finer, or as fine as a file can have it."""
+    if axis.increment is None:
+        return replace(axis, noise=0.0)
+    finest = 2 * pi / 4e9 if axis.rotary_motor else 1e-9
+    return replace(axis, increment=increment_of(axis, max(1e-3 * axis.increment, finest)), noise=0.0)
+
+
 def sisters(family: Family) -> list[Axis]:
     """The healthy machine with another seed, and with a mass that is next to the same."""
     axis = family.twin.axis
@@ -320,6 +341,8 @@ def write(folder: Path, family: Family) -> list[dict[str, Any]]:
     job("healthy", family.twin.axis)
     for number, axis in enumerate(sisters(family)):
         job(f"sister-{number}", axis)
+    if family.is_alone:
+        job("refined", refined(family.twin.axis))
     for pair in family.pairs:
         job(pair.name, pair.change.axis, pair.change, pair.judge)
     return jobs
@@ -335,7 +358,7 @@ def write_longer(folder: Path, family: Family, pair: Pair) -> dict[str, Any]:
     whole["run"] = whole["run"] | {"duration": quantity(4 * duration, "s")}
     put(folder / f"{name}.toml", family, axis, whole)
     job = {"id": f"{family.name}/{name}", "run": str(folder / f"{name}.toml"), "engine": family.engine, "rows": str(folder / f"{name}.f64")}
-    job |= {"channels": [*channels(family), "motor.position"], "every": every(family), "sabotage": pair.change.hooks}
+    job |= {"channels": channels(family), "every": every(family), "sabotage": pair.change.hooks}
     if pair.change.then is not None:
         job |= {"then": str(folder / f"{pair.name}-then.toml"), "at": pair.change.at}
     return job
@@ -345,7 +368,8 @@ def channels(family: Family) -> list[str]:
     bus = ["bus.position"] if family.twin.task.is_bus else []
     motor = family.twin.axis.pmsm
     warm = ["temperature.winding"] if motor is not None and "motor.thermal" in motor.extras else []
-    return ["load.position", "reference.position", "setpoint.position", "effort.motor", *bus, *warm]
+    voltages = ["voltage.q"] if motor is not None else []
+    return ["load.position", "motor.position", "reference.position", "setpoint.position", "effort.motor", *bus, *warm, *voltages]
 
 
 def every(family: Family) -> int:
