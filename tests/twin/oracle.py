@@ -70,6 +70,11 @@ class Tolerance:
     droop: float
     """By how much friction and bias displace loops without an integral."""
 
+    def of_bad(self, phase: Phase) -> float:
+        """What is bad by four times of it: the same, but for standing without a window. That is not good from 5e-5 of the span on, and bad by
+        a thousandth of it, which is the default window of a rest; in between the deflection that friction and bias explain decides."""
+        return max(self.of(phase), 1e-3 * self.span if phase.kind == "stand" and self.window is None else 0.0)
+
     def of(self, phase: Phase) -> float:
         least = max(10 * self.increment, 5 * self.noise)
         match phase.kind:
@@ -356,7 +361,7 @@ def judgement(
         if numpy.isnan(d) or numpy.isnan(h):
             continue
         tol = max(tolerance.of(phase), 4 * s)
-        bad, good = max(8 * h, 4 * tol), max(2 * h, tol)
+        bad, good = max(8 * h, 4 * max(tolerance.of_bad(phase), 4 * s)), max(2 * h, tol)
         # A load that swings and dies out as its damping says is not bad, but neither is it good.
         if phase.kind == "calm":
             bad = inf

@@ -209,6 +209,9 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         if pair.judge is not None and pair.judge.window is not None:
             tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window or 0.0))
         judged = judgement(phases, found, of_healthy, spread, tolerance)
+        if all(numpy.isnan(d) or numpy.isnan(h) for d, h in zip(found, of_healthy)):
+            # A silence to the end, or over all that is judged.
+            judged = Judgement("between", "silence", 0.0, 0.0, 0.0, 0.0)
         lost = ended_calls(outcome) - ended_calls(result("healthy")["outcome"])
         if outcome["ended"] or lost:
             judged = Judgement("bad", ", ".join(lost) or "end", numpy.inf, 0, 0, 0)
