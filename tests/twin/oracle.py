@@ -165,16 +165,18 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             return float(numpy.median(numpy.abs(run.values["effort.motor"][inside][late] - phase.target)))
         case "stop":
             # Of the velocity at its beginning what is left at its end; a load that rings has stopped.
-            late = t >= t[0] + 0.5 * (t[-1] - t[0])
+            length = t[-1] - t[0]
+            heard = -inf if run.silence is None else min(run.silence[1] - shift, t[-1] - 0.1 * length)
+            late = t >= max(t[0] + 0.5 * length, heard)
             return abs(velocity_of_cycles(t[late], load[late]))
     raise ValueError(phase.kind)
 
 
 def is_left_out(phase: Phase, run: Run, begin: float, end: float) -> bool:
     """Whether a silence interrupts what is judged of a phase. Nothing is asked then (section A1 of issue 38), but where the machine is at the
-    end counts: a last rest is judged in any case."""
+    end counts: a last rest and a last stop are judged in any case."""
     assert run.silence is not None
-    if phase.kind == "rest" and phase.end == inf:
+    if phase.kind in ("rest", "stop") and phase.end == inf:
         return False
     first = (begin + end) / 2 if phase.kind in ("velocity", "effort", "stop") else begin
     return run.silence[0] < end and run.silence[1] > first
