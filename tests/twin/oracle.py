@@ -25,6 +25,8 @@ class Run:
     signals: dict[str, list[tuple[float, str]]]
     start: float = 0.0
     """When its program began (s), which times of phases count from."""
+    powered: float = 0.0
+    """When its power came (s)."""
     offset: float = 0.0
     """Position of the machine less that of the task, once it has homed."""
     silence: tuple[float, float] | None = None
@@ -145,6 +147,9 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
         case "way":
             return float(numpy.max(numpy.abs(load - numpy.interp(t, healthy.t, healthy.values["reference"] - healthy.offset))))
         case "rest":
+            if run.silence is not None and run.silence[1] > begin + shift:
+                # What counts is where it is at the end.
+                load = load[-FEWEST:]
             return abs(mean_of_cycles(load, grain) - phase.target)
         case "swing":
             return swing(load) / 2
@@ -156,7 +161,11 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             # Over a bus it stands where it was when its power came.
             held = healthy.load[settling.is_settled(healthy.t, begin) & (healthy.t <= end)]
             target = phase.target if healthy.start == 0.0 else float(held.mean()) if len(held) else numpy.nan
-            return float(numpy.max(numpy.abs(load[late] - target))) if late.any() else numpy.nan
+            if not late.any():
+                return numpy.nan
+            # One that has sagged before its power came stands there.
+            targets = [target] if healthy.start == 0.0 else [target, float(numpy.interp(run.powered, run.t, run.load)) - run.offset]
+            return min(float(numpy.max(numpy.abs(load[late] - one))) for one in targets)
         case "velocity":
             half = len(t) // 2
             return abs(float(load[-1] - load[half]) / float(t[-1] - t[half]) - phase.target)
@@ -304,8 +313,11 @@ def velocity_of_cycles(t: numpy.ndarray, x: numpy.ndarray) -> float:
 
 
 def mean_of_cycles(x: numpy.ndarray, grain: float) -> float:
-    """Mean over the last whole cycle, from peak to peak; of the last tenth where nothing swings by more than `grain`, and of all where it
-    swings without such a cycle."""
+    """Mean over the last whole cycle, from peak to peak; of the last tenth where nothing swings by more than `grain`, be it from the last
+    fifth on, and of all where it swings without such a cycle."""
+    last = x[-max(1, len(x) // 5) :]
+    if float(last.max() - last.min()) <= grain:
+        return float(x[-max(1, len(x) // 10) :].mean())
     peaks, valleys = reversals(x, max(0.02 * float(x.max() - x.min()), grain))
     half = len(x) // 2
     for ends in (peaks, valleys):

@@ -104,9 +104,16 @@ def moves_of(steps: list[tuple[float, float]], pace: Pace, tail: float) -> tuple
     first = way.moves[0].start
     if first > 0:
         phases.append(Phase("stand", 0.0, first))
+    begin = origin = None
     for move, following in zip(way.moves, (*way.moves[1:], None)):
-        size = abs(move.target - move.origin)
-        phases.append(Phase("way", move.start, move.end, move.target, size))
+        begin, origin = (move.start, move.origin) if begin is None else (begin, origin)
+        goes_on = following is not None and following.start <= move.end and (following.target > move.target) == (move.target > origin)
+        if goes_on:
+            # A way ends where it turns, or comes to a rest.
+            continue
+        size = abs(move.target - origin)
+        phases.append(Phase("way", begin, move.end, move.target, size))
+        begin = None
         until = inf if following is None else following.start
         if until > move.end:
             phases.append(Phase("rest", move.end, until, move.target, size))

@@ -125,7 +125,7 @@ def run_of(path: Path, outcome: dict[str, Any], task: Task) -> Run:
     run = Run(numpy.arange(len(rows)) / outcome["rate"], values, outcome["signals"])
     if task.is_bus:
         # The first cycle of the task in which its power is on.
-        run.start = run.rises(ENABLED)
+        run.start = run.powered = run.rises(ENABLED)
     if task.name == "homing" and isfinite(run.rises("move.Active")):
         at = numpy.searchsorted(run.t, run.rises("move.Active"))
         run.offset = float((values["load.position"] - values["bus.position"])[max(0, min(at, len(run.t)) - 1)])
