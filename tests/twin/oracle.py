@@ -12,6 +12,9 @@ import numpy
 
 from task import Phase
 
+POWERED = 0.02
+"""So long after its power the set-point of a drive over a bus is that of its master (s)."""
+
 FEWEST = 16
 """Rows of a phase, at least."""
 
@@ -163,8 +166,9 @@ def deviation(phase: Phase, healthy: Run, run: Run, settling: Settling, grain: f
             target = phase.target if healthy.start == 0.0 else float(held.mean()) if len(held) else numpy.nan
             if not late.any():
                 return numpy.nan
-            # One that has sagged before its power came stands there.
-            targets = [target] if healthy.start == 0.0 else [target, float(numpy.interp(run.powered, run.t, run.load)) - run.offset]
+            # One that has sagged before its power came stands where the drive first found it.
+            found = float(numpy.interp(run.powered + POWERED, run.t, run.values["setpoint.position"])) - run.offset
+            targets = [target] if healthy.start == 0.0 else [target, found]
             return min(float(numpy.max(numpy.abs(load[late] - one))) for one in targets)
         case "velocity":
             half = len(t) // 2
