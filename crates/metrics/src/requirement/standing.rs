@@ -6,6 +6,8 @@ use servobench_signals::Signal;
 
 /// Times the deflection that is explained: what a sag overshoots by, and a tenth for where bound and sag cross.
 const TIMES: f64 = 3.3;
+/// Time constants from power, or a step, in which nothing has to fade: a link that takes over brakes what the noise of an encoder was.
+const TAKES_OVER: f64 = 2.0;
 /// Times the stroke within which friction holds the load.
 const STICK: f64 = 1.5;
 /// Resolutions within which it stands.
@@ -37,7 +39,6 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let deflection = &rules.deflection;
     let of_pole = rules.poles.and_then(|poles| poles.slowest_real).unwrap_or(servo.gain / 2.0);
     let sigma = rules.oscillation().map_or(of_pole, |slowest| slowest.decay.min(of_pole)).max(0.0);
-    let kept = (-sigma * rows.h).exp();
     let disturbed = |row: usize| {
         let at = |signal| task.recording.channel(signal).map_or(0.0, |values| values[row]);
         (at(Signal::DisturbanceMotor), at(Signal::DisturbanceLoad))
@@ -50,18 +51,18 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         let place = if is_told { place } else { rows.load[phase.rows.start] };
         let braking = speed(&rows.load[phase.rows.clone()], rows.h) / servo.slowest_rate();
         let mut last = disturbed(phase.rows.start);
-        let (mut time, mut decay) = (0.0, 1.0);
+        let mut time = 0.0;
         for row in phase.rows.clone() {
             let (on_motor, on_load) = if task.disturbance > 0.0 { disturbed(row) } else { (0.0, 0.0) };
             let effort = |(motor, load): (f64, f64)| motor.abs() + rules.transmission.abs() * load.abs();
             if effort((on_motor - last.0, on_load - last.1)) > STEP * task.disturbance {
-                (last, time, decay) = ((on_motor, on_load), 0.0, 1.0);
+                (last, time) = ((on_motor, on_load), 0.0);
             }
             let elastic = deflection.elastic + deflection.elastic_per_effort * on_load.abs();
             let explained = TIMES * (deflection.explained(effort(last).max(effort((on_motor, on_load)))) + elastic);
             // Three real poles at most: position, velocity and its integral.
-            let passed = sigma * time;
-            let fading = explained * ((1.0 + passed + passed * passed / 2.0) * decay).max(LEFT);
+            let passed = (sigma * time - TAKES_OVER).max(0.0);
+            let fading = explained * ((1.0 + passed + passed * passed / 2.0) * (-passed).exp()).max(LEFT);
             let bound = if deflection.has_integral { window.max(fading) } else { fading.max(window + explained) }
                 + STICK * (deflection.stick + elastic)
                 + INITIAL * (deflection.initial + braking);
@@ -77,7 +78,6 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
                 break;
             }
             time += rows.h;
-            decay *= kept;
         }
     }
     Some(reasons)
