@@ -171,6 +171,19 @@ fn what_is_not_finite_is_divergence() {
     }
 }
 
+/// A state that is finite, but none of a machine, does not come to sensors and drive.
+#[test]
+fn what_is_beyond_every_machine_is_divergence() {
+    for engine in engines() {
+        for count in 1..=2 {
+            let mut mechanics = build(engine, &setup(count, Drive::Effort));
+            let input = Input { actuation: Actuation::Effort(1e12), ..REST };
+            let error = (0..16).find_map(|_| mechanics.advance(&input).err()).unwrap();
+            assert!(matches!(error, MechanicsError::Diverged { .. }), "{}: {error}", engine.name());
+        }
+    }
+}
+
 /// Every kind of model that is not among the engine's capabilities is refused by name, and none that is.
 #[test]
 fn an_engine_simulates_what_its_capabilities_list() {

@@ -283,7 +283,8 @@ fn limit_d_first(v: Dq, max: f64) -> Dq {
     }
     let d = v.d.clamp(-max, max);
     let q_max = libm::sqrt(max * max - d * d);
-    Dq { d, q: v.q.clamp(-q_max, q_max) }
+    // Where d is not a number there is no bound: the voltage goes on as it is, and ends the run.
+    Dq { d, q: if v.q.abs() > q_max { q_max.copysign(v.q) } else { v.q } }
 }
 
 #[cfg(test)]

@@ -9,7 +9,9 @@
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
 use servobench_fmi::{LogLine, Severity, Slave, SlaveError, StepEnd};
-use servobench_plant::{Actuation, BodyState, EngineName, FmuModel, Input, LogMessage, Mechanics, MechanicsError};
+use servobench_plant::{
+    Actuation, BodyState, EngineName, FmuModel, Input, LogMessage, Mechanics, MechanicsError, check_states,
+};
 
 /// The engine.
 pub(crate) const NAME: EngineName = EngineName::Fmu;
@@ -204,7 +206,7 @@ impl Mechanics for FmuMechanics {
             self.step()?;
         }
         self.go_on();
-        Ok(())
+        check_states(NAME, self.state.bodies.iter().copied())
     }
 
     fn marks(&self) -> bool {

@@ -8,7 +8,7 @@ use limits::Limits;
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
 use servobench_plant::{
     Actuation, BodyState, Drive, Input, JointLimit, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup,
-    MjcfModel,
+    MjcfModel, check_states,
 };
 
 /// A model with a motor joint and a load joint.
@@ -94,7 +94,8 @@ impl Mechanics for MujocoMjcf {
         forces[self.joints[self.motor].dof] += input.motor_disturbance;
         simulation::step(&mut self.data)?;
         self.read();
-        simulation::check_states(&self.bodies)
+        // `MuJoCo` itself looks only before the next step.
+        check_states(NAME, self.bodies.iter().copied())
     }
 
     fn joint_limits(&self) -> &[JointLimit] {

@@ -3,7 +3,7 @@ use crate::{NAME, messages};
 use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
 use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
 use servobench_files::with_short_quotes;
-use servobench_plant::{BodyState, MechanicsError};
+use servobench_plant::MechanicsError;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -65,15 +65,4 @@ fn warned(data: &Data) -> MechanicsError {
     } else {
         MechanicsError::Native { engine: NAME, message }
     }
-}
-
-/// # Errors
-/// [`MechanicsError::Diverged`] when a state is not finite: `MuJoCo` itself looks only before the next step.
-pub(crate) fn check_states(bodies: &[BodyState]) -> Result<(), MechanicsError> {
-    let total: f64 = bodies.iter().map(|body| body.position + body.velocity).sum();
-    if total.is_finite() {
-        return Ok(());
-    }
-    let message = "a position or velocity is not finite; a higher base rate may help".into();
-    Err(MechanicsError::Diverged { engine: NAME, message })
 }

@@ -10,10 +10,9 @@
 use crate::NAME;
 use crate::half_kick::HalfKick;
 use crate::lumps::{Lumps, Positions};
-use crate::scene::diverged;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, Friction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup,
+    Actuation, BodyState, Chain, Drive, Friction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup, check_states,
 };
 
 /// A chain in Rapier.
@@ -169,13 +168,11 @@ impl<const N: usize> Mechanics for LumpChain<N> {
             }
         }
 
-        let mut total = 0.0;
         for (i, body) in self.bodies.iter_mut().enumerate() {
             body.position = self.positions.centre[i] + self.positions.from_centre[i];
             body.velocity = self.velocities[i];
-            total += body.position + body.velocity;
         }
-        if total.is_finite() { Ok(()) } else { Err(diverged()) }
+        check_states(NAME, self.bodies.iter().copied())
     }
 }
 

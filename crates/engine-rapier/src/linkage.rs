@@ -22,7 +22,7 @@ use crate::scene::{self, diverged};
 use assembly::assemble;
 use nalgebra::DVector;
 use rapier3d_f64::prelude::{Multibody, MultibodyIndex, MultibodyJointSet, PhysicsWorld, Vector};
-use servobench_plant::{Actuation, BodyState, Input, Mechanics, MechanicsError};
+use servobench_plant::{Actuation, BodyState, Input, Mechanics, MechanicsError, check_states};
 use std::f64::consts::TAU;
 
 /// 2¹⁰⁰: how far off a spring's rest position is per unit of effort.
@@ -262,8 +262,8 @@ impl Mechanics for Linkage {
         self.read(share)?;
         self.correct_velocities(now, share)?;
         self.publish();
-        let total: f64 = self.joints.iter().map(|joint| joint.position + joint.velocity).sum();
-        if total.is_finite() { Ok(()) } else { Err(diverged()) }
+        let state = |joint: &Coordinate| BodyState { position: joint.position, velocity: joint.velocity };
+        check_states(crate::NAME, self.joints.iter().map(state))
     }
 }
 

@@ -16,7 +16,9 @@
 use crate::chain::Chain;
 use crate::engine::{Engine, EngineName};
 use crate::friction::Grip;
-use crate::mechanics::{Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model};
+use crate::mechanics::{
+    Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model, check_states,
+};
 use nalgebra::DMatrix;
 use servobench_base::wide_registers;
 use std::sync::Arc;
@@ -204,12 +206,7 @@ impl<const W: usize> ExactChain<W> {
             *body = BodyState { position: axis_position * terms.per_axis, velocity };
         }
         self.factors[..W].copy_from_slice(&next);
-        let total: f64 = self.bodies.iter().map(|body| body.position + body.velocity).sum();
-        if total.is_finite() {
-            Ok(())
-        } else {
-            Err(MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() })
-        }
+        check_states(NAME, self.bodies.iter().copied())
     }
 
     /// Adds dry friction to `u` and returns the set of bodies that are held.

@@ -35,7 +35,7 @@ pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
     Actuation, BodyState, Drive, Input, JointLimit, LogMessage, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,
-    Model, ModelKind,
+    Model, ModelKind, check_states,
 };
 pub use mjcf::chain_to_mjcf;
 pub use mjcf_axis::MjcfAxis;

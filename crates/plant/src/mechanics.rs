@@ -81,6 +81,33 @@ impl Input {
     }
 }
 
+/// Position (m or rad) and velocity (per second) from which on a body is none of a machine: a double is 2 µm wide there. `MuJoCo` ends at
+/// the same number (`mjMAXVAL`).
+const FARTHEST: f64 = 1e10;
+
+/// Ends a run at the first state that is none, before the sensors, the drive or the motor have to make something of it.
+///
+/// # Errors
+/// [`MechanicsError::Diverged`] of `engine` when one of these positions and velocities is not finite, or is beyond 1e10 m or rad, or per
+/// second.
+#[inline]
+pub fn check_states(engine: EngineName, bodies: impl Iterator<Item = BodyState>) -> Result<(), MechanicsError> {
+    // One test for all of them: a sum with something that is not finite is not finite.
+    let total: f64 = bodies.map(|body| body.position.abs() + body.velocity.abs()).sum();
+    if total < FARTHEST { Ok(()) } else { Err(diverged(engine, total)) }
+}
+
+/// Of states whose magnitudes are `total`.
+#[cold]
+fn diverged(engine: EngineName, total: f64) -> MechanicsError {
+    let message = if total.is_finite() {
+        format!("a position or velocity has grown to {total:.1e} m or rad, or per second")
+    } else {
+        "a position or velocity is not finite".into()
+    };
+    MechanicsError::Diverged { engine, message }
+}
+
 /// What a foreign model says of itself, in its own words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogMessage {

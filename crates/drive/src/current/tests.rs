@@ -127,3 +127,17 @@ fn the_voltage_meets_the_rotor_one_and_a_half_ticks_later() {
     let met = step(&p, &mut x, input, H).voltage.to_dq(rotor.ahead(1.5 * H * omega_e));
     assert!((met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10, "{met:?} {computed:?}");
 }
+
+/// What is no number goes on as none: a clamp between bounds that are none would end the program.
+#[test]
+fn a_current_that_is_no_number_gives_a_voltage_that_is_none() {
+    for (d, q) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, 1.0)] {
+        let current = AlphaBeta { alpha: d, beta: q };
+        let input = Input { reference: Dq { d: 0.0, q: 5.0 }, current, rotor: Rotation::default(), omega_e: 0.0 };
+        let p = tuned(2.0 * core::f64::consts::PI * 500.0, 300.0);
+        let mut x = State::default();
+        let _: Output = step(&p, &mut x, input, H);
+        let then = step(&p, &mut x, input, H).voltage;
+        assert!(then.alpha.is_nan() || then.beta.is_nan(), "{d} {q}: {then:?}");
+    }
+}

@@ -185,6 +185,14 @@ fn a_position_that_is_not_finite_is_not_passed_on() {
 }
 
 #[test]
+fn a_position_that_no_machine_has_is_divergence() {
+    let toy = Scripted { position: -2e10, ..Scripted::new(|_, _| Ok(StepEnd::Done)) };
+    let error = mechanics(toy, &single_body(1), &IN_SI).advance(&input(1.0, 0.0)).unwrap_err();
+    let said = "engine `fmu` diverged: a position or velocity has grown to 2.0e10 m or rad, or per second";
+    assert_eq!(error.to_string(), said);
+}
+
+#[test]
 fn a_prescribed_motion_is_refused() {
     let actuation = Actuation::Motion(servobench_base::Setpoint::default());
     let all = Input { actuation, motor_disturbance: 0.0, load_disturbance: 0.0 };

@@ -10,6 +10,10 @@ use crate::pmsm::{self, Winding as _};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation};
 use std::sync::Arc;
 
+/// Largest turn of the rotor in a tick (rad, electrical). One that turns further has diverged, and its windings, which are followed in
+/// parts of a turn, would take longer for each tick the faster it gets: its effort is no number, which ends the run.
+const MOST_TURN: f64 = 1024.0;
+
 /// An inverter on its link, and what they did in the last tick.
 #[derive(Debug, Clone)]
 pub(super) struct RealInverter {
@@ -194,6 +198,10 @@ impl Synchronous {
     pub(super) fn advance_real(&mut self, wanted: AlphaBeta, travel: pmsm::Travel, h: f64) -> f64 {
         let params = self.effects.as_ref().map_or(*self.motor.params(), |real| real.params(&self.motor));
         let (rotor, omega_e) = (self.rotor.rotation(), params.electrical_ratio * travel.speed);
+        // What is no number is not within it either.
+        if !(-MOST_TURN..=MOST_TURN).contains(&(omega_e * h)) {
+            return f64::NAN;
+        }
         let (before, u_dc, x) = (self.state, self.u_dc, &mut self.state);
         let (mut wanted, mut line, mut arc) = (wanted, None, 0.0);
         if let Some(cable) = &mut self.cable {

@@ -219,3 +219,24 @@ fn a_snapshot_holds_the_bridge_and_the_link() {
         assert_eq!((one.current(), one.link().0), before, "{k}");
     }
 }
+
+/// A thousand radians in a tick are followed; beyond them every winding ends the run at once.
+#[test]
+fn a_rotor_that_turns_too_far_in_a_tick_has_no_effort() {
+    for (effects, inverter) in [
+        (every_effect(), Params::IDEAL),
+        (pmsm::Effects { flux_map: None, ..every_effect() }, REAL),
+        (pmsm::Effects::default(), Params { modulation: Modulation::Switching, ..REAL }),
+    ] {
+        for (turn, is_followed) in [(1000.0, true), (-1030.0, false), (1e200, false), (f64::NAN, false)] {
+            let speed = turn / H / MOTOR.electrical_ratio;
+            let mut motor = Synchronous::new(MOTOR, 320.0, speed, H).unwrap();
+            motor = motor.with_effects(&effects, H).unwrap();
+            if inverter != Params::IDEAL {
+                motor.put_on(&inverter, None, H).unwrap();
+            }
+            let effort = motor.advance(AlphaBeta::default(), BodyState { position: 0.0, velocity: speed }, H);
+            assert_eq!(effort.is_finite(), is_followed, "{turn}: {effort}");
+        }
+    }
+}
