@@ -18,6 +18,8 @@ const INCREMENTS: f64 = 4.0;
 pub struct Question {
     /// Settling window, ± around the target (axis unit). Without it there is no settling time.
     pub window: Option<f64>,
+    /// Where homing has to put the zero of the task, as the engine has it (axis unit).
+    pub home_at: Option<f64>,
     /// From when on residual vibration is measured (s). Without it, from the end of the last profile.
     pub from: Option<f64>,
     /// Natural frequency of the mode that is asked for (Hz). Without it, the mode with the most energy is reported.
@@ -38,7 +40,7 @@ impl Question {
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
-pub const MEASURED_FROM: [Signal; 30] = [
+pub const MEASURED_FROM: [Signal; 31] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
@@ -47,6 +49,7 @@ pub const MEASURED_FROM: [Signal; 30] = [
     Signal::MotorPosition,
     Signal::MotorVelocity,
     Signal::LoadPosition,
+    Signal::BusPosition,
     Signal::VelocityReference,
     Signal::FollowingErrorMotor,
     Signal::FollowingErrorLoad,

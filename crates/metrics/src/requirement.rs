@@ -14,6 +14,7 @@ mod following;
 mod growth;
 mod harm;
 mod held_modes;
+mod home_place;
 mod judge;
 mod phases;
 mod rings;
@@ -88,13 +89,14 @@ requirements! {
 pub const REQUEST_KIND: (&str, &str) = ("request", "kind");
 
 /// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
-pub const JUDGED_BY: [Signal; 13] = [
+pub const JUDGED_BY: [Signal; 14] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
     Signal::SetpointPosition,
     Signal::MotorPosition,
     Signal::LoadPosition,
+    Signal::BusPosition,
     Signal::FollowingErrorMotor,
     Signal::EffortReference,
     Signal::EffortMotor,
@@ -244,6 +246,7 @@ pub(crate) mod tests {
             lifted: &[],
             expected: &[],
             window: None,
+            home_at: None,
             increment: 0.0,
             noise: 0.0,
             motor: Readings::default(),

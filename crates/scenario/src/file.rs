@@ -137,6 +137,8 @@ table! {
     pub(crate) struct Measures {
         /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
         window: f64 = positive(InAxis(&POSITION), "10 um"),
+        /// Where in the machine homing has to put the zero of the task (axis coordinate); default: wherever it finds it.
+        home_at: f64 = any(InAxis(&POSITION), "-2 mm"),
         /// From when on residual vibration is measured; default: the end of the last profile.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Where to look for the residual mode; default: everywhere.

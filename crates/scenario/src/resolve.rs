@@ -95,6 +95,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         warms_up: motor.is_none_or(|motor| motor.thermal.span().is_some()),
     };
     let requirements = requirements::resolve(file, &of_run, report);
+    refuse_home_at(file, report);
     let fixed = is_prescribed.then(|| disturbance::Fixed::of(moved.as_ref()));
     let timing = disturbance::Timing { base_rate, duration };
     let coupling = coupling::resolve(file, base_rate, report);
@@ -141,6 +142,7 @@ pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> O
         record: record?,
         measure: file.measure.given().map_or_else(Question::default, |measure| Question {
             window: measure.window.given().copied(),
+            home_at: measure.home_at.given().copied(),
             from: measure.from.given().copied(),
             mode: measure.mode.given().copied(),
             ..Question::default()
@@ -188,6 +190,23 @@ fn record(file: &File, base_rate: Option<Rate>, report: &mut Report) -> Option<R
 
 fn has_window(file: &File) -> bool {
     file.measure.given().is_some_and(|measure| measure.window.span().is_some())
+}
+
+/// Where nothing is homed there is no zero to be looked at; on a modulo axis it comes again in each turn. A homed axis is on a bus, which
+/// has units: there is always a window.
+fn refuse_home_at(file: &File, report: &mut Report) {
+    let Some(at) = file.measure.given().and_then(|measure| measure.home_at.at()) else { return };
+    let homes = |call: &At<crate::file::Call>| call.value.block.given().is_none_or(|block| block.homes());
+    let is_homed = file.call.given().is_some_and(|calls| calls.0.iter().any(homes));
+    if !is_homed {
+        let message = "`home_at` is where homing puts the zero, and nothing homes the axis";
+        report.error(at.span, message, "call \"MC_Home\", or leave `home_at` out");
+    }
+    if let Some(axis) = file.axis.given()
+        && axis.modulo.span().is_some()
+    {
+        report.error(at.span, "`home_at` is for an axis that is not modulo", "leave it out");
+    }
 }
 
 fn limits(limits: &LimitTable, has_window: bool, report: &mut Report) -> Vec<Limit> {

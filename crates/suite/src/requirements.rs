@@ -16,6 +16,7 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         lifted: &scenario.requirements.lifted,
         expected: &scenario.requirements.expected,
         window: scenario.measure.window,
+        home_at: scenario.measure.home_at,
         increment: increment(scenario),
         noise: noise(scenario),
         motor: motor_readings(scenario),

@@ -3,6 +3,7 @@
 //! In each rest that is long enough for the loop to come to rest, and in that in which the run ends, the mean of the load is at the
 //! target, over whole cycles where it swings ([`Task`](super::task::Task)). Ringing about the target is judged by limits and by
 //! `rings`.
+use super::home_place;
 use super::rules::Driven;
 use super::task::{Piece, ROUNDING, Task};
 use crate::quantity::Quantity;
@@ -11,7 +12,7 @@ use servobench_trace::{Ending, Recording};
 /// The default window is the distance of the way by this.
 const PART_OF_WAY: f64 = 1e-3;
 /// It is at least so many increments of the encoder, or units of the bus.
-const RESOLUTIONS: f64 = 10.0;
+pub(super) const RESOLUTIONS: f64 = 10.0;
 /// Where the window is larger than the tolerance, so many of them are left.
 const LEAST_RESOLUTIONS: f64 = 2.0;
 /// The largest share of the way by which deflection explains an error, and by which a loop that has had too little time is off.
@@ -30,9 +31,9 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     if task.rules.driven == Driven::Not {
         return None;
     }
-    let unfinished: Vec<String> = unfinished(task.recording).into_iter().collect();
+    let unfinished: Vec<String> = unfinished(task.recording).into_iter().chain(home_place::misplaced(task)).collect();
     let mut rests = task.pieces.iter().filter(|(piece, _)| matches!(piece, Piece::Rest { .. })).peekable();
-    if rests.peek().is_none() && unfinished.is_empty() {
+    if rests.peek().is_none() && unfinished.is_empty() && task.rules.home_at.is_none() {
         return None;
     }
     Some(

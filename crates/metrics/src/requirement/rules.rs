@@ -15,6 +15,8 @@ pub struct Rules<'a> {
     /// Half width of the window around a target in which the axis has arrived (axis unit); `None`: as
     /// [`arrival_window`](super::arrival_window) says.
     pub window: Option<f64>,
+    /// Where homing has to put the zero of the task, as the engine has it (axis unit); `None`: nobody says.
+    pub home_at: Option<f64>,
     /// One increment of the encoder that closes the position loop or, if that is wider, the error of its signals within a period (axis
     /// unit); 0 for an ideal one.
     pub increment: f64,

@@ -52,6 +52,17 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
     );
 }
 
+/// A zero that nobody finds, or that comes again in each turn, is nowhere.
+#[test]
+fn a_place_of_the_zero_needs_homing() {
+    let homeless = "49:11: `home_at` is where homing puts the zero, and nothing homes the axis; call \"MC_Home\", or leave \
+                    `home_at` out";
+    let with = |more: &str| after("window = \"10 um\"\n", &format!("window = \"10 um\"\nhome_at = \"2 mm\"\n{more}"));
+    assert_eq!(with(""), [homeless]);
+    let home = "[bus]\ncycle = \"1 ms\"\n[[call]]\nblock = \"MC_Home\"\nname = \"home\"\n";
+    assert!(with(home).iter().all(|said| !said.contains("home_at")), "{:?}", with(home));
+}
+
 /// A motor that turns needs a lead; that it has none must not make everything else of it wrong.
 #[test]
 fn a_motor_turns_or_is_linear_by_its_own_keys() {
