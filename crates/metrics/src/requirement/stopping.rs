@@ -103,7 +103,7 @@ fn last_cycle(rows: &Rows<'_>, after: &Range<usize>, least: f64) -> Option<Range
     let turns = between_turning_points(rows.load, after, least.max(OF_SWING * (high - low)));
     let [.., _, first, second, last] = turns.as_slice() else { return None };
     // What comes after the last turn is shorter than half of a cycle.
-    (last.len() <= first.len().max(second.len())).then(|| first.start..last.start)
+    (last.len() <= first.len().max(second.len())).then_some(first.start..last.start)
 }
 
 #[cfg(test)]
