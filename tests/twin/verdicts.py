@@ -219,9 +219,14 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         worst = max(suffered, key=lambda harm: harm.size, default=None)
         if worst is not None and judged.word != "bad":
             judged = Judgement("bad" if worst.size > 1 else "between", worst.kind, worst.size, worst.size, 1.0, 0.0)
-        cell[judged.word] += 1
         if judged.word == "bad" and len(broken(outcome)) == 1:
             tally.alone.update(broken(outcome))
+        # A stand too short for the oracle is not known to be good: the verdict looks at it from its first tick on.
+        if judged.word == "good" and broken(outcome) == {"stands"} and any(
+            phase.kind == "stand" and numpy.isnan(d) for phase, d in zip(phases, found)
+        ):
+            judged = replace(judged, word="between")
+        cell[judged.word] += 1
         kind = wrong(judged, outcome, pair)
         if tally.is_traced:
             by_phase = [f"{phase.kind} {d:.3g}" for phase, d in zip(phases, found)]
