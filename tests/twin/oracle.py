@@ -377,6 +377,9 @@ def judgement(
     word, worst = "good", Judgement("good", "", 0.0, 0.0, 0.0, 0.0)
     for number, (phase, d, h, s) in enumerate(zip(phases, found, of_healthy, spread)):
         if numpy.isnan(d) or numpy.isnan(h):
+            # What is not judged, because a silence interrupted it for example, is not known to be good.
+            if word == "good" and numpy.isnan(d) and not numpy.isnan(h):
+                word = "between"
             continue
         tol = max(tolerance.of(phase), 4 * s)
         bad, good = max(8 * h, 4 * max(tolerance.of_bad(phase), 4 * s)), max(2 * h, tol)

@@ -221,11 +221,6 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
             judged = Judgement("bad" if worst.size > 1 else "between", worst.kind, worst.size, worst.size, 1.0, 0.0)
         if judged.word == "bad" and len(broken(outcome)) == 1:
             tally.alone.update(broken(outcome))
-        # A stand too short for the oracle is not known to be good: the verdict looks at it from its first tick on.
-        if judged.word == "good" and broken(outcome) == {"stands"} and any(
-            phase.kind == "stand" and numpy.isnan(d) for phase, d in zip(phases, found)
-        ):
-            judged = replace(judged, word="between")
         cell[judged.word] += 1
         kind = wrong(judged, outcome, pair)
         if tally.is_traced:
