@@ -8,7 +8,7 @@ mod measured;
 mod mutants;
 mod several;
 mod sweeps;
-mod verdicts;
+pub(crate) mod verdicts;
 
 pub(crate) use advice::run as advise;
 pub(crate) use faults::run as faults;

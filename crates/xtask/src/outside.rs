@@ -87,6 +87,11 @@ impl Outside {
         installed.flat_map(commands).collect()
     }
 
+    /// The Python that most of them share, if it could be had.
+    pub(crate) fn common(&self) -> Option<PathBuf> {
+        self.pythons[0].as_ref().ok().cloned()
+    }
+
     /// Says what is left out, if anything is.
     pub(crate) fn report(&self) {
         for (group, python) in GROUPS.iter().zip(&self.pythons) {

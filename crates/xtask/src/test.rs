@@ -1,5 +1,6 @@
 //! `cargo xtask test`: everything that CI runs, in order, up to the first failure.
 use crate::bare_metal::BareMetal;
+use crate::drill::verdicts;
 use crate::failure::Failure;
 use crate::outside::Outside;
 use crate::wheel;
@@ -66,6 +67,7 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     let (bare_metal, outside) = (BareMetal::prepare(), Outside::prepare(workspace));
     let mut steps = steps(workspace, engines)?;
     steps.extend(bare_metal.command(workspace).map(|command| Step::new("bare metal", command)));
+    steps.extend(twins(&outside, workspace, engines));
     steps.extend(outside_clients(&outside, workspace));
     let report = || {
         bare_metal.report();
@@ -93,17 +95,27 @@ fn outside_clients(outside: &Outside, workspace: &Workspace) -> impl Iterator<It
     outside.commands(workspace).into_iter().map(|command| Step::new("outside clients", command))
 }
 
+/// Verdicts on sabotaged twins: the example that runs them, and the pairs. Left out where there is no Python for the outside clients.
+fn twins(outside: &Outside, workspace: &Workspace, engines: Engines) -> Vec<Step> {
+    let Some(python) = outside.common() else { return Vec::new() };
+    let build = on_all_crates(workspace, engines, &["build", "--example", "twin"]);
+    let pairs = verdicts::tested(workspace, python, engines == Engines::All);
+    vec![Step::new("build of twins", build), Step::new("verdicts on twins", pairs)]
+}
+
+/// A command of Cargo for the whole workspace. Release for all: the binary, the tests and the documentation share what they compile.
+fn on_all_crates(workspace: &Workspace, engines: Engines, subcommand: &[&str]) -> Command {
+    let mut command = workspace.cargo(subcommand);
+    command.args(["--release", "--workspace"]);
+    command.args(match engines {
+        Engines::All => ["--features", "servobench-cli/mujoco,servobench-tests/mujoco"],
+        Engines::Embedded => ["--exclude", "servobench-engine-mujoco"],
+    });
+    command
+}
+
 fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> {
-    // Release for all: the binary, the tests and the documentation share what they compile.
-    let cargo = |subcommand: &[&str]| {
-        let mut command = workspace.cargo(subcommand);
-        command.args(["--release", "--workspace"]);
-        command.args(match engines {
-            Engines::All => ["--features", "servobench-cli/mujoco,servobench-tests/mujoco"],
-            Engines::Embedded => ["--exclude", "servobench-engine-mujoco"],
-        });
-        command
-    };
+    let cargo = |subcommand: &[&str]| on_all_crates(workspace, engines, subcommand);
     let itself = std::env::current_exe().map_err(Failure::file("find", "xtask"))?;
     let mut lints = cargo(&["clippy", "--all-targets"]);
     lints.args(["--", "-D", "warnings"]);

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::outside;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
+use std::path::PathBuf;
 use std::process::Command;
 
 /// Pairs by hand, unless `SERVOBENCH_SWEEP` says how many.
@@ -14,6 +15,9 @@ const PAIRS: &str = "20000";
 const HEALTHY: &str = "2000";
 /// Pairs among which each rule is needed, unless it does.
 const PROOF: &str = "2000";
+
+/// Pairs in the tests: always the same, which take some ten seconds.
+const TESTED: [&str; 4] = ["--pairs", "400", "--seed", "1"];
 
 /// Which drill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,15 +37,15 @@ pub(crate) enum Drill {
 pub(crate) fn run(workspace: &Workspace, drill: Drill) -> Result<(), Failure> {
     let environment = outside::common(workspace);
     environment.ensure()?;
-    let library = wheel::MUJOCO.ensure(workspace);
-    run_command(&mut build(workspace, library.is_ok()), 0)?;
+    let has_mujoco = wheel::MUJOCO.ensure(workspace).is_ok();
+    run_command(&mut build(workspace, has_mujoco), 0)?;
     let (flag, usual) = match drill {
         Drill::Pairs => ("--pairs", PAIRS),
         Drill::Healthy => ("--healthy", HEALTHY),
         Drill::Proof => ("--proof", PROOF),
     };
     let size = std::env::var("SERVOBENCH_SWEEP").unwrap_or_else(|_| usual.to_owned());
-    let mut command = judge(workspace, library.is_ok());
+    let mut command = judge(workspace, environment.python(), has_mujoco);
     command.args([flag, &size]);
     if let Ok(seed) = std::env::var("SERVOBENCH_SEED") {
         command.args(["--seed", &seed]);
@@ -57,8 +61,14 @@ fn build(workspace: &Workspace, has_mujoco: bool) -> Command {
     build
 }
 
-fn judge(workspace: &Workspace, has_mujoco: bool) -> Command {
-    let python = outside::common(workspace).python();
+/// The pairs of the tests, by this Python; the example has been built.
+pub(crate) fn tested(workspace: &Workspace, python: PathBuf, has_mujoco: bool) -> Command {
+    let mut command = judge(workspace, python, has_mujoco);
+    command.args(TESTED);
+    command
+}
+
+fn judge(workspace: &Workspace, python: PathBuf, has_mujoco: bool) -> Command {
     let mut command = workspace.command(python, ["-B", "-u", "tests/twin/verdicts.py", "--program"]);
     command.arg(workspace.target.join("release").join("examples").join("twin"));
     command.env("LD_LIBRARY_PATH", workspace.native_lib());
