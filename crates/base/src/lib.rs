@@ -6,6 +6,7 @@
 mod coordinate;
 mod ending;
 mod frames;
+mod held_mode;
 mod parameter;
 mod power_command;
 mod request;
@@ -20,6 +21,7 @@ mod wide_registers;
 pub use coordinate::Coordinate;
 pub use ending::Ending;
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, Rotation};
+pub use held_mode::HeldMode;
 pub use parameter::{ParamError, finite, limit, non_negative, positive};
 pub use power_command::PowerCommand;
 pub use request::{Request, RequestKind};

@@ -41,9 +41,9 @@ pub use modal::{Mode, Signal, Vibration, fit_mode, vibration};
 pub use name::{Name, Scope, UnknownMetric};
 pub use quantity::Quantity;
 pub use requirement::{
-    Deflection, Disturbance, Driven, EarlyEnd, Expectation, Expected, HeldMode, JUDGED_BY, LinearLoop, Occasion,
-    Oscillation, Poles, REQUEST_KIND, Readings, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances,
-    arrival_window, judge_requirements,
+    Deflection, Disturbance, Driven, EarlyEnd, Expectation, Expected, JUDGED_BY, LinearLoop, Occasion, Oscillation,
+    Poles, REQUEST_KIND, Readings, Requirement, RequirementResult, Rules, Servo, Standing, Tolerances, arrival_window,
+    judge_requirements,
 };
 pub use residual_ratios::ResidualRatios;
 pub use round::{round_above, round_below};

@@ -31,7 +31,6 @@ mod velocity;
 
 pub use arrival::arrival_window;
 pub use deflection::Deflection;
-pub use held_modes::HeldMode;
 pub use judge::judge_requirements;
 pub use rules::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules, Tolerances};
 pub use servo::Servo;

@@ -39,7 +39,7 @@ pub use mechanics::{
 };
 pub use mjcf::chain_to_mjcf;
 pub use mjcf_axis::MjcfAxis;
-pub use modes::{HeldMode, Mode};
+pub use modes::Mode;
 pub use power_stage::PowerStage;
 pub use refusal::{Refusal, RefusedAt};
 pub use sensor::{

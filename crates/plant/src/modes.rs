@@ -11,6 +11,7 @@
 //! *Fundamentals of Vibrations*, §7.
 use crate::chain::Chain;
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
+use servobench_base::HeldMode;
 
 /// A mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,20 +20,6 @@ pub struct Mode {
     pub omega: f64,
     /// Damping ratio ζ; 1 and above does not ring.
     pub damping: f64,
-}
-
-/// A mode in which the load follows a motor that is held to its position: it is at Σ `weight`·z of all modes, with
-/// z″ + `decay`·z′ + ω²·(z − y − `lead`·y′) = 0 where the motor is at y (axis coordinate).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldMode {
-    /// Share of the motor's position; those of all modes add up to 1.
-    pub weight: f64,
-    /// Undamped frequency ω (rad/s).
-    pub omega: f64,
-    /// 2·ζ·ω (1/s).
-    pub decay: f64,
-    /// Damping of the coupling behind the motor by its stiffness (s).
-    pub lead: f64,
 }
 
 /// Turns of the QR iteration for an eigenvalue; what has not converged by then does not.

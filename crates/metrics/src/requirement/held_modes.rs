@@ -6,18 +6,7 @@
 //! Each mode is discretised exactly for an input that is constant over a row, the mean of it, so that no frequency makes it unstable.
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3.
 
-/// A mode in which the load follows a motor that is held to its position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldMode {
-    /// Share `w` of the motor's position; those of all modes add up to 1.
-    pub weight: f64,
-    /// Undamped frequency ω (rad/s).
-    pub omega: f64,
-    /// `d` = 2·ζ·ω (1/s).
-    pub decay: f64,
-    /// Damping by stiffness `τ` of the coupling behind the motor (s).
-    pub lead: f64,
-}
+use servobench_base::HeldMode;
 
 /// A [`HeldMode`] discretised, with its state.
 #[derive(Debug, Clone, Copy)]

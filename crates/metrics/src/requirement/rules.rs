@@ -1,8 +1,8 @@
 //! What a judgement needs to know besides the recording.
 use super::deflection::Deflection;
-use super::held_modes::HeldMode;
 use super::servo::Servo;
 use super::{Expectation, Requirement};
+use servobench_base::HeldMode;
 use servobench_signals::Signal;
 
 /// What a judgement of requirements needs to know besides the recording.

@@ -1,7 +1,8 @@
 //! The axis of a scenario as its requirements know it: the linear rigid loop, and where efforts displace it to.
+use servobench_base::HeldMode;
 use servobench_drive::feedforward::Model;
 use servobench_drive::{Params, Stage};
-use servobench_metrics::{Deflection, HeldMode, Servo};
+use servobench_metrics::{Deflection, Servo};
 use servobench_plant::{Chain, pmsm};
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Feedback, LoopSignal, Scenario};
 
@@ -47,14 +48,7 @@ pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
 
 /// The modes in which the load follows the motor; none where the mechanics are not those of a chain.
 pub(super) fn held_modes(scenario: &Scenario) -> Vec<HeldMode> {
-    let modes = chain(scenario).map(Chain::held_modes).unwrap_or_default();
-    let known = modes.into_iter().map(|mode| HeldMode {
-        weight: mode.weight,
-        omega: mode.omega,
-        decay: mode.decay,
-        lead: mode.lead,
-    });
-    known.collect()
+    chain(scenario).map(Chain::held_modes).unwrap_or_default()
 }
 
 /// Where efforts displace the axis to.
