@@ -116,6 +116,14 @@ class Settling:
         return found
 
 
+def swept(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float:
+    """How far the load gets about before a stand has come to rest, which D leaves out."""
+    begin, end = healthy.time(phase.begin), healthy.time(phase.end)
+    shift = run.start - healthy.start
+    early = (run.t >= begin + shift) & (run.t <= end + shift) & ~settling.is_settled(run.t, begin + shift)
+    return float(numpy.ptp(run.load[early])) if early.any() else 0.0
+
+
 def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling, tolerance: Tolerance) -> list[float]:
     """D of each phase: infinite where the run never came to it, not a number where the phase is too short to be judged."""
     return [deviation(phase, healthy, run, settling, 0.2 * tolerance.of(phase)) for phase in phases]

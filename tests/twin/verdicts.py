@@ -27,7 +27,7 @@ import fmu
 from bus_task import ENABLED
 from linear import is_stable
 from machine import Axis
-from oracle import Harm, Judgement, Run, cycles, deviations, goes_on, harms, judgement, silence
+from oracle import Harm, Judgement, Run, cycles, deviations, goes_on, harms, judgement, silence, swept
 from sabotages import SABOTAGES
 from task import Phase, Task
 from twins import ENGINES, HOTTEST, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
@@ -209,6 +209,8 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         if pair.judge is not None and pair.judge.window is not None:
             tolerance = replace(tolerance, window=max(pair.judge.window, tolerance.window or 0.0))
         judged = judgement(phases, found, of_healthy, spread, tolerance)
+        if judged.word == "good" and is_restless(phases, healthy, twin, family):
+            judged = replace(judged, word="between")
         if all(numpy.isnan(d) or numpy.isnan(h) for d, h in zip(found, of_healthy)):
             # A silence to the end, or over all that is judged.
             judged = Judgement("between", "silence", 0.0, 0.0, 0.0, 0.0)
@@ -277,6 +279,16 @@ def is_cycling(family: Family, axis: Axis, run: Run) -> bool:
         limits["voltage.q"] = axis.pmsm.dc_link / 3**0.5
     floor = max(4 * axis.r * (axis.increment or 0.0), 5 * axis.r * axis.noise, 1e-7 * family.twin.task.span)
     return cycles(run, axis.r, limits, floor)
+
+
+def is_restless(phases: list[Phase], healthy: Run, twin: Run, family: Family) -> bool:
+    """Whether what stands gets about farther than the healthy one before it has come to rest, where the verdict looks and D does not: it is
+    not known to be good."""
+    def gets_about(phase: Phase) -> bool:
+        of_healthy, of_twin = (swept(phase, healthy, run, family.settling) for run in (healthy, twin))
+        return of_twin > max(family.tolerance.of(phase), 2 * of_healthy)
+
+    return any(gets_about(phase) for phase in phases if phase.kind == "stand")
 
 
 def settle_checks(runner: Runner, tally: Tally) -> None:
