@@ -46,10 +46,10 @@ struct Axis {
     dominant: Ringing,
     values: Vec<f64>,
     step: f64,
-    /// What nobody asks for: a thousandth of a window, four increments, five standard deviations of the noise.
+    /// The largest swing that does not matter: a thousandth of a window, four increments, five standard deviations of the noise.
     least: f64,
     increment: f64,
-    /// Whether it is asked for by its frequency.
+    /// True where its frequency is compared, too.
     is_given: bool,
 }
 
@@ -138,9 +138,9 @@ impl Axis {
         fit_mode(&signal, self.is_given.then_some(self.dominant.frequency)).map_err(|why| why.to_string())
     }
 
-    /// How far the mode of `window` is from that of the `whole`, in parts of what is granted: amplitude, frequency and envelope at the end.
+    /// Distance of the mode of `window` from that of the `whole`, in parts of what is granted: amplitude, frequency and envelope at the end.
     ///
-    /// What nobody asks for is a part of the envelope where the window begins.
+    /// The swing that does not matter is a part of the envelope where the window begins.
     fn away(&self, window: Window, mode: &Mode, whole: &Mode) -> f64 {
         let granted = SHARE + self.least / self.envelope(window);
         let periods = self.visible(window);

@@ -31,7 +31,7 @@ struct Planned {
     deviation: Option<f64>,
     /// Whether the next move takes over from it.
     is_aborted: bool,
-    /// Whether its plan ends at rest.
+    /// True where its plan ends at rest.
     ends_at_rest: bool,
     /// What it is, in a word or two.
     kind: &'static str,

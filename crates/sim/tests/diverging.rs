@@ -6,7 +6,7 @@ use servobench_plant::{Exact, MechanicsError};
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, External, Failure, Reason};
 
-/// What may make a winding vary, or its voltage.
+/// Effects that make a winding vary, or its voltage.
 const REAL: [&str; 6] = [
     "",
     "[motor.thermal]\nambient = \"40 degC\"\nto_housing = \"3.8 K/W\"\nto_ambient = \"1.9 K/W\"\n\

@@ -98,7 +98,7 @@ fn noise(scenario: &Scenario) -> f64 {
     of_encoder(scenario, |encoder| encoder.errors.map_or(0.0, |errors| errors.noise))
 }
 
-/// What the encoder at the motor tells apart, and its noise (axis unit): it closes the velocity loop.
+/// Resolution and noise of the encoder at the motor (axis unit): it closes the velocity loop.
 fn motor_readings(scenario: &Scenario) -> Readings {
     let of_motor = |length: fn(&Encoder) -> f64| {
         scenario.actuator.encoder().map_or(0.0, |motor| scenario.axis.transmission.abs() * length(&motor))

@@ -128,7 +128,7 @@ fn the_voltage_meets_the_rotor_one_and_a_half_ticks_later() {
     assert!((met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10, "{met:?} {computed:?}");
 }
 
-/// What is no number goes on as none: a clamp between bounds that are none would end the program.
+/// A current that is not a number goes on as one: a clamp between bounds that are not numbers would end the program.
 #[test]
 fn a_current_that_is_no_number_gives_a_voltage_that_is_none() {
     for (d, q) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, 1.0)] {

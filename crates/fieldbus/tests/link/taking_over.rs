@@ -96,7 +96,7 @@ fn a_velocity_is_commanded_from_that_of_the_axis_on() {
     assert!(steepest <= RECOVERY + 2, "{steepest}");
 }
 
-/// What the noise of an encoder makes of an acceleration is not carried on when the link begins to read: ±2 counts of noise at cycles of
+/// An acceleration that is the noise of an encoder is not carried on when the link begins to read: ±2 counts of noise at cycles of
 /// 1 ms, led to zero by 50 m/s³, took an axis that stands 220 mm away with cubic interpolation.
 #[test]
 fn noise_before_power_does_not_carry_the_axis_away() {

@@ -137,7 +137,7 @@ pub(crate) fn dominant(
     }
 }
 
-/// Whether the record moves by more than `unseen` in a quarter of a period of the mode `found` and holds still in the next one; of a mode
+/// True where the record moves by more than `unseen` in a quarter of a period of the mode `found` and holds still in the next one; of a mode
 /// that grows, in the one before.
 fn comes_to_a_stop(signal: &Signal<'_>, found: Oscillation, unseen: f64) -> bool {
     let rows = (quarter(signal, found) / MEANS).max(1);

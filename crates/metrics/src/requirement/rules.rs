@@ -54,7 +54,7 @@ pub struct Rules<'a> {
     pub winding_limit: Option<f64>,
 }
 
-/// What an encoder tells of a position.
+/// Resolution and noise of an encoder's positions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Readings {
     /// One increment, or the error of its signals within a period if that is wider (axis unit); 0 of an ideal one.

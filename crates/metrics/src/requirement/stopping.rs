@@ -72,15 +72,10 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     let bound = (LEFT * before).max(OF_LARGEST * largest).max(resolution);
     let unit = format!("{}/s", task.recording.about.axis_unit);
     let cycle = last_cycle(rows, &((start + planned).min(end - 1)..end), RESOLUTIONS * task.rules.resolution());
-    // A load that has turned back after it was due has stopped in between.
-    let after_due = due.min(end - 1)..end;
-    let least = RESOLUTIONS * task.rules.resolution().max(ROUNDING * rows.load[start].abs());
-    let has_turned = between_turning_points(rows.load, &after_due, least).len() > 1;
-    let late = has_turned.then(|| usize::midpoint(after_due.start, end - 1)..end - 1);
     let at = |last: usize| {
         let velocity = rows.load_velocity(last.saturating_sub(span).max(start), last);
-        let means = cycle.iter().chain(&late).map(|rows_of| rows.load_velocity(rows_of.start, rows_of.end));
-        (last, means.fold(velocity, |least, mean| if mean.abs() < least.abs() { mean } else { least }))
+        let of_cycle = cycle.as_ref().map(|cycle| rows.load_velocity(cycle.start, cycle.end));
+        (last, of_cycle.filter(|mean| mean.abs() < velocity.abs()).unwrap_or(velocity))
     };
     let (last, velocity) = [due.min(end - 1), end - 1]
         .map(at)

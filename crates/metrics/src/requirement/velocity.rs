@@ -5,8 +5,6 @@ use crate::quantity::Quantity;
 
 /// The most that droop explains, of the velocity.
 const OF_VELOCITY: f64 = 0.5;
-/// Increments of the encoder, or units of the bus, by which its positions are off.
-const RESOLUTIONS: f64 = 10.0;
 /// A hold at zero is measured by the largest velocity of the request so.
 const AT_ZERO: f64 = 0.2;
 
@@ -28,11 +26,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let missed = holds.into_iter().filter(|(_, hold)| !task.is_excused(&hold.rows)).filter_map(|(velocity, hold)| {
         let scale = velocity.abs().max(AT_ZERO * largest);
         let of_loop = (velocity - hold.response_velocity).abs();
-        let time = hold.rows.len() as f64 * task.recording.rate.period();
-        // Of the readings at its beginning and its end.
-        let of_readings = RESOLUTIONS * task.rules.resolution() / time;
-        let bound = (task.rules.tolerances.velocity * scale + droop(task, hold) + of_readings).min(OF_VELOCITY * scale)
-            + of_loop;
+        let bound = (task.rules.tolerances.velocity * scale + droop(task, hold)).min(OF_VELOCITY * scale) + of_loop;
         let off = (hold.load_velocity - velocity).abs();
         (off.is_nan() || off > bound).then(|| {
             format!(
