@@ -9,5 +9,5 @@ mod stream;
 mod words;
 
 pub use points::{Help, PointEncoding, PointTransfer, Unsendable, points};
-pub use stream::Stream;
+pub use stream::{Stream, Timing};
 pub use words::{SentPoint, followed};

@@ -463,3 +463,53 @@ fn a_master_that_is_held_up_is_made_up_for() {
     // To two steps of the drive.
     assert!((late - 20e-3).abs() < 0.6e-3, "{late}");
 }
+
+/// The drive begins each table when its points are there, few or many, and when it has come to the end of the one before: the request goes
+/// through the middle of each move when the drive's own set-point does, and the recording says that it began and ended then.
+#[test]
+fn the_request_begins_a_table_when_the_drive_does() {
+    let targets = [0.0, 0.2, 0.203, 0.15, 0.152];
+    let steps = |pause: &str| {
+        let moves: String =
+            targets[1..].iter().map(|to| format!("[[program]]\nmove_to = \"{to} m\"\n{pause}")).collect();
+        format!(
+            "[setpoint]\norder = 3\nvelocity = \"0.5 m/s\"\nacceleration = \"4 m/s2\"\njerk = \"120 m/s3\"\n\
+             [[program]]\nwait = \"0.1003 s\"\n{moves}[[program]]\nwait = \"0.3 s\"\n"
+        )
+    };
+    let wait = |time: &str| format!("[[program]]\nwait = \"{time}\"\n");
+    for pause in [wait("0.3007 s"), wait("8 ms"), String::new()] {
+        for (object, code, more) in [
+            ("2010h", -3, ""),
+            ("60C1h", -3, "motion_cycle = \"4 ms\"\n"),
+            ("60C1h", -3, "delay = 2\n"),
+            ("60C1h", -2, ""),
+            ("60C1h", -1, ""),
+            ("60C1h", -1, "delay = 0\nmotion_cycle = \"2 ms\"\n"),
+            ("60C1h", 0, ""),
+            ("60C1h", 0, "delay = 3\nmotion_cycle = \"2 ms\"\n"),
+            ("115h", -3, ""),
+            ("115h", -3, "delay = 3\n"),
+            ("115h", -3, "delay = 0\nmotion_cycle = \"4 ms\"\n"),
+        ] {
+            let bus = format!("point_time = \"10 ms\"\n{more}");
+            let recording = run(&by_object(object, &sub_mode(code), &steps(&pause), &bus));
+            let [setpoint, request] = ["setpoint.position", "request.position"].map(|name| values(&recording, name));
+            for (made, way) in recording.moves.iter().zip(targets.windows(2)) {
+                let after = recording.index_at(made.start);
+                let passed = |values: &[f64], place: f64| {
+                    let passes = |pair: &[f64]| (pair[0] - place) * (pair[1] - place) <= 0.0;
+                    after + values[after..].windows(2).position(passes).unwrap_or_else(|| panic!("never at {place}"))
+                };
+                let middle = f64::midpoint(way[0], way[1]);
+                let rows = [setpoint, request].map(|values| passed(values, middle));
+                let [of_drive, of_task] = rows.map(|row| recording.time_of(row));
+                // To a step of the drive; a line is not in the middle when its move is.
+                let case = format!("{object} {code} {more:?} {pause:?} to {}", way[1]);
+                assert!((of_drive - of_task).abs() < 0.26e-3, "{case}: {of_drive} s, and {of_task} s");
+                let halfway = f64::midpoint(made.start, made.end);
+                assert!((halfway - of_task).abs() < 5e-3, "{case}: {of_task} s, and recorded {halfway} s");
+            }
+        }
+    }
+}

@@ -69,6 +69,15 @@ pub struct Move {
     pub ending: Ending,
 }
 
+impl Move {
+    /// The same, so much later (s).
+    #[must_use]
+    pub fn later(self, time: f64) -> Self {
+        let (begin, length) = self.cruise;
+        Self { start: self.start + time, end: self.end + time, cruise: (begin + time, length), ..self }
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
 fn is_at_rest(ending: &Ending) -> bool {
     *ending == Ending::AtRest

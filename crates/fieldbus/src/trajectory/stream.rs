@@ -21,6 +21,17 @@ const AHEAD: usize = 16;
 /// For the rounding of times (s).
 const ROUNDING: f64 = 1e-9;
 
+/// How long the master's commands are under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// From one cycle of the task to the next, and of the bus (s).
+    pub task: f64,
+    /// From one cycle of the bus to the next (s).
+    pub bus: f64,
+    /// From a cycle of the bus until its frame is at the drive (s).
+    pub frame: f64,
+}
+
 /// Sends tables to the buffer of a drive, one after the other.
 #[derive(Debug, Clone)]
 pub struct Stream {
@@ -66,16 +77,37 @@ impl Stream {
         Self { encoding, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
     }
 
-    /// Cycles from the time at which the first table begins until it is followed: those in which the buffer is filled.
+    /// When the drive begins the way of each table (s, by the clock of the master, without the delay of its frame), if nothing goes wrong.
+    ///
+    /// Before that the buffer is filled, in some sub-modes the axis goes to the first point, and the table before has come to its end.
     #[must_use]
-    pub fn filling(&self) -> usize {
-        let points = self.tables.first().map_or(0, |(_, points)| points.len().min(AHEAD));
-        match (self.encoding.adapted_time(), self.encoding.transfer()) {
-            (Some(_), _) => 0,
-            // The mode before them, the start behind them.
-            (None, PointTransfer::Serial) => points + 1,
-            (None, _) => points.saturating_sub(1),
-        }
+    pub fn beginnings(&self, timing: &Timing) -> Vec<f64> {
+        let Timing { task, bus, frame } = *timing;
+        let first_cycle = |t: f64| libm::ceil((t - ROUNDING) / task) * task;
+        let constant = self.encoding.constant_time().map(|time| f64::from(time) * 1e-6);
+        // A step of the drive may have missed the frame that its answer goes with.
+        let answer = 2.0 * (frame + bus);
+        // The serial interface is told the mode before the first table, and the start behind each; no message waits for a frame.
+        let (mut set, start_message) = if self.is_serial() { (task, task - frame) } else { (0.0, 0.0) };
+        let mut free = f64::NEG_INFINITY;
+        let begin = |(start, points): &(f64, Vec<Point>)| {
+            let told = first_cycle(*start).max(free) + core::mem::take(&mut set);
+            let filled = (points.len().min(AHEAD) as f64 - 1.0) * task + start_message;
+            let begin = told
+                + match (self.encoding.adapted_time().is_some(), constant) {
+                    // Three points, and the way to the first one.
+                    (true, Some(time)) => 3.0 * time,
+                    (_, Some(time)) => filled + time,
+                    (_, None) => filled,
+                };
+            let length = points.iter().map(|point| f64::from(point.time) * 1e-6).sum::<f64>();
+            let seen = first_cycle(begin + length + answer);
+            // Where nothing ends a move the buffer is emptied.
+            let is_free = if constant.is_some() { first_cycle(seen + answer) } else { seen };
+            free = is_free + task;
+            begin
+        };
+        self.tables.iter().map(begin).collect()
     }
 
     /// What goes over the serial interface in this cycle, once.

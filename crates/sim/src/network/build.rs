@@ -5,6 +5,7 @@ use super::program_cursor::ProgramCursor;
 use super::reference::DelayedReference;
 use super::requests::Requests;
 use super::signals::Signals;
+use super::tables::Tables;
 use super::targets::Targets;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
@@ -20,6 +21,7 @@ use servobench_drive::{self as drive, Demand, EffortLimits, device, feedforward}
 use servobench_fieldbus::bus;
 use servobench_fieldbus::link::{self, Mailbox};
 use servobench_fieldbus::task;
+use servobench_fieldbus::trajectory::Timing;
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Mode;
 use servobench_scenario::{self as scenario, Actuator, Bus, Feedback, Scenario};
@@ -127,7 +129,9 @@ impl Network {
             Some(plc) => MotionTask::Plc(Box::new(Plc::new(plc, &scenario.axis, period, recorder)?)),
             None if !bus.mode.is_cyclic() => {
                 let moves = ProgramCursor::new(program, period);
-                MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device)?))
+                let timing =
+                    Timing { task: period, bus: f64::from(bus.cycle) * tick, frame: delays.frame as f64 * tick };
+                MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device, &timing)?))
             }
             None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };
@@ -177,7 +181,10 @@ fn requests(task: &MotionTask, mode: scenario::BusMode, period: f64, delay: f64)
             let program = profile.moves().program();
             match mode {
                 scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program, period), period, delay),
-                _ => Requests::of_program(program, period, delay + profile.filling() as f64 * period),
+                scenario::BusMode::InterpolatedPosition => {
+                    Requests::of_tables(Tables::of(program, profile.lags()), period, delay)
+                }
+                _ => Requests::of_program(program, period, delay),
             }
         }
         MotionTask::Plc(_) => Requests::of_cycles(period, delay),

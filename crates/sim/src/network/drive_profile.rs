@@ -7,11 +7,12 @@ use super::program_cursor::ProgramCursor;
 use servobench_base::Request;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_drive::device;
-use servobench_fieldbus::trajectory::{PointEncoding, Stream, Unsendable, points};
+use servobench_fieldbus::trajectory::{PointEncoding, Stream, Timing, Unsendable, points};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, ProfileCommand, Task};
 use servobench_motion::position_profile::Command;
 use servobench_planner::PlanDetails;
 use servobench_scenario::{Bus, BusMode};
+use servobench_trace::Move;
 
 /// How far before its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
@@ -21,6 +22,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct DriveProfile {
     moves: ProgramCursor,
     orders: Orders,
+    /// By how much later than the program the drive begins each move (s), where points wait in its buffer; empty where none do.
+    lags: Vec<f64>,
 }
 
 /// What is sent.
@@ -35,11 +38,16 @@ enum Orders {
 }
 
 impl DriveProfile {
-    /// The way of `moves` over `bus`, made by `drive`.
+    /// The way of `moves` over `bus`, made by `drive`, which is told so late.
     ///
     /// # Errors
     /// [`Unsendable`] names a point of a table that cannot be sent, or why none can.
-    pub(super) fn new(moves: ProgramCursor, bus: &Bus, drive: &device::Params) -> Result<Self, Unsendable> {
+    pub(super) fn new(
+        moves: ProgramCursor,
+        bus: &Bus,
+        drive: &device::Params,
+        timing: &Timing,
+    ) -> Result<Self, Unsendable> {
         let program = moves.program();
         let orders = match bus.mode {
             BusMode::ProfileVelocity => {
@@ -65,19 +73,29 @@ impl DriveProfile {
                 Orders::Positions { set_points: set_points.collect(), sent: 0 }
             }
         };
-        Ok(Self { moves, orders })
+        let lags = match &orders {
+            Orders::Tables(stream) => {
+                let begun = stream.beginnings(timing).into_iter();
+                begun.zip(moves.program().plans()).map(|(begun, (start, ..))| begun - start).collect()
+            }
+            Orders::Positions { .. } | Orders::Velocities { .. } => Vec::new(),
+        };
+        Ok(Self { moves, orders, lags })
     }
 
     pub(super) const fn moves(&self) -> &ProgramCursor {
         &self.moves
     }
 
-    /// Cycles by which the drive begins later than the program, since its buffer is filled first.
-    pub(super) fn filling(&self) -> usize {
-        match &self.orders {
-            Orders::Tables(stream) => stream.filling(),
-            Orders::Positions { .. } | Orders::Velocities { .. } => 0,
-        }
+    /// By how much later than the program the drive begins each move (s); empty where it begins with it.
+    pub(super) fn lags(&self) -> &[f64] {
+        &self.lags
+    }
+
+    /// What a recording says of the moves; they reach the axis `delay` (s) later.
+    pub(super) fn made(&self, delay: f64) -> impl Iterator<Item = Move> {
+        let lags = self.lags.iter().copied().chain(core::iter::repeat(0.0));
+        self.moves.moves(delay).zip(lags).map(|(made, lag)| made.later(lag))
     }
 
     /// What goes over the serial interface of the drive in this cycle.

@@ -47,11 +47,6 @@ impl ProgramCursor {
     /// What a recording says of the moves; they reach the axis `delay` (s) later.
     pub(super) fn moves(&self, delay: f64) -> impl Iterator<Item = Move> {
         let begun = self.waited as f64 * self.period + delay;
-        self.program.moves().map(move |made| Move {
-            start: made.start + begun,
-            end: made.end + begun,
-            cruise: (made.cruise.0 + begun, made.cruise.1),
-            ..made
-        })
+        self.program.moves().map(move |made| made.later(begun))
     }
 }

@@ -3,6 +3,7 @@
 //! A program of moves is known beforehand and is asked at every tick. Function blocks give a request per cycle of theirs; a path
 //! between two cycles is the quintic polynomial through both, and before the second one is there the first one goes on.
 use super::reference::between;
+use super::tables::Tables;
 use super::targets::Targets;
 use crate::program::Program;
 use servobench_base::{Request, RequestKind, Setpoint};
@@ -30,6 +31,8 @@ pub(super) enum Course {
     Moves(Box<Program>),
     /// That of a drive which is told targets.
     Targets(Targets),
+    /// That of a drive which follows points.
+    Tables(Box<Tables>),
 }
 
 /// A program under way.
@@ -63,6 +66,11 @@ impl Requests {
     /// Those of a program whose drive is told `targets`.
     pub(super) const fn of_targets(targets: Targets, period: f64, delay: f64) -> Self {
         Self::Program { course: Course::Targets(targets), period, delay, running: None }
+    }
+
+    /// Those of a program whose drive follows `tables`.
+    pub(super) fn of_tables(tables: Tables, period: f64, delay: f64) -> Self {
+        Self::Program { course: Course::Tables(Box::new(tables)), period, delay, running: None }
     }
 
     /// Those of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
@@ -100,21 +108,26 @@ impl Requests {
                     return Request::Stand;
                 }
                 let passed = passed.max(0.0);
-                let program = match course {
-                    Course::Moves(program) => program,
-                    Course::Targets(targets) => return targets.at(passed),
-                };
-                let setpoint = program.at(passed);
-                match program.request_at(passed, setpoint) {
-                    (_, RequestKind::Nothing | RequestKind::Effort) => Request::Nothing,
-                    (_, RequestKind::Stand) => Request::Stand,
-                    (setpoint, RequestKind::Rest) => Request::Rest(setpoint.x),
-                    (setpoint, RequestKind::Follow) => Request::Follow(setpoint),
-                    (setpoint, RequestKind::Velocity) => Request::Velocity(setpoint.v),
+                match course {
+                    Course::Moves(program) => of_moves(program, passed),
+                    Course::Targets(targets) => targets.at(passed),
+                    Course::Tables(tables) => tables.at(passed),
                 }
             }
             Self::Cycles(cycles) => cycles.at(t),
         }
+    }
+}
+
+/// The request of a program `passed` seconds after its beginning.
+pub(super) fn of_moves(program: &mut Program, passed: f64) -> Request {
+    let setpoint = program.at(passed);
+    match program.request_at(passed, setpoint) {
+        (_, RequestKind::Nothing | RequestKind::Effort) => Request::Nothing,
+        (_, RequestKind::Stand) => Request::Stand,
+        (setpoint, RequestKind::Rest) => Request::Rest(setpoint.x),
+        (setpoint, RequestKind::Follow) => Request::Follow(setpoint),
+        (setpoint, RequestKind::Velocity) => Request::Velocity(setpoint.v),
     }
 }
 

@@ -1,0 +1,52 @@
+//! The way of a drive that follows points: a program whose moves begin when their points wait in the buffer of the drive.
+use super::requests::of_moves;
+use crate::program::Program;
+use servobench_base::Request;
+
+/// A program, each of whose moves begins later.
+#[derive(Debug, Clone)]
+pub(super) struct Tables {
+    program: Program,
+    moves: Vec<Later>,
+    /// The move that was begun last, if one was.
+    now: Option<usize>,
+}
+
+/// A move of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Later {
+    /// When the drive begins it (s), and by how much later than the program that is.
+    begun: f64,
+    lag: f64,
+    /// When it ends, by the program, and where.
+    end: f64,
+    target: f64,
+}
+
+impl Tables {
+    /// The moves of `program`, which the drive begins by `lags` (s) later than it.
+    pub(super) fn of(program: &Program, lags: &[f64]) -> Self {
+        let moves = program.plans().zip(lags).map(|((start, from, plan), lag)| Later {
+            begun: start + lag,
+            lag: *lag,
+            end: start + plan.duration(),
+            target: from + plan.end().x,
+        });
+        Self { program: program.clone(), moves: moves.collect(), now: None }
+    }
+
+    /// The request `passed` seconds after the beginning of the program, which does not go back.
+    pub(super) fn at(&mut self, passed: f64) -> Request {
+        let next = self.now.map_or(0, |now| now + 1);
+        if self.moves.get(next).is_some_and(|later| later.begun <= passed) {
+            self.now = Some(next);
+        }
+        let Some(now) = self.now else { return Request::Stand };
+        let Later { lag, end, target, .. } = self.moves[now];
+        // The next move of the program may have begun, but not that of the drive.
+        if passed - lag >= end && now + 1 < self.moves.len() {
+            return Request::Rest(target);
+        }
+        of_moves(&mut self.program, passed - lag)
+    }
+}
