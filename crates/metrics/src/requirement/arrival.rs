@@ -166,6 +166,29 @@ mod tests {
         assert_eq!(found(&ringing(3e-3), &rules).len(), 1);
     }
 
+    /// A slow swing that is over in the last quarter of the rest, and one whose mean is at the target while it grows out of all bounds.
+    #[test]
+    fn the_last_cycles_say_where_a_load_rests() {
+        let off = |x: fn(f64) -> f64| one_move(move |t| 0.2 + if t < 0.5 { 0.0 } else { x(t - 0.5) });
+        let over = off(|t| 0.02 * (1.0 + (TAU * 10.0 * t).cos()) * (1.0 - t / 0.35).max(0.0).powi(3));
+        assert_eq!(found(&over, &rules()), [""; 0]);
+        let rules = Rules { window: Some(5e-3), ..rules() };
+        let grows = off(|t| 1e-5 * (TAU * 10.0 * t).sin() * (20.0 * t).exp());
+        assert_eq!(found(&grows, &rules).len(), 1);
+        assert_eq!(found(&off(|t| 0.02 * (TAU * 10.0 * t).sin()), &rules), [""; 0], "it swings about the target");
+    }
+
+    /// Frames are lost in a move, and the task has come to its target when they arrive again: shortly before the end, or long.
+    #[test]
+    fn a_rest_behind_a_silence_is_judged_at_the_end() {
+        for (heard, place, is_found) in [(0.99, 0.15, true), (0.99, 0.2, false), (0.7, 0.15, true), (0.7, 0.2, false)] {
+            let mut recording = one_move(move |t| if t < 0.3 { 0.4 * t } else { place });
+            recording.signals[0].changes =
+                vec![(0.0, "follow".into()), (0.3, "nothing".into()), (heard, "rest".into())];
+            assert_eq!(found(&recording, &rules()).len(), usize::from(is_found), "{heard} {place}");
+        }
+    }
+
     #[test]
     fn a_rest_in_the_middle_is_judged_as_the_last_one_is() {
         let stop = |pause: f64| {

@@ -2,7 +2,9 @@
 //! the loop's own.
 use super::Rules;
 use super::excitation::disturbed;
-use super::phases::request_phases;
+use super::phases::{between_turning_points, request_phases};
+use super::task::OF_FARTHEST;
+use crate::extremes::range_of;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
 use servobench_trace::Recording;
@@ -28,29 +30,28 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
     let (Some(velocities), Some(positions)) = channels else { return Vec::new() };
     let rounding = ROUNDING * velocities.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
     let disturbed = disturbed(recording, rules);
-    let (mut all, mut stood_at, mut after) = (Vec::new(), None, None);
-    let (mut moves, mut last_velocity) = (false, 0.0_f64);
+    let (mut all, mut stood, mut after) = (Vec::new(), None, None);
+    let mut moves = false;
     for phase in request_phases(recording) {
         if matches!(phase.kind, RequestKind::Nothing | RequestKind::Effort) {
-            (stood_at, after, moves) = (None, None, false);
+            (stood, after, moves) = (None, None, false);
             continue;
         }
         let mut start = phase.rows.start;
         while start < phase.rows.end {
-            let (v, x) = (velocities[start], positions[start]);
+            let v = velocities[start];
             let same =
                 velocities[start..phase.rows.end].iter().take_while(|next| (**next - v).abs() <= rounding).count();
             // What is not a number is not even the same as itself.
             let end = start + same.max(1);
             let stands = v.abs() <= rounding;
+            let from = *stood.get_or_insert(start);
             if stands && std::mem::take(&mut moves) {
-                after = stood_at.map(|from: f64| (x - from).abs());
+                after = Some(last_way(positions, from..start + 1));
             }
             moves |= !stands;
-            let turns = last_velocity * v < 0.0;
-            last_velocity = v;
-            if stands || turns || stood_at.is_none() {
-                stood_at = Some(x);
+            if stands {
+                stood = Some(end - 1);
             }
             if stands || phase.kind == RequestKind::Velocity {
                 let velocity = if stands { 0.0 } else { v };
@@ -60,6 +61,13 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
         }
     }
     all
+}
+
+/// How far the last way of a motion leads in `rows`, at the ends of which it stands. A turn so small that an interpolation makes it is none.
+fn last_way(positions: &[f64], rows: Range<usize>) -> f64 {
+    let (low, high) = range_of(&positions[rows.clone()]);
+    let ways = between_turning_points(positions, &rows, OF_FARTHEST * (high - low));
+    ways.last().map_or(0.0, |way| (positions[rows.end - 1] - positions[way.start]).abs())
 }
 
 /// What is left of `rows` without `others`, which are in order and apart from each other.
@@ -119,6 +127,19 @@ mod tests {
         let found = calm(&recording, &rules());
         assert_eq!(found.len(), 1);
         assert!((found[0].after.unwrap() - 0.2).abs() < 1e-12, "{found:?}");
+    }
+
+    /// Function blocks ask once per cycle, and the path between two of their requests overshoots by nanometres.
+    #[test]
+    fn a_motion_that_ends_with_a_ripple_is_as_long_as_its_way() {
+        let x = |t: f64| if t < 0.2 { t } else { 0.2 + 1e-5 * ((0.22 - t).max(0.0) * 314.0).sin() };
+        let recording = Build::new(1000, 1000)
+            .channel(Signal::RequestVelocity, "m/s", |t| (x(t + 1e-3) - x(t)) / 1e-3)
+            .channel(Signal::RequestPosition, "m", x)
+            .requests(&[(0.0, "follow"), (0.22, "rest")])
+            .finish();
+        let found = calm(&recording, &rules());
+        assert!((found.last().unwrap().after.unwrap() - 0.2).abs() < 2e-5, "{found:?}");
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! From the end of a motion to the next one, the motor must not go on to swing by more than twice the window: its decay is at least
 //! [`SHARE`] of that of the pole that oscillates and fades last, or of the slowest one where none does. Where poles are not known, the
-//! last quarter of the time must not swing by [`SAME`] of the quarter before. A load that a loop with known poles lets ring dies out as its damping says: that is for limits.
+//! last quarter of the time from the first swing on must not swing by [`SAME`] of the quarter before. A load that a loop with known poles
+//! lets ring dies out as its damping says: that is for limits.
 use super::Rules;
 use super::arrival::arrival_window;
 use super::calm::{Calm, calm};
@@ -36,7 +37,7 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<Str
 
 fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'_>) -> Option<String> {
     let rows = rest.rows.clone();
-    let window = rules.window.unwrap_or_else(|| arrival_window(rest.after.unwrap_or_default(), rules.increment));
+    let window = rules.window.unwrap_or_else(|| arrival_window(rest.after.unwrap_or_default(), rules.resolution()));
     let least = (2.0 * window).max(rules.unseen());
     let all = swings(&position[rows.clone()], rows.start, least, 0.0);
     let period = recording.rate.period();
@@ -51,7 +52,8 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
         }
         (earlier, later)
     } else {
-        let quarter = rows.len() / 4;
+        // What begins to swing in the middle of a rest is not compared with what was before.
+        let quarter = (rows.end - all.first()?.end) / 4;
         let (before, from) = (rows.end - 2 * quarter, rows.end - quarter);
         let third = all.iter().position(|swing| swing.end >= before)?;
         let fourth = all.iter().position(|swing| swing.end >= from)?;
@@ -152,6 +154,10 @@ mod tests {
             let recording = moved(|t| 1e-3 * (-decay * t).exp() * (TAU * 20.0 * t).sin());
             let found = broken(&recording, &unknown()).unwrap();
             assert_eq!(!found.is_empty(), rings, "{decay}: {found:?}");
+        }
+        for late in [2.0, 3.0] {
+            let recording = moved(|t| if t < late { 0.0 } else { 1e-3 * (TAU * 30.0 * t).sin() });
+            assert_eq!(broken(&recording, &unknown()).unwrap().len(), 1, "it begins {late} s after the motion");
         }
         let slow = moved(|t| 1e-3 * (TAU * 3.0 * t).sin());
         assert_eq!(broken(&slow, &unknown()).unwrap(), [""; 0], "less than three periods in a quarter");

@@ -1,4 +1,5 @@
 //! `stands`: before its first motion the axis stands where it was.
+use super::excitation::disturbed;
 use super::rules::Driven;
 use super::task::Task;
 use servobench_base::RequestKind;
@@ -10,8 +11,6 @@ const TIMES: f64 = 3.0;
 const STICK: f64 = 1.5;
 /// Resolutions within which it stands.
 const RESOLUTIONS: f64 = 10.0;
-/// The least step of a disturbance that begins the time again, of the largest disturbance.
-const STEP: f64 = 0.01;
 /// Times the deviation from which it starts, and the way in which the loop brakes a load that moves at the beginning.
 const INITIAL: f64 = 2.0;
 /// The least of the explained deflection that is left at any time: what integrators of increments and friction never take away.
@@ -38,24 +37,28 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let of_pole = rules.poles.and_then(|poles| poles.slowest_real).unwrap_or(servo.gain / 2.0);
     let sigma = rules.oscillation().map_or(of_pole, |slowest| slowest.decay.min(of_pole)).max(0.0);
     let kept = (-sigma * rows.h).exp();
-    let disturbed = |row: usize| {
+    let efforts = |row: usize| {
         let at = |signal| task.recording.channel(signal).map_or(0.0, |values| values[row]);
         (at(Signal::DisturbanceMotor), at(Signal::DisturbanceLoad))
     };
     let window = rules.window.unwrap_or(0.0).max(RESOLUTIONS * rules.resolution());
+    // What an FMU does because the load moves does not explain that it does.
+    let steps = disturbed(task.recording, rules);
     let mut reasons = Vec::new();
     for phase in standing {
         let place = rows.request[phase.rows.start];
         let is_told = rows.request[phase.rows.clone()].iter().all(|x| x.to_bits() == place.to_bits());
         let place = if is_told { place } else { rows.load[phase.rows.start] };
         let braking = speed(&rows.load[phase.rows.clone()], rows.h) / servo.slowest_rate();
-        let mut last = disturbed(phase.rows.start);
+        let mut last = efforts(phase.rows.start);
+        let mut steps = steps.iter().skip_while(|step| step.end <= phase.rows.start).peekable();
         let (mut time, mut decay) = (0.0, 1.0);
         for row in phase.rows.clone() {
-            let (on_motor, on_load) = if task.disturbance > 0.0 { disturbed(row) } else { (0.0, 0.0) };
+            let (on_motor, on_load) = if task.disturbance > 0.0 { efforts(row) } else { (0.0, 0.0) };
             let effort = |(motor, load): (f64, f64)| motor.abs() + rules.transmission.abs() * load.abs();
-            if effort((on_motor - last.0, on_load - last.1)) > STEP * task.disturbance {
+            if steps.peek().is_some_and(|step| step.start <= row) {
                 (last, time, decay) = ((on_motor, on_load), 0.0, 1.0);
+                steps.next_if(|step| step.end <= row + 1);
             }
             let elastic = deflection.elastic + deflection.elastic_per_effort * on_load.abs();
             let explained = TIMES * (deflection.explained(effort(last).max(effort((on_motor, on_load)))) + elastic);
@@ -96,6 +99,7 @@ fn speed(positions: &[f64], h: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::requirement::rules::Disturbance;
     use crate::requirement::tests::rules;
     use crate::requirement::{Deflection, Poles, Rules, Servo};
     use crate::synthetic::Build;
@@ -122,7 +126,27 @@ mod tests {
             .channel(Signal::DisturbanceLoad, "N", |t| if t < 1.0 { 0.0 } else { force })
             .requests(&[(0.0, "stand")])
             .finish();
-        broken(&Task::of(&recording, rules, &[])).unwrap().len()
+        let step = Disturbance { start: 1.0, end: f64::INFINITY, effort: force, frequency: None };
+        let rules = Rules { disturbances: if force == 0.0 { Vec::new() } else { vec![step] }, ..rules.clone() };
+        broken(&Task::of(&recording, &rules, &[])).unwrap().len()
+    }
+
+    /// The force of an FMU is in the same channel.
+    #[test]
+    fn a_force_that_nobody_orders_does_not_explain_that_the_load_moves() {
+        let deflection = Deflection { per_effort: 1e-5, ..Deflection::default() };
+        let poles = Some(Poles { oscillating: None, slowest_real: Some(20.0) });
+        let rules = Rules { servo: Some(SERVO), deflection, poles, window: Some(1e-5), ..rules() };
+        let load = |t: f64| if t < 1.0 { 0.0 } else { 2.9e-3 * (-20.0 * (t - 1.0)).exp() };
+        assert_eq!(found(&rules, 100.0, load), 0);
+        let recording = Build::new(1000, 2001)
+            .channel(Signal::RequestPosition, "m", |_| 0.0)
+            .channel(Signal::RequestVelocity, "m/s", |_| 0.0)
+            .channel(Signal::LoadPosition, "m", load)
+            .channel(Signal::DisturbanceLoad, "N", |t| if t < 1.0 { 0.0 } else { 100.0 })
+            .requests(&[(0.0, "stand")])
+            .finish();
+        assert_eq!(broken(&Task::of(&recording, &rules, &[])).unwrap().len(), 1);
     }
 
     /// Homing ends while the load still runs to where its drive has stopped: 5 mm/s at 50 1/s are 0.1 mm.

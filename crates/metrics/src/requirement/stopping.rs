@@ -19,6 +19,10 @@ const TIMES: usize = 2;
 const MEAN: f64 = 0.02;
 /// Least share of its way after the stop by which a load swings.
 const OF_SWING: f64 = 0.05;
+/// The motor swings by at most so much of it,
+const OF_LOAD: f64 = 0.5;
+/// or what is left of the first swing is at most that.
+const DIED_OUT: f64 = 0.5;
 /// Resolutions that an axis at rest moves in it.
 const RESOLUTIONS: f64 = 4.0;
 
@@ -30,17 +34,22 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     }
     let moved =
         |phase: &RequestPhase| matches!(phase.kind, RequestKind::Follow | RequestKind::Velocity | RequestKind::Effort);
-    let mut stops =
-        task.phases.iter().skip_while(|phase| !moved(phase)).filter(|phase| phase.kind == RequestKind::Stand);
-    let mut reasons = Vec::new();
-    let first = stops.next()?;
-    for stop in std::iter::once(first).chain(stops).filter(|stop| !task.is_excused(&stop.rows)) {
-        reasons.extend(still_moves(task, rows, stop));
+    let mut moved_to = None;
+    let (mut is_asked, mut reasons) = (false, Vec::new());
+    for phase in &task.phases {
+        if moved(phase) {
+            moved_to = Some(phase.rows.end);
+        } else if let Some(moved_to) = moved_to.filter(|_| phase.kind == RequestKind::Stand) {
+            is_asked = true;
+            if !task.is_excused(&phase.rows) {
+                reasons.extend(still_moves(task, rows, phase, moved_to));
+            }
+        }
     }
-    Some(reasons)
+    is_asked.then_some(reasons)
 }
 
-/// Rows of `stop` until the set-point of the drive stands.
+/// Rows of `stop` until the set-point of the drive stands; in cyclic velocity the master's loop moves it as long as the motor swings.
 fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
     let setpoint = task.recording.channel(Signal::SetpointPosition).map(|values| &values[stop.clone()]);
     let Some(setpoint) = setpoint else { return 0 };
@@ -49,12 +58,13 @@ fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
     setpoint.windows(2).rposition(|pair| (pair[1] - pair[0]).abs() > least).map_or(0, |last| last + 1)
 }
 
-fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<String> {
+/// The axis that was asked to move up to the row `moved_to` still moves after a `stop`, right behind it or behind a silence of the task.
+fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase, moved_to: usize) -> Option<String> {
     let row = |time: f64| task.recording.index_at(time);
     let mean = task.rules.oscillation().map_or(MEAN, |slowest| slowest.frequency.recip().max(MEAN));
     let span = row(mean).max(1);
     let (start, end) = (stop.rows.start, stop.rows.end);
-    let requested = rows.request_velocity[start.saturating_sub(1)];
+    let requested = rows.request_velocity[moved_to.saturating_sub(1)];
     let planned = planned(task, &stop.rows, rows.h);
     let settling = task.rules.servo.map_or(MEAN, |servo| {
         // With the velocity fed forward the loop of the position has little to do.
@@ -66,16 +76,16 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     if due >= end && !is_last {
         return None;
     }
-    let before = rows.load_velocity(start.saturating_sub(span), start).abs().max(requested.abs());
+    let before = rows.load_velocity(moved_to.saturating_sub(span), moved_to).abs().max(requested.abs());
     let largest = most_of([rows.request_velocity], |[v]| v.abs());
     let resolution = RESOLUTIONS * task.rules.resolution() / (span as f64 * rows.h);
     let bound = (LEFT * before).max(OF_LARGEST * largest).max(resolution);
     let unit = format!("{}/s", task.recording.about.axis_unit);
-    let cycle = last_cycle(rows, &((start + planned).min(end - 1)..end), RESOLUTIONS * task.rules.resolution());
+    let cycles = last_cycles(task, rows, &stop.rows, planned);
     let at = |last: usize| {
         let velocity = rows.load_velocity(last.saturating_sub(span).max(start), last);
-        let of_cycle = cycle.as_ref().map(|cycle| rows.load_velocity(cycle.start, cycle.end));
-        (last, of_cycle.filter(|mean| mean.abs() < velocity.abs()).unwrap_or(velocity))
+        let of_cycles = cycles.as_ref().map(|cycles| rows.load_velocity(cycles.start, cycles.end));
+        (last, of_cycles.filter(|mean| mean.abs() < velocity.abs()).unwrap_or(velocity))
     };
     let (last, velocity) = [due.min(end - 1), end - 1]
         .map(at)
@@ -92,13 +102,32 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase) -> Option<
     ))
 }
 
-/// The last whole cycle of a load that swings in the time `after` a stop, by more than `least`, up to its end.
-fn last_cycle(rows: &Rows<'_>, after: &Range<usize>, least: f64) -> Option<Range<usize>> {
-    let (low, high) = range_of(&rows.load[after.clone()]);
-    let turns = between_turning_points(rows.load, after, least.max(OF_SWING * (high - low)));
-    let [.., _, first, second, last] = turns.as_slice() else { return None };
-    // What comes after the last turn is shorter than half of a cycle.
-    (last.len() <= first.len().max(second.len())).then_some(first.start..last.start)
+/// The last whole cycles of a load that rings in the time `after` a stop, up to its end: the last one where the swings die out, otherwise
+/// those of the second half. How far it swings says that half: the first one may have the way that it still went, in `planned` rows.
+///
+/// A load rings where it swings farther than its motor, or where the swings of both die out, or are small beside the way of the stop; a
+/// motor that goes on to swing has not stopped.
+fn last_cycles(task: &Task<'_>, rows: &Rows<'_>, after: &Range<usize>, planned: usize) -> Option<Range<usize>> {
+    let size = |values: &[f64], rows: Range<usize>| {
+        let (low, high) = range_of(&values[rows]);
+        high - low
+    };
+    let middle = usize::midpoint(after.start, after.end);
+    let least = (RESOLUTIONS * task.rules.resolution()).max(OF_SWING * size(rows.load, middle..after.end));
+    let turns = between_turning_points(rows.load, after, least);
+    let [_, earliest, .., first, second, last] = turns.as_slice() else { return None };
+    // What comes after the last turn is half of a cycle, and of the next what it takes to be one.
+    if 2 * last.len() > 3 * first.len().max(second.len()) {
+        return None;
+    }
+    let (cycle, of_load) = (first.start..last.start, size(rows.load, first.start..last.start));
+    let is_still = |motor: &[f64]| size(motor, cycle.clone()) <= OF_LOAD * of_load;
+    let dies_out = size(rows.load, second.clone()) <= DIED_OUT * size(rows.load, earliest.clone());
+    let is_small = of_load <= OF_SWING * size(rows.load, after.start..(after.start + planned + 1).min(after.end));
+    let rings = dies_out || is_small || task.recording.channel(Signal::MotorPosition).is_none_or(is_still);
+    let earlier = turns.iter().rev().step_by(2).map(|piece| piece.start).take_while(|turn| *turn >= middle).last();
+    let from = earlier.filter(|from| !dies_out && *from < cycle.start).unwrap_or(cycle.start);
+    rings.then_some(from..cycle.end)
 }
 
 #[cfg(test)]
@@ -125,25 +154,45 @@ mod tests {
         broken(&Task::of(&recording, &rules(), &[])).unwrap()
     }
 
-    /// A load on a soft coupling swings about where it stopped, at 4 Hz; one that drifts by 3 % of the velocity besides has not stopped.
+    /// A load on a soft coupling swings about where it stopped, at 6 Hz; one that drifts by 3 % of the velocity besides has not stopped.
     #[test]
     fn a_load_that_swings_has_stopped() {
-        let found = |drift: f64| {
-            let load = move |t: f64| {
-                let since = (t - 1.0).max(0.0);
-                t.min(1.0) + drift * since + 0.02 * (core::f64::consts::TAU * 4.0 * since).sin() * (-since).exp()
-            };
+        let found = |drift: f64, decay: f64, of_motor: f64| {
+            let swing = move |since: f64| 0.02 * (core::f64::consts::TAU * 6.0 * since).sin() * (-decay * since).exp();
+            let course = move |t: f64| t.min(1.0) + drift * (t - 1.0).max(0.0);
+            let load = move |t: f64| course(t) + swing((t - 1.0).max(0.0));
             let recording = Build::new(1000, 2001)
                 .channel(Signal::RequestPosition, "m", |t| t.min(1.0))
                 .channel(Signal::RequestVelocity, "m/s", |t| if t < 1.0 { 1.0 } else { 0.0 })
                 .channel(Signal::SetpointPosition, "m", |t| t.min(1.0))
                 .channel(Signal::LoadPosition, "m", load)
+                .channel(Signal::MotorPosition, "m", move |t| course(t) + of_motor * swing((t - 1.0).max(0.0)))
                 .requests(&[(0.0, "velocity"), (1.0, "stand")])
                 .finish();
             broken(&Task::of(&recording, &rules(), &[])).unwrap()
         };
-        assert_eq!(found(0.0), [""; 0]);
-        assert_eq!(found(0.03).len(), 1);
+        assert_eq!(found(0.0, 0.5, 0.1), [""; 0]);
+        assert_eq!(found(0.03, 0.5, 0.1).len(), 1);
+        assert_eq!(found(0.0, 0.5, 1.0).len(), 1, "the motor swings as well, and goes on to");
+        assert_eq!(found(0.0, 1.5, 1.0), [""; 0], "both die out");
+    }
+
+    /// One on a softer coupling still goes 0.2 m, while its swings die out.
+    #[test]
+    fn a_load_that_swings_less_than_it_went_on_has_stopped() {
+        let load = |t: f64| {
+            let since = (t - 1.0).max(0.0);
+            let swing = 0.01 * (core::f64::consts::TAU * 11.0 * since).sin() * (-1.5 * since).exp();
+            t.min(1.0) + 0.2 * (1.0 - (-20.0 * since).exp()) + swing
+        };
+        let recording = Build::new(1000, 2001)
+            .channel(Signal::RequestPosition, "m", |t| t.min(1.0))
+            .channel(Signal::RequestVelocity, "m/s", |t| if t < 1.0 { 1.0 } else { 0.0 })
+            .channel(Signal::SetpointPosition, "m", |t| t.min(1.0))
+            .channel(Signal::LoadPosition, "m", load)
+            .requests(&[(0.0, "velocity"), (1.0, "stand")])
+            .finish();
+        assert_eq!(broken(&Task::of(&recording, &rules(), &[])).unwrap(), [""; 0]);
     }
 
     #[test]

@@ -15,7 +15,7 @@ use std::ops::Range;
 /// Turns of the request closer than so many increments, or units of the bus, are none.
 const TURNS: f64 = 20.0;
 /// So are those closer than this share of the farthest way: an interpolation overshoots by less.
-const OF_FARTHEST: f64 = 1e-3;
+pub(super) const OF_FARTHEST: f64 = 1e-3;
 /// Differences of positions say nothing about so small a part of them.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// Shortest rest and shortest hold that is judged (s).
@@ -28,6 +28,11 @@ const PERIODS: f64 = 2.0;
 const SEEN_WITHIN: f64 = 0.02;
 /// Increments, as which swings of the load do not count, and the same as a share of the window.
 const SWING: (f64, f64) = (4.0, 1e-3);
+/// Over so many cycles at the end of a rest the load is averaged, where the first one in its second half is so many times the last one.
+const CYCLES: usize = 2;
+const DIES_OUT: f64 = 2.0;
+/// What goes so many times as far as the last swing does not swing any more.
+const GROWS: f64 = 2.0;
 /// Least rows of a hold, and how equal its velocities are.
 const HOLD: (usize, f64) = (20, 1e-9);
 
@@ -153,10 +158,17 @@ impl<'a> Task<'a> {
         let mut way: Option<Range<usize>> = None;
         let mut left: Option<usize> = None;
         let mut is_interrupted = false;
+        // Where the motion began that a silence has broken off.
+        let mut broken_off: Option<usize> = None;
         let least = self.least_rest();
         let least_way = self.least_way(rows);
         for (k, phase) in self.phases.iter().enumerate() {
             let before = &self.phases[k.saturating_sub(2)..k];
+            if phase.kind == RequestKind::Nothing {
+                broken_off = way.as_ref().map(|way| left.unwrap_or(way.start));
+            } else if phase.kind != RequestKind::Rest {
+                broken_off = None;
+            }
             match phase.kind {
                 RequestKind::Follow | RequestKind::Velocity => left = left.or(Some(phase.rows.start)),
                 RequestKind::Stand | RequestKind::Effort | RequestKind::Nothing => left = None,
@@ -176,6 +188,11 @@ impl<'a> Task<'a> {
                         let from = left.take().unwrap_or(way.start);
                         let distance = span(&rows.request[from..way.end]);
                         Self::ways(rows, way, least_way, std::mem::take(&mut is_interrupted), &mut pieces);
+                        let piece = Piece::Rest { way: distance, is_short };
+                        pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
+                    } else if let Some(from) = broken_off.take() {
+                        // The task has gone on to its target meanwhile.
+                        let distance = (rows.request[phase.rows.start] - rows.request[from]).abs();
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
                     }
@@ -224,17 +241,27 @@ impl<'a> Task<'a> {
         let pieces = between_turning_points(rows.load, rest, hysteresis.max(ROUNDING * rows.load[rest.start].abs()));
         let turns: Vec<usize> = pieces.iter().skip(1).map(|piece| piece.start).collect();
         let middle = rest.start + rest.len() / 2;
-        // One turn is the end of a creeping approach.
-        let swings = turns.len() > 1 && turns[turns.len() - 2] >= middle;
+        // One turn is the end of a creeping approach. What still swings at the end turns again after half a cycle, and a little later that
+        // is seen; it goes no farther than before.
+        let goes_on = match turns[..] {
+            [.., before, last] => {
+                let (swing, rest_of_it) = (span(&rows.load[before..last]), span(&rows.load[last..rest.end]));
+                last >= middle && 2 * (rest.end - last) <= 3 * (last - before) && rest_of_it <= GROWS * swing
+            }
+            _ => false,
+        };
         if let [.., one, _, last] = turns[..]
-            && swings
-            && 2 * (last - one) >= rest.end - last
+            && goes_on
         {
-            let cycles = turns.iter().rev().step_by(2).take_while(|turn| **turn >= middle).last();
+            // Where they die out the last ones: those before still come nearer.
+            let half: Vec<usize> = turns.iter().rev().step_by(2).copied().take_while(|turn| *turn >= middle).collect();
+            let sizes = || half.windows(2).map(|cycle| span(&rows.load[cycle[1]..cycle[0]]));
+            let dies_out = sizes().next_back() > sizes().next().map(|size| DIES_OUT * size);
+            let cycles = if dies_out { half.get(CYCLES).or(half.last()) } else { half.last() };
             let from = cycles.copied().filter(|from| *from < last).unwrap_or(one);
             return from..last;
         }
-        if swings { rest.clone() } else { rest.end - rest.len().div_ceil(REST)..rest.end }
+        if goes_on { rest.clone() } else { rest.end - rest.len().div_ceil(REST)..rest.end }
     }
 }
 
