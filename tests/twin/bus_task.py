@@ -1,6 +1,6 @@
 """Tasks over a fieldbus: programs of moves in the modes csp, csv, pp, ip and pv, and function blocks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, log10, pi
 from typing import Any
 
@@ -64,6 +64,9 @@ class Calls:
     phases: list[Phase]
     length: float = 0.1
     at: float = 0.0
+    last: float = 0.0
+    """Distance of the last move."""
+    last_done: str = ""
 
     def call(self, block: str, name: str, start: Any = None, **inputs: Any) -> str:
         self.calls.append({"block": block, "name": name} | ({} if start is None else {"start": start}) | inputs)
@@ -79,6 +82,11 @@ class Calls:
         inputs = {"position": quantity(target, self.axis.unit)} if block == "MC_MoveAbsolute" else {"distance": quantity(distance, self.axis.unit)}
         self.call(block, name, start, **inputs)
         self.phases.append(Phase("way", f"{name}.Active", f"{name}.Done", target, abs(distance)))
+        if start == self.last_done and (distance > 0) == (self.last > 0):
+            # A way ends where it turns, or comes to a rest.
+            whole = self.phases[-3].size + abs(distance)
+            self.phases[-3], self.phases[-1] = (replace(self.phases[at], size=whole) for at in (-3, -1))
+        self.last, self.last_done = distance, f"{name}.Done"
         self.phases.append(Phase("rest", f"{name}.Done", inf, target, abs(distance)))
         self.length += self.pace.bounds.duration(distance) + 0.02
         self.at = target

@@ -58,7 +58,8 @@ class Tolerance:
     times the spread of two sisters. Besides:
 
     - A rest without a given window has the default of the product, a thousandth of the way.
-    - A window is at most 5 % of the way, since a file that looks away (a window as wide as the way) must not decide what is bad.
+    - A window is at most 5 % of the way, since a file that looks away (a window as wide as the way) must not decide what is bad. Where the
+      axis only stands there is no way, and the window is all that the file says.
     - Standing has no distance: 5e-5 of the span of the task where no window is given (with 1 % of it 13 of 600 reds that are right were
       false).
     - Loops without an integral are displaced by friction and bias, healthy or not, and by more where a sabotage makes more of these.
@@ -88,7 +89,7 @@ class Tolerance:
                 window = 1e-3 * phase.size if self.window is None else self.window
                 return max(min(window, 0.05 * phase.size), least) + self.droop
             case "stand":
-                return max(5e-5 * self.span if self.window is None else min(self.window, 0.05 * self.span), least) + self.droop
+                return max(5e-5 * self.span if self.window is None else self.window, least) + self.droop
             case "way":
                 return max(0.01 * phase.size, least)
             case _:
@@ -119,9 +120,28 @@ class Settling:
 def swept(phase: Phase, healthy: Run, run: Run, settling: Settling) -> float:
     """How far the load gets about before a stand has come to rest, which D leaves out."""
     begin, end = healthy.time(phase.begin), healthy.time(phase.end)
-    shift = run.start - healthy.start
+    shift = run.rises(phase.begin) - begin if isinstance(phase.begin, str) else run.start - healthy.start
     early = (run.t >= begin + shift) & (run.t <= end + shift) & ~settling.is_settled(run.t, begin + shift)
     return float(numpy.ptp(run.load[early])) if early.any() else 0.0
+
+
+def stops_late(phase: Phase, healthy: Run, run: Run) -> bool:
+    """Whether the load has neither stopped nor swings about where it does when twice the planned time has passed, as the healthy one has:
+    D, which is the speed at the end, does not see it."""
+    assert isinstance(phase.begin, str)
+    mean = 0.01
+
+    def still_moves(one: Run) -> bool:
+        done = one.rises(phase.begin)
+        due = done + planned
+        before = (one.t >= done - planned) & (one.t <= due)
+        if not due < one.t[-1] or before.sum() < FEWEST or all(reversals(one.load[before], 0.05 * float(numpy.ptp(one.load[before])))):
+            return False
+        way = numpy.interp(due + mean, one.t, one.load) - numpy.interp(due - mean, one.t, one.load)
+        return abs(float(way)) / (2 * mean) > 0.01 * abs(phase.target)
+
+    planned = healthy.rises(phase.begin) - healthy.rises(phase.begin.replace("Done", "Busy"))
+    return still_moves(run) and not still_moves(healthy)
 
 
 def deviations(phases: list[Phase], healthy: Run, run: Run, settling: Settling, tolerance: Tolerance) -> list[float]:
@@ -220,10 +240,10 @@ ALTERNATIONS = 9
 """So many from one limit to the other, one after the other, are a cycle."""
 
 
-def cycles(run: Run, ratio: float, limits: dict[str, float], floor: float) -> bool:
+def cycles(run: Run, limits: dict[str, float], floor: float) -> bool:
     """Whether the motor goes on to swing about its reference between two limits: in nine swings that follow each other, larger than `floor`
     and equal within a third, an effort or a voltage comes to within a tenth of its two limits in turn."""
-    error = ratio * run.values["motor.position"] - run.values["reference"]
+    error = run.values["motor.position"] - run.values["reference"]
     peaks, valleys = reversals(error, floor)
     ends = sorted([*peaks, *valleys])
     sizes = numpy.abs(numpy.diff(error[ends]))
@@ -270,7 +290,7 @@ def harms(run: Run, homed: str | None, stops: tuple[float, float] | None, hottes
 
 
 def swing(x: numpy.ndarray) -> float:
-    """Peak to peak of a swing that goes on: the last quarter has at least two cycles, as large as those of the quarter before; else 0."""
+    """Peak to peak of a swing that goes on: the last quarter has at least two cycles, as large as those of the quarter before (less is a weak damping); else 0."""
     quarter = len(x) // 4
     before, last = x[-2 * quarter : -quarter], x[-quarter:]
     if quarter < FEWEST:
@@ -279,7 +299,7 @@ def swing(x: numpy.ndarray) -> float:
     above = last > middle
     cycles = int((above[1:] & ~above[:-1]).sum())
     size = float(last.max() - last.min())
-    return size if cycles >= 2 and size >= 0.9 * float(before.max() - before.min()) else 0.0
+    return size if cycles >= 2 and size >= 0.98 * float(before.max() - before.min()) else 0.0
 
 
 def goes_on(t: numpy.ndarray, x: numpy.ndarray, since: float, floor: float) -> bool:

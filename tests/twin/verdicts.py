@@ -27,7 +27,7 @@ import fmu
 from bus_task import ENABLED
 from linear import is_stable
 from machine import Axis
-from oracle import Harm, Judgement, Run, cycles, deviations, goes_on, harms, judgement, silence, swept
+from oracle import Harm, Judgement, Run, cycles, deviations, goes_on, harms, judgement, silence, stops_late, swept
 from sabotages import SABOTAGES
 from task import Phase, Task
 from twins import ENGINES, HOTTEST, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
@@ -44,6 +44,10 @@ CHUNK = 20
 """So many families are run at a time: their recordings are thrown away before the next are made."""
 UNSTABLE_COUPLING = "the coupling `"
 """In the error of a run that the exchange with an FMU ended."""
+UNSENDABLE = "cannot be sent in a point"
+"""In the error of a file whose unit is finer than a velocity in it can be."""
+FASTEST = 0.5
+"""A current loop does not follow currents that turn by more in one of its periods (rad)."""
 EXCUSED = ("stable", "rings")
 """Requirements that are broken by a swing about what was asked for."""
 
@@ -116,7 +120,7 @@ class Runner:
         self.process.wait()
 
 
-def run_of(path: Path, outcome: dict[str, Any], task: Task) -> Run:
+def run_of(path: Path, outcome: dict[str, Any], task: Task, axis: Axis) -> Run:
     """Of a result and the rows that were written for it."""
     names = outcome["channels"]
     rows = numpy.fromfile(path).reshape(-1, max(1, len(names)))
@@ -128,7 +132,9 @@ def run_of(path: Path, outcome: dict[str, Any], task: Task) -> Run:
         run.start = run.powered = run.rises(ENABLED)
     if task.name == "homing" and isfinite(run.rises("move.Active")):
         at = numpy.searchsorted(run.t, run.rises("move.Active"))
-        run.offset = float((values["load.position"] - values["bus.position"])[max(0, min(at, len(run.t)) - 1)])
+        # As its encoder has it: a load on a spring may swing.
+        encoded = values["load.position"] if axis.from_load else values["motor.position"]
+        run.offset = float((encoded - values["bus.position"])[max(0, min(at, len(run.t)) - 1)])
     return run
 
 
@@ -152,13 +158,15 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     late = 0.0
 
     def run(name: str) -> Run:
-        found = run_of(folder / f"{name}.f64", result(name)["outcome"], family.twin.task)
+        found = run_of(folder / f"{name}.f64", result(name)["outcome"], family.twin.task, family.twin.axis)
         found.start += late
         return found
 
     for name in ("healthy", "sister-0", "sister-1", *(("refined",) if family.is_alone else ())):
         if UNSTABLE_COUPLING in result(name).get("error", ""):
             return tally.discard(family, "the exchange with its FMU is unstable")
+        if UNSENDABLE in result(name).get("error", ""):
+            return tally.discard(family, "its points do not go into the words of its bus")
         if "error" in result(name):
             tally.note("not run", f"{folder / name}.toml: {result(name)['error'][:600]}")
             return False
@@ -173,6 +181,10 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     sizes = [abs(phase.target) if phase.kind in OF_TARGET else phase.size or family.twin.task.span for phase in phases]
     if any(d > MOST_OF_MOVE * size for d, size in zip(of_healthy, sizes)):
         return tally.discard(family, "off by more than a tenth of its move")
+    if turns_in_period(family) > FASTEST:
+        return tally.discard(family, "its currents turn too fast for their loop")
+    if any(phase.kind == "rest" and d > family.tolerance.of(phase) for phase, d in zip(phases, of_healthy)):
+        return tally.discard(family, "does not come into its window")
     if harms_of(family, None, healthy):
         return tally.discard(family, "harmed")
     if family.is_alone:
@@ -245,6 +257,14 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
     return right
 
 
+def turns_in_period(family: Family) -> float:
+    """By which angle the currents turn in a period of their loop, at most."""
+    axis = family.twin.axis
+    if axis.pmsm is None:
+        return 0.0
+    return axis.pmsm.pole_pairs * family.twin.task.velocity / axis.r * axis.current_every / axis.base
+
+
 def harms_of(family: Family, pair: Pair | None, run: Run) -> list[Harm]:
     """What a machine of a family suffers."""
     task, motor = family.twin.task, family.twin.axis.pmsm
@@ -278,17 +298,25 @@ def is_cycling(family: Family, axis: Axis, run: Run) -> bool:
     if axis.pmsm is not None:
         limits["voltage.q"] = axis.pmsm.dc_link / 3**0.5
     floor = max(4 * axis.r * (axis.increment or 0.0), 5 * axis.r * axis.noise, 1e-7 * family.twin.task.span)
-    return cycles(run, axis.r, limits, floor)
+    return cycles(run, limits, floor)
 
 
 def is_restless(phases: list[Phase], healthy: Run, twin: Run, family: Family) -> bool:
-    """Whether what stands gets about farther than the healthy one before it has come to rest, where the verdict looks and D does not: it is
-    not known to be good."""
+    """Whether what stands gets about farther than the healthy one before it has come to rest, or what stops does so late, where the verdict
+    looks and D does not: it is not known to be good."""
     def gets_about(phase: Phase) -> bool:
         of_healthy, of_twin = (swept(phase, healthy, run, family.settling) for run in (healthy, twin))
         return of_twin > max(family.tolerance.of(phase), 2 * of_healthy)
 
-    return any(gets_about(phase) for phase in phases if phase.kind == "stand")
+    if any(stops_late(phase, healthy, twin) for phase in phases if phase.kind == "stop"):
+        return True
+    stands = [phase for phase in phases if phase.kind == "stand"]
+    if family.twin.task.is_bus and not stands:
+        # What moves later stands from its power, and from its homing, to its first motion.
+        first = next((phase.begin for phase in phases if phase.kind in ("way", "velocity") and isinstance(phase.begin, str)), None)
+        begin = "home.Done" if family.twin.task.name == "homing" else 0.0
+        stands = [] if first is None else [Phase("stand", begin, first.replace(".InVelocity", ".Busy"))]
+    return any(gets_about(phase) for phase in stands)
 
 
 def settle_checks(runner: Runner, tally: Tally) -> None:
@@ -308,7 +336,7 @@ def settle_checks(runner: Runner, tally: Tally) -> None:
         if "error" in result or result["outcome"]["ended"]:
             tally.by_swing["diverges in a longer run"] += 1
             continue
-        run = run_of(Path(job["rows"]), result["outcome"], check.family.twin.task)
+        run = run_of(Path(job["rows"]), result["outcome"], check.family.twin.task, axis)
         floor = max(4 * axis.r * (axis.increment or 0.0), 5 * axis.r * axis.noise, 1e-7 * check.family.twin.task.span)
         if any(goes_on(run.t, run.values[name], pushed + 0.01, floor) for name in ("motor.position", "load.position")):
             tally.by_swing["grows or goes on in a longer run"] += 1
