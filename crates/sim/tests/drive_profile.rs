@@ -470,8 +470,9 @@ fn a_master_that_is_held_up_is_made_up_for() {
 fn the_request_begins_a_table_when_the_drive_does() {
     let targets = [0.0, 0.2, 0.203, 0.15, 0.152];
     let steps = |pause: &str| {
-        let moves: String =
+        let moves: Vec<_> =
             targets[1..].iter().map(|to| format!("[[program]]\nmove_to = \"{to} m\"\n{pause}")).collect();
+        let moves = moves.concat();
         format!(
             "[setpoint]\norder = 3\nvelocity = \"0.5 m/s\"\nacceleration = \"4 m/s2\"\njerk = \"120 m/s3\"\n\
              [[program]]\nwait = \"0.1003 s\"\n{moves}[[program]]\nwait = \"0.3 s\"\n"
