@@ -3,8 +3,9 @@ use servobench_base::Setpoint;
 use servobench_cia402::interpolated::serial::{Message, Record};
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand, SubMode, TimePeriod};
 use servobench_config::Choice as _;
-use servobench_fieldbus::trajectory::{PointEncoding, PointTransfer, Stream, points};
+use servobench_fieldbus::trajectory::{PointEncoding, PointTransfer, Stream, Timing, points};
 use servobench_fieldbus::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
+use std::collections::VecDeque;
 
 const COUNTS: f64 = 1.7e6;
 const START: f64 = 0.123_456_7;
@@ -67,33 +68,45 @@ fn received(command: &ProfileCommand, message: Option<Message>) -> Option<Point>
     by_frame.or(by_message)
 }
 
-/// A drive that takes a point out of its buffer every third cycle: all points arrive, in order, none where there is no room.
+/// A drive that takes a point out of its buffer every third cycle, behind a bus of any delay: all points arrive, in order, none where there
+/// is no room.
 #[test]
 fn every_point_arrives_once_and_only_where_there_is_room() {
     let (polynomials, end) = wave(200);
     for (name, transfer, _) in PointTransfer::ALL {
-        let encoding = encoding(*transfer, SubMode::Cubic);
-        let sent = points(polynomials.clone(), end, START, COUNTS, encoding).unwrap();
-        let mut stream = Stream::new(encoding, vec![(0.0, sent.clone())]);
-        let (mut arrived, mut waiting, mut fewest) = (Vec::new(), 0_usize, CAPACITY);
-        for cycle in 0..1000 {
-            let drive = ProfileFeedback {
-                is_active: waiting > 0,
-                buffer_free: u16::try_from(CAPACITY - waiting).unwrap(),
-                buffer_status: u32::try_from(arrived.len()).unwrap(),
-                ..ProfileFeedback::default()
-            };
-            let command = stream.cycle(f64::from(cycle) * 1e-3, &drive);
-            if let Some(point) = received(&command, stream.message()) {
-                arrived.push(point);
-                waiting += 1;
+        for delay in [0, 1, 2, 3, 7, 15] {
+            let encoding = encoding(*transfer, SubMode::Cubic);
+            let sent = points(polynomials.clone(), end, START, COUNTS, encoding).unwrap();
+            let timing = Timing { task: 1e-3, bus: 1e-3, frame: 1e-3 * delay as f64 };
+            let mut stream = Stream::new(encoding, vec![(0.0, sent.clone())], timing);
+            let (mut arrived, mut waiting, mut fewest) = (Vec::new(), 0_usize, CAPACITY);
+            let mut to_drive = VecDeque::from(vec![None; delay]);
+            let mut answers = VecDeque::from(vec![(0, 0); delay]);
+            for cycle in 0..1000 {
+                answers.push_back((waiting, arrived.len()));
+                let (told, known) = answers.pop_front().unwrap();
+                let drive = ProfileFeedback {
+                    is_active: told > 0,
+                    buffer_free: u16::try_from(CAPACITY - told).unwrap(),
+                    buffer_status: u32::try_from(known).unwrap(),
+                    ..ProfileFeedback::default()
+                };
+                let command = stream.cycle(f64::from(cycle) * 1e-3, &drive);
+                to_drive.push_back(received(&command, stream.message()));
+                if let Some(point) = to_drive.pop_front().flatten() {
+                    arrived.push(point);
+                    waiting += 1;
+                }
+                fewest = fewest.min(CAPACITY.checked_sub(waiting).expect("room for every point"));
+                if cycle % 3 == 2 {
+                    waiting = waiting.saturating_sub(1);
+                }
             }
-            fewest = fewest.min(CAPACITY.checked_sub(waiting).expect("room for every point"));
-            if cycle % 3 == 2 {
-                waiting = waiting.saturating_sub(1);
-            }
+            assert_eq!(arrived, sent, "{name}, {delay} cycles");
+            assert!(
+                fewest < CAPACITY / 4 || delay > 3,
+                "{name}: the buffer is kept full, but {fewest} places stayed free"
+            );
         }
-        assert_eq!(arrived, sent, "{name}");
-        assert!(fewest < CAPACITY / 4, "{name}: the buffer is kept full, but {fewest} places stayed free");
     }
 }

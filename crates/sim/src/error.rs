@@ -259,6 +259,7 @@ const fn key_of(unsendable: &Unsendable) -> &'static str {
         Unsendable::Point { help: Help::CoarserUnit | Help::MorePoints, .. } => " (`bus.units`)",
         Unsendable::SubMode { .. } => " (`bus.trajectory_buffer`, `drive.objects.60C0h`)",
         Unsendable::Point { help: Help::OtherTimes, .. } => " (`bus.point_time` where they are those of a move)",
+        Unsendable::Late { .. } => " (`bus.delay`, `bus.point_time`)",
         Unsendable::Point { .. } => "",
     }
 }

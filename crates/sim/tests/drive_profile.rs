@@ -514,3 +514,104 @@ fn the_request_begins_a_table_when_the_drive_does() {
         }
     }
 }
+
+/// Points of a way there and back over 40 mm, at times of 1 ms to 20 ms, or of 10 ms, and its length (s).
+fn uneven(seed: u64, has_own_times: bool) -> (tempfile::NamedTempFile, f64) {
+    let mut state = seed;
+    let times: Vec<u32> = (0..60)
+        .map(|_| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // Some tables are fast all the way, others slow.
+            let slowest = 1 + u32::try_from(seed % 20).unwrap_or_default();
+            if has_own_times { 1 + u32::try_from(state >> 33).unwrap_or_default() % slowest } else { 10 }
+        })
+        .collect();
+    let length = 1e-3 * f64::from(times.iter().sum::<u32>());
+    let mut text = "time [ms],position [mm],velocity [mm/s]\n".to_owned();
+    let mut t = 0;
+    for k in 0..=times.len() {
+        let phase = TAU * 1e-3 * f64::from(t) / length;
+        let v = if k == 0 || k == times.len() { 0.0 } else { 20.0 * TAU / length * phase.sin() };
+        let _ = writeln!(text, "{t},{},{v}", 20.0 * (1.0 - phase.cos()));
+        t += times.get(k).copied().unwrap_or_default();
+    }
+    let mut file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap_or_else(|error| panic!("{error}"));
+    std::io::Write::write_all(&mut file, text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
+    (file, length)
+}
+
+/// Through every door and over a bus of any delay a table is followed to the end, or refused with the delay that the buffer carries: none
+/// runs over, none runs empty. `SERVOBENCH_SWEEP` says how many tables for each.
+#[test]
+fn a_table_is_followed_or_refused_whatever_the_delay() {
+    let tables: u64 = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok()).unwrap_or(1);
+    let delays: &[u32] =
+        if tables > 1 { &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15] } else { &[0, 3, 8, 15] };
+    let (mut followed, mut refused) = (0, 0);
+    for (object, code) in [("2010h", -3), ("60C1h", -3), ("60C1h", -2), ("60C1h", -1), ("60C1h", 0), ("115h", -3)] {
+        for (delay, table) in delays.iter().flat_map(|delay| (0..tables).map(move |table| (*delay, table))) {
+            let has_own_times = code < -1;
+            let seed = if tables == 1 { u64::from(delay) * 5 + 4 } else { table };
+            let (file, length) = uneven(seed, has_own_times);
+            let steps = format!(
+                "[[program]]\ntable = {{ file = \"{}\" }}\n[[program]]\nwait = \"0.1 s\"\n",
+                file.path().display()
+            );
+            let text = by_object(object, &sub_mode(code), &steps, &format!("delay = {delay}\n"));
+            let case = format!("{object} {code}, delay {delay}, table {seed}");
+            let loaded = scenario::parse_within("test", &text, Some(Path::new(".")), &[], Some(Path::new("/")))
+                .unwrap_or_else(|error| panic!("{error}"));
+            let bench = match Bench::new(&loaded.scenario, &Exact) {
+                Ok(bench) => bench,
+                Err(error) => {
+                    let words = error.to_string();
+                    assert!(words.contains("the trajectory buffer runs empty"), "{case}: {words}");
+                    refused += 1;
+                    continue;
+                }
+            };
+            let Outcome { recording, failure } = bench.run(&mut |_| {});
+            assert_eq!(failure, None, "{case}");
+            assert_eq!(buffer(&recording), ["none"], "{case}");
+            let setpoint = values(&recording, "setpoint.position");
+            let highest = setpoint.iter().fold(0.0, |highest: f64, x| highest.max(*x));
+            assert!((highest - 0.04).abs() < 3e-4, "{case}: {highest}");
+            assert!(setpoint[setpoint.len() - 1].abs() < 1.1e-6, "{case}");
+            let begun = recording.moves[0].start;
+            let off = setpoint.iter().enumerate().map(|(row, x)| {
+                let t = (recording.time_of(row) - begun).clamp(0.0, length);
+                (x - 0.02 * (1.0 - (TAU * t / length).cos())).abs()
+            });
+            // A step of the drive at the highest velocity, and the sagitta of lines.
+            let (step, sagitta) =
+                (250e-6 * 0.02 * TAU / length, 0.02 * (TAU / length).powi(2) * 0.02_f64.powi(2) / 8.0);
+            let worst = off.fold(0.0, f64::max);
+            assert!(code == 0 || worst < step + sagitta + 3e-6, "{case}: {worst} m off");
+            followed += 1;
+        }
+    }
+    println!("{followed} tables followed, {refused} refused");
+    assert!(followed > 3 * refused, "{followed} followed, {refused} refused");
+}
+
+/// A drive whose gear ratio (6091h), encoder resolution (608Fh) or feed (6092h) is wrong by two goes half as far or twice, and reads what it
+/// was told: target (607Ah) and actual position (6064h) are in one unit. Oracle: 100 mm, by the ratio of right and wrong.
+#[test]
+fn a_wrong_factor_group_scales_the_way_and_not_what_is_read() {
+    let moved = |mode: &str, write: &str| {
+        let recording = run(&format!(
+            "{AXIS}[drive.objects]\n{write}\n[bus]\ncycle = \"1 ms\"\nmode = \"{mode}\"\nunits = {{ drive = 1000, axis = \"1 mm\" }}\n\
+             [setpoint]\norder = 2\nvelocity = \"0.2 m/s\"\nacceleration = \"2 m/s2\"\n[[program]]\nmove_to = \"100 mm\"\n\
+             [[program]]\nwait = \"0.4 s\"\n"
+        ));
+        let last = |name| values(&recording, name).last().copied().unwrap_or_default();
+        (last("load.position"), last("bus.position"))
+    };
+    for mode in ["csp", "pp", "ip"] {
+        for (write, way) in [("", 0.1), ("\"6091h.1\" = 2", 0.2), ("\"6091h.2\" = 2", 0.05), ("\"60C0h\" = -3", 0.1)] {
+            let (load, read) = moved(mode, write);
+            assert!((load - way).abs() < 2e-6, "{mode}, {write}: the load is at {load} m");
+            assert!((read - 0.1).abs() < 3e-6, "{mode}, {write}: {read} m are read");
+        }
+    }
+}

@@ -125,12 +125,27 @@ impl Params {
     /// # Errors
     /// [`ObjectsError`] says what the drive does not follow.
     pub fn with_objects(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
+        self.with_units(objects, self.units_of(objects, unit)?)
+    }
+
+    /// The same on the axis that these settings are of: an increment is as long as before, whatever the factor group takes it for.
+    ///
+    /// # Errors
+    /// [`ObjectsError`] says what the drive does not follow.
+    pub fn with_objects_on_axis(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
+        self.with_units(objects, self.units_of(objects, unit)?.on_axis_of(&self.units))
+    }
+
+    fn units_of(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Units, ObjectsError> {
         let rated_effort = if shows(objects, RATED_TORQUE, self.rated_torque())? {
             self.units.rated_effort()
         } else {
             f64::from(objects.get(p::MOTOR_RATED_TORQUE)) / 1000.0
         };
-        let units = Units::new(&objects.factor_group(), unit, rated_effort)?;
+        Ok(Units::new(&objects.factor_group(), unit, rated_effort)?)
+    }
+
+    fn with_units(&self, objects: &Dictionary, units: Units) -> Result<Self, ObjectsError> {
         let cycle = cycle::Params { steps: self.steps_per_frame(objects)?, ..self.cycle };
         let mut settings = Self { cycle, power: objects.power_params(), units, ..*self };
         settings.turn_limits(&units);

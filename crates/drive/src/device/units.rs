@@ -46,6 +46,13 @@ impl Units {
         })
     }
 
+    /// The same factor group on an axis whose increment has the length of that of `axis`, whatever the group takes it for: a unit is so
+    /// many increments, so that a wrong gear ratio scales where the axis goes (607Ah) as it scales what is read of it (6064h).
+    pub(super) fn on_axis_of(self, axis: &Self) -> Self {
+        let scale = axis.increment / self.increment;
+        Self { increment: axis.increment, position: scale * self.position, velocity: scale * self.velocity, ..self }
+    }
+
     /// # Errors
     /// [`ParamError`] unless the rated effort is positive.
     pub fn check(&self) -> Result<(), ParamError> {

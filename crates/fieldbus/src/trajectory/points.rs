@@ -53,6 +53,33 @@ pub enum Unsendable {
         /// The sub-mode.
         code: i16,
     },
+    /// A point that the master sends too late, since those before fill the buffer or are under way, or are closer than its cycles.
+    #[error(
+        "point {point} of the table arrives after the drive has asked for it: with a delay of {delay} cycles the trajectory buffer runs \
+         empty; {}",
+        Longest(*longest)
+    )]
+    Late {
+        /// Number of the point, from 1.
+        point: usize,
+        /// Cycles of the bus until a frame arrives.
+        delay: u32,
+        /// The most with which no point is late; `None`: there is none.
+        longest: Option<u32>,
+    },
+}
+
+/// How long the bus may take.
+struct Longest(Option<u32>);
+
+impl fmt::Display for Longest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(0) => f.write_str("without a delay it does not, or with points farther apart"),
+            Some(longest) => write!(f, "up to {longest} it does not, or with points farther apart"),
+            None => f.write_str("the points follow each other faster than the motion task sends them: choose points farther apart, or a shorter cycle"),
+        }
+    }
 }
 
 /// What lets points be sent.

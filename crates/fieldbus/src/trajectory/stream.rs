@@ -7,15 +7,13 @@
 //! when the drive is on the way from one of them to the next, it is told to stop, and its buffer is emptied (2010h, 80h). In
 //! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
 //! master, one in each period (60C2h).
-use super::points::{PointEncoding, PointTransfer};
+use super::points::{PointEncoding, PointTransfer, Unsendable};
 use super::words::SentPoint;
 use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use alloc::vec::Vec;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand};
 
-/// Points that stay free in the buffer: those under way between a frame and the answer that knows of it.
-const RESERVE: u16 = 6;
 /// Points that are in the buffer before they are followed, when there are so many.
 const AHEAD: usize = 16;
 /// For the rounding of times (s).
@@ -30,6 +28,48 @@ pub struct Timing {
     pub bus: f64,
     /// From a cycle of the bus until its frame is at the drive (s).
     pub frame: f64,
+}
+
+impl Timing {
+    /// From a command to the cycle in which its answer is known (s). A step of the drive may have missed the frame that goes with it.
+    fn answer(&self) -> f64 {
+        2.0 * (self.frame + self.bus)
+    }
+
+    /// The first cycle of the task from `t` on (s).
+    fn first_cycle(&self, t: f64) -> f64 {
+        libm::ceil((t - ROUNDING) / self.task) * self.task
+    }
+}
+
+/// In which of the last cycles a point was sent, of which the drive has not answered yet.
+#[derive(Debug, Clone, Copy)]
+struct UnderWay {
+    /// The last cycle is the lowest bit.
+    sent: u64,
+    /// Those of the cycles of which no answer knows.
+    mask: u64,
+}
+
+impl UnderWay {
+    fn new(timing: &Timing) -> Self {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 63")]
+        let cycles = libm::ceil(timing.answer() / timing.task - ROUNDING).clamp(0.0, 63.0) as u32;
+        Self { sent: 0, mask: u64::MAX >> (63 - cycles) }
+    }
+
+    const fn begin_cycle(&mut self) {
+        self.sent <<= 1;
+    }
+
+    const fn send(&mut self) {
+        self.sent |= 1;
+    }
+
+    /// Whether a buffer that was said to have so much room has it for one more point.
+    const fn has_room(&self, free: usize) -> bool {
+        free > (self.sent & self.mask).count_ones() as usize
+    }
 }
 
 /// Sends tables to the buffer of a drive, one after the other.
@@ -50,6 +90,8 @@ pub struct Stream {
     due: f64,
     stage: Stage,
     message: Option<Message>,
+    under_way: UnderWay,
+    timing: Timing,
 }
 
 /// How far a table is.
@@ -71,27 +113,39 @@ enum Stage {
 impl Stream {
     /// Tables, each by the time at which it begins (s) and its points, in this order.
     #[must_use]
-    pub const fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>) -> Self {
+    pub fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>, timing: Timing) -> Self {
         let is_serial = matches!(encoding.transfer(), PointTransfer::Serial);
         let stage = if is_serial { Stage::Setting } else { Stage::Filling };
-        Self { encoding, tables, table: 0, number: 0, arrived: 0, seen: 0, sent: 0, due: 0.0, stage, message: None }
+        let under_way = UnderWay::new(&timing);
+        Self {
+            encoding,
+            tables,
+            table: 0,
+            number: 0,
+            arrived: 0,
+            seen: 0,
+            sent: 0,
+            due: 0.0,
+            stage,
+            message: None,
+            under_way,
+            timing,
+        }
     }
 
     /// When the drive begins the way of each table (s, by the clock of the master, without the delay of its frame), if nothing goes wrong.
     ///
     /// Before that the buffer is filled, in some sub-modes the axis goes to the first point, and the table before has come to its end.
     #[must_use]
-    pub fn beginnings(&self, timing: &Timing) -> Vec<f64> {
-        let Timing { task, bus, frame } = *timing;
-        let first_cycle = |t: f64| libm::ceil((t - ROUNDING) / task) * task;
-        let constant = self.encoding.constant_time().map(|time| f64::from(time) * 1e-6);
-        // A step of the drive may have missed the frame that its answer goes with.
-        let answer = 2.0 * (frame + bus);
+    pub fn beginnings(&self) -> Vec<f64> {
+        let timing = &self.timing;
+        let Timing { task, frame, .. } = *timing;
+        let constant = self.constant_time();
         // The serial interface is told the mode before the first table, and the start behind each; no message waits for a frame.
         let (mut set, start_message) = if self.is_serial() { (task, task - frame) } else { (0.0, 0.0) };
         let mut free = f64::NEG_INFINITY;
         let begin = |(start, points): &(f64, Vec<Point>)| {
-            let told = first_cycle(*start).max(free) + core::mem::take(&mut set);
+            let told = timing.first_cycle(*start).max(free) + core::mem::take(&mut set);
             let filled = (points.len().min(AHEAD) as f64 - 1.0) * task + start_message;
             let begin = told
                 + match (self.encoding.adapted_time().is_some(), constant) {
@@ -101,13 +155,83 @@ impl Stream {
                     (_, None) => filled,
                 };
             let length = points.iter().map(|point| f64::from(point.time) * 1e-6).sum::<f64>();
-            let seen = first_cycle(begin + length + answer);
+            let seen = timing.first_cycle(begin + length + timing.answer());
             // Where nothing ends a move the buffer is emptied.
-            let is_free = if constant.is_some() { first_cycle(seen + answer) } else { seen };
+            let is_free = if constant.is_some() { timing.first_cycle(seen + timing.answer()) } else { seen };
             free = is_free + task;
             begin
         };
         self.tables.iter().map(begin).collect()
+    }
+
+    /// The time of every segment where points have none of their own (s).
+    fn constant_time(&self) -> Option<f64> {
+        self.encoding.constant_time().map(|time| f64::from(time) * 1e-6)
+    }
+
+    /// Whether every point is there when the drive asks for it.
+    ///
+    /// # Errors
+    /// [`Unsendable::Late`] names the first one that is not, because more points are under way than the buffer has room for, or because they
+    /// follow each other faster than the master sends them.
+    pub fn check(&self) -> Result<(), Unsendable> {
+        let Some(point) = self.first_late(&self.timing) else { return Ok(()) };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
+        let delay = libm::round(self.timing.frame / self.timing.bus) as u32;
+        let is_carried = |delay: &u32| {
+            let timing = Timing { frame: f64::from(*delay) * self.timing.bus, ..self.timing };
+            self.first_late(&timing).is_none()
+        };
+        Err(Unsendable::Late { point: point + 1, delay, longest: (0..delay).rev().find(is_carried) })
+    }
+
+    fn first_late(&self, timing: &Timing) -> Option<usize> {
+        // Points that come by the clock of the master come in time.
+        if self.encoding.adapted_time().is_some() {
+            return None;
+        }
+        self.tables.iter().find_map(|(_, points)| self.first_late_of(points, timing))
+    }
+
+    /// The first of `points` that is sent too late.
+    fn first_late_of(&self, points: &[Point], timing: &Timing) -> Option<usize> {
+        let constant = self.constant_time();
+        // When the drive takes the point behind that of this number, which it takes at `due`: as it begins the way between both.
+        let after = |index: usize, due: f64| match (constant, index.checked_sub(1)) {
+            (Some(time), _) => due + time,
+            (None, Some(before)) => due + f64::from(points[before].time) * 1e-6,
+            (None, None) => due,
+        };
+        let mut under_way = UnderWay::new(timing);
+        let mut sent: Vec<f64> = Vec::with_capacity(points.len());
+        // By the last answer, and when the drive takes the next one.
+        let (mut arrived, mut taken, mut due) = (0, 0, f64::INFINITY);
+        let (mut now, mut begun) = (0.0, None);
+        while sent.len() < points.len() {
+            let known = now - timing.answer() + ROUNDING;
+            while sent.get(arrived).is_some_and(|sent| *sent <= known) {
+                arrived += 1;
+            }
+            while taken < sent.len() && due <= known {
+                (due, taken) = (after(taken, due), taken + 1);
+            }
+            under_way.begin_cycle();
+            let waiting = arrived.saturating_sub(taken);
+            if under_way.has_room(CAPACITY.saturating_sub(waiting)) {
+                under_way.send();
+                sent.push(now);
+            }
+            if begun.is_none() && sent.len() >= AHEAD.min(points.len()) {
+                (begun, due) = (Some(now), now);
+            }
+            now += timing.task;
+        }
+        let mut due = begun?;
+        sent.iter().enumerate().find_map(|(index, sent)| {
+            let is_late = *sent > due + ROUNDING;
+            due = after(index, due);
+            is_late.then_some(index)
+        })
     }
 
     /// What goes over the serial interface in this cycle, once.
@@ -117,6 +241,7 @@ impl Stream {
 
     /// The command of a cycle at `now` (s) to a drive that has answered `drive`.
     pub fn cycle(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
+        self.under_way.begin_cycle();
         let point = match self.tables.get(self.table) {
             Some((start, points)) if *start <= now => {
                 let length = points.len();
@@ -211,7 +336,7 @@ impl Stream {
             (None, Some(_)) => *points.last()?,
             (None, None) => return None,
         };
-        if drive.buffer_free <= RESERVE {
+        if !self.under_way.has_room(drive.buffer_free.into()) {
             return None;
         }
         if let Some(period) = self.encoding.adapted_time() {
@@ -223,6 +348,7 @@ impl Stream {
         let number = self.number;
         self.number = number.wrapping_add(1);
         self.sent += 1;
+        self.under_way.send();
         match self.encoding.sent(point, number)? {
             SentPoint::MoveSegment(bytes) => Some(TrajectoryPoint::MoveSegment(bytes)),
             SentPoint::DataRecord(data) => Some(TrajectoryPoint::DataRecord(data)),

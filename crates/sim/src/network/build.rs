@@ -131,7 +131,7 @@ impl Network {
                 let moves = ProgramCursor::new(program, period);
                 let timing =
                     Timing { task: period, bus: f64::from(bus.cycle) * tick, frame: delays.frame as f64 * tick };
-                MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device, &timing)?))
+                MotionTask::DriveProfile(Box::new(DriveProfile::new(moves, bus, &device, timing)?))
             }
             None => MotionTask::Moves(Box::new(ProgramCursor::new(program, period))),
         };
@@ -328,7 +328,7 @@ fn with_objects(
             .write_number(write.object, write.value, PowerState::SwitchOnDisabled)
             .map_err(|error| BuildError::Object { key: write.key.clone(), error: Box::new(error) })?;
     }
-    let written = settings.with_objects(&objects, units.unit)?;
+    let written = settings.with_objects_on_axis(&objects, units.unit)?;
     if let Some(range) = written.rotary.range {
         let bound = "the whole range: the link counts through the end of its counter";
         let name = "drive.objects.607Bh.2";

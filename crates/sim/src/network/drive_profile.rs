@@ -46,7 +46,7 @@ impl DriveProfile {
         moves: ProgramCursor,
         bus: &Bus,
         drive: &device::Params,
-        timing: &Timing,
+        timing: Timing,
     ) -> Result<Self, Unsendable> {
         let program = moves.program();
         let orders = match bus.mode {
@@ -63,7 +63,9 @@ impl DriveProfile {
                     let polynomials: Vec<_> = plan.spans().map(|span| (span.length, span.state)).collect();
                     Ok((start, points(polynomials, plan.end(), from, counts, encoding)?))
                 });
-                Orders::Tables(Stream::new(encoding, tables.collect::<Result<_, _>>()?))
+                let stream = Stream::new(encoding, tables.collect::<Result<_, _>>()?, timing);
+                stream.check()?;
+                Orders::Tables(stream)
             }
             BusMode::ProfilePosition | BusMode::CyclicPosition | BusMode::CyclicVelocity => {
                 let set_points = program.plans().map(|(start, from, plan)| {
@@ -75,7 +77,7 @@ impl DriveProfile {
         };
         let lags = match &orders {
             Orders::Tables(stream) => {
-                let begun = stream.beginnings(timing).into_iter();
+                let begun = stream.beginnings().into_iter();
                 begun.zip(moves.program().plans()).map(|(begun, (start, ..))| begun - start).collect()
             }
             Orders::Positions { .. } | Orders::Velocities { .. } => Vec::new(),
