@@ -54,6 +54,7 @@ pub enum Source {
 const GENERIC: u8 = 1 << 0;
 const CURRENT: u8 = 1 << 1;
 const VOLTAGE: u8 = 1 << 2;
+const TEMPERATURE: u8 = 1 << 3;
 const COMMUNICATION: u8 = 1 << 4;
 const PROFILE: u8 = 1 << 5;
 
@@ -62,6 +63,8 @@ const fn drive(class: u8) -> Source {
 }
 
 error_codes! {
+    OverCurrent = 0x2310, drive(CURRENT), "continuous over-current",
+        "The current of a phase was above its threshold";
     LoadLevel = 0x2350, drive(CURRENT), "load level fault (I²t, thermal state)",
         "The I²t load of motor or drive was reached where its reaction is a fault";
     DcLinkOverVoltage = 0x3210, drive(VOLTAGE), "DC link over-voltage",
@@ -70,6 +73,8 @@ error_codes! {
         "The power was gone while the drive function was enabled, or the measured DC link below its threshold";
     ArmatureInterrupted = 0x3321, drive(VOLTAGE), "armature circuit interrupted",
         "A phase of the motor had no current that it was to have";
+    Temperature = 0x4310, drive(TEMPERATURE), "excess temperature of the motor",
+        "The measured temperature of the winding was above its threshold";
     MotorBlocked = 0x7121, drive(PROFILE), "motor blocked",
         "The motor stood although the loops were at their limit";
     Commutation = 0x7122, drive(PROFILE), "motor error or commutation malfunction",
@@ -142,14 +147,16 @@ mod tests {
         assert_eq!(ErrorCode::FollowingError.to_string(), "following error (8611h)");
     }
 
-    /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 4 for communication, bit 5 for what the profile has.
+    /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 3 for temperature (4xxxh), bit 4 for communication, bit 5 for what the profile has.
     #[test]
     fn the_register_tells_the_class() {
         for (code, register) in [
             (0, 0),
+            (0x2310, 0x03),
             (0x2350, 0x03),
             (0x3220, 0x05),
             (0x3321, 0x05),
+            (0x4310, 0x09),
             (0x7122, 0x21),
             (0x7305, 0x21),
             (0x8611, 0x21),

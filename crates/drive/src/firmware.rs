@@ -49,6 +49,8 @@ pub struct Sensors {
     pub current: AlphaBeta,
     /// DC link (V).
     pub dc_link: f64,
+    /// Temperature of the winding (°C).
+    pub winding: f64,
     /// A rotation that somebody has worked out: where it is that of the angle that the firmware reads, it is taken from here.
     pub known_rotation: KnownRotation,
 }

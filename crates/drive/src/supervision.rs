@@ -4,13 +4,18 @@
 //! |---|---|---|
 //! | over-voltage | the measured DC link is above `overvoltage` | 3210h |
 //! | under-voltage | it is below `undervoltage` | 3220h |
+//! | over-current | the measured current of a leg is above `overcurrent` | 2310h |
+//! | over-temperature | the measured winding is warmer than `winding_temperature` | 4310h |
 //! | lost phase | a leg has had less than half of `current` for `time` while it was to have `current` or more | 3321h |
 //! | stall | the loops ask for more than their limit while the motor is slower than `speed`, for `time` | 7121h |
-//! | commutation | against a torque-producing current of `current` or more the motor has gained `speed` | 7122h |
+//! | commutation | against a torque-producing current of `current` or more the motor has gained `speed`, at once or in swings | 7122h |
 //! | over-speed | the motor is faster than `overspeed` | 7310h |
 //!
 //! - **Commutation.** i_q·v < 0 and |i_q| ≥ `current`: the current brakes. Then |v| falls, unless what the drive takes for the q axis is
-//!   not it, or a load is stronger than the motor. The gain is counted from the lowest |v| of that time on.
+//!   not it, or a load is stronger than the motor. The gain is counted from the lowest |v| of that time on. A motor with little friction
+//!   that is trapped swings about an angle at which its torque changes sign, and gains less each time: gains of a quarter of `speed`
+//!   and more add up, forgotten with 0.5 s, as long as they are at least half of what is lost meanwhile. A load on a spring drives a
+//!   healthy motor that brakes, too, but by less than it loses.
 //! - **Stall.** A motor whose commutation is off by 90° has no torque either; by its sensors a drive cannot tell it from a blocked one.
 //! - **Lost phase.** The time counts while the reference of the leg is there, and begins again as soon as half of `current` flows. A healthy
 //!   leg follows its reference with the lag of the current loop. At a standstill where the leg is to have no current nothing can be seen.
@@ -21,8 +26,8 @@
 //! A finding stays until the power goes off. Without power nothing is looked for.
 use servobench_base::AlphaBeta;
 use servobench_config::Kind::{Motor, Plain};
-use servobench_config::quantities::{CURRENT, TIME, VELOCITY, VOLTAGE};
-use servobench_config::{ParameterError, positive};
+use servobench_config::quantities::{CURRENT, TEMPERATURE, TIME, VELOCITY, VOLTAGE};
+use servobench_config::{Bound, Measure, ParameterError, positive};
 
 servobench_config::parameters! {
     /// A parameter of the supervision of motor and power stage.
@@ -33,6 +38,10 @@ servobench_config::parameters! {
         OVERVOLTAGE "over-voltage threshold" = positive(Plain(&VOLTAGE), "400 V");
         /// Speed of the motor above which it tells one
         OVERSPEED "over-speed threshold" = positive(Motor(&VELOCITY), "6500 rpm");
+        /// Current of a phase above which it tells one
+        OVERCURRENT "over-current threshold" = positive(Plain(&CURRENT), "20 Arms");
+        /// Temperature of the winding above which it tells one
+        WINDING_TEMPERATURE "over-temperature threshold" = Measure { kind: Plain(&TEMPERATURE), bound: Bound::Within(-100.0, 500.0), example: "130 degC" };
         /// Speed that the motor gains against its torque-producing current
         COMMUTATION_SPEED "speed gained against the current" = positive(Motor(&VELOCITY), "200 rpm");
         /// Least torque-producing current that counts
@@ -57,6 +66,10 @@ pub struct Params {
     pub overvoltage: Option<f64>,
     /// Highest speed (motor coordinate, rad/s or m/s).
     pub overspeed: Option<f64>,
+    /// Highest current of a leg (A, peak).
+    pub overcurrent: Option<f64>,
+    /// Highest temperature of the winding (°C).
+    pub winding_temperature: Option<f64>,
     /// Commutation.
     pub commutation: Option<Commutation>,
     /// Stall.
@@ -107,6 +120,10 @@ pub enum Finding {
     Commutation,
     /// The motor is too fast.
     OverSpeed,
+    /// A leg has too much current.
+    OverCurrent,
+    /// The winding is too warm.
+    OverTemperature,
 }
 
 impl Finding {
@@ -118,13 +135,72 @@ impl Finding {
     }
 }
 
+/// Time with which gains and losses of speed are forgotten (s).
+const FORGOTTEN: f64 = 0.5;
+/// The least gain that adds up, as a part of the speed that is found.
+const LEAST: f64 = 0.25;
+/// What is gained is at least so much of what is lost.
+const OF_LOST: f64 = 0.5;
+
+/// How the speed goes while the current brakes, from turn to turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Braked {
+    /// Where it turned last, and the farthest that it came from there.
+    turn: f64,
+    farthest: f64,
+    rises: bool,
+}
+
+/// Speed that was gained and lost against the current, forgotten by and by.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Swings {
+    now: Option<Braked>,
+    gained: f64,
+    lost: f64,
+}
+
+impl Swings {
+    /// A cycle of `h` (s) at this `speed`, in which the current brakes or does not; swings count from `least` on. Gives the gain of now.
+    fn step(&mut self, speed: f64, brakes: bool, least: f64, h: f64) -> f64 {
+        let kept = 1.0 - h / FORGOTTEN;
+        (self.gained, self.lost) = (kept * self.gained, kept * self.lost);
+        if !brakes {
+            if let Some(braked) = self.now.take() {
+                self.add(braked, least);
+            }
+            return 0.0;
+        }
+        let mut braked = self.now.unwrap_or(Braked { turn: speed, farthest: speed, rises: false });
+        braked.farthest = if braked.rises { braked.farthest.max(speed) } else { braked.farthest.min(speed) };
+        if (speed - braked.farthest).abs() >= least {
+            self.add(braked, least);
+            braked = Braked { turn: braked.farthest, farthest: speed, rises: !braked.rises };
+        }
+        self.now = Some(braked);
+        if braked.rises { braked.farthest - braked.turn } else { speed - braked.farthest }
+    }
+
+    fn add(&mut self, Braked { turn, farthest, rises }: Braked, least: f64) {
+        match (farthest - turn).abs() {
+            size if size < least => {}
+            size if rises => self.gained += size,
+            size => self.lost += size,
+        }
+    }
+
+    /// Whether `speed` was gained in swings, with the gain of `now`.
+    fn has_gained(&self, speed: f64, now: f64) -> bool {
+        self.gained + now >= speed && self.gained + now >= OF_LOST * self.lost
+    }
+}
+
 /// All that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State {
     /// What was found first.
     pub found: Option<Finding>,
-    /// Lowest speed since the current brakes.
-    lowest_speed: Option<f64>,
+    /// Speed against the current.
+    swings: Swings,
     /// Cycles in which the motor stood at the limit.
     stalled: u32,
     /// Cycles in which a leg had no current that it was to have.
@@ -135,11 +211,14 @@ impl Params {
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), ParameterError> {
-        let Self { undervoltage, overvoltage, overspeed, commutation, stall, phases } = *self;
+        let Self { undervoltage, overvoltage, overspeed, overcurrent, winding_temperature, commutation, stall, phases } =
+            *self;
         for (parameter, value) in [
             (Parameter::UNDERVOLTAGE, undervoltage),
             (Parameter::OVERVOLTAGE, overvoltage),
             (Parameter::OVERSPEED, overspeed),
+            (Parameter::OVERCURRENT, overcurrent),
+            (Parameter::WINDING_TEMPERATURE, winding_temperature),
             (Parameter::COMMUTATION_SPEED, commutation.map(|one| one.speed)),
             (Parameter::COMMUTATION_CURRENT, commutation.map(|one| one.current)),
             (Parameter::STALL_SPEED, stall.map(|one| one.speed)),
@@ -162,6 +241,8 @@ pub struct Motion {
     pub velocity: f64,
     /// Measured DC link (V).
     pub dc_link: f64,
+    /// Measured temperature of the winding (°C).
+    pub winding: f64,
     /// Whether the effort was cut at the last cycle.
     pub is_cut: bool,
 }
@@ -191,6 +272,8 @@ pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
         Some(Finding::UnderVoltage)
     } else if is_beyond(p.overspeed, |v, at| v > at, speed) {
         Some(Finding::OverSpeed)
+    } else if is_beyond(p.winding_temperature, |warm, at| warm > at, u.winding) {
+        Some(Finding::OverTemperature)
     } else {
         p.stall.filter(|stall| has_lasted(x.stalled, stall.time, h)).map(|_| Finding::Stall)
     };
@@ -202,10 +285,13 @@ pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
     if let Some(commutation) = p.commutation {
         let speed = u.velocity.abs();
         let brakes = u.q * u.velocity < 0.0 && u.q.abs() >= commutation.current;
-        x.lowest_speed = brakes.then(|| x.lowest_speed.map_or(speed, |lowest| lowest.min(speed)));
-        if x.lowest_speed.is_some_and(|lowest| speed - lowest >= commutation.speed) {
+        let now = x.swings.step(speed, brakes, LEAST * commutation.speed, h);
+        if now >= commutation.speed || x.swings.has_gained(commutation.speed, now) {
             x.found = x.found.or(Some(Finding::Commutation));
         }
+    }
+    if p.overcurrent.is_some_and(|most| legs(u.measured).iter().any(|current| current.abs() > most)) {
+        x.found = x.found.or(Some(Finding::OverCurrent));
     }
     if let Some(phases) = p.phases {
         let (asked, measured) = (legs(u.reference), legs(u.measured));
@@ -238,7 +324,7 @@ mod tests {
     use super::*;
     use core::f64::consts::TAU;
 
-    const NONE: Motion = Motion { velocity: 0.0, dc_link: 320.0, is_cut: false };
+    const NONE: Motion = Motion { velocity: 0.0, dc_link: 320.0, winding: 20.0, is_cut: false };
     const H: f64 = 1.0 / 8e3;
 
     fn of_motion(p: &Params, u: Motion) -> Option<Finding> {
@@ -261,6 +347,25 @@ mod tests {
         ] {
             assert_eq!(of_motion(&p, Motion { velocity, dc_link, ..NONE }), found, "{dc_link} V, {velocity} rad/s");
             assert_eq!(of_motion(&Params::default(), Motion { velocity, dc_link, ..NONE }), None, "off");
+        }
+    }
+
+    #[test]
+    fn winding_and_current_have_their_thresholds() {
+        let p = Params { winding_temperature: Some(130.0), overcurrent: Some(20.0), ..Params::default() };
+        for (winding, found) in [(130.0, None), (130.1, Some(Finding::OverTemperature)), (-40.0, None)] {
+            assert_eq!(of_motion(&p, Motion { winding, ..NONE }), found, "{winding} °C");
+        }
+        for (alpha, beta, found) in [
+            (20.0, 0.0, None),
+            (-20.1, 0.0, Some(Finding::OverCurrent)),
+            (0.0, 23.0, None),
+            (0.0, -23.2, Some(Finding::OverCurrent)),
+        ] {
+            let (mut x, measured) = (State::default(), AlphaBeta { alpha, beta });
+            let u = Currents { velocity: 0.0, q: 0.0, reference: AlphaBeta::default(), measured };
+            watch_currents(&p, &mut x, &u, H);
+            assert_eq!(x.found, found, "{alpha} A, {beta} A");
         }
     }
 
@@ -312,6 +417,20 @@ mod tests {
         // Braking down to 30 first, and then faster again.
         let way = (0..41).map(|k| 70.0 - f64::from(k)).chain((0..100).map(|k| 30.0 + f64::from(k)));
         assert_eq!(commutation(way.map(|v| (v, -8.0))), Some(41 + 20));
+    }
+
+    /// A trapped motor gains 13 rad/s and loses them again in each swing; a braking one that a spring drives loses more than it gains.
+    #[test]
+    fn speed_gained_in_swings_is_a_fault() {
+        let swing = |mean: f64, slope: f64, size: f64| {
+            (0..8000).map(move |k| {
+                let t = H * f64::from(k);
+                ((mean - slope * t + size * (TAU * 15.0 * t).sin()).max(0.1), -9.0)
+            })
+        };
+        assert!(commutation(swing(14.0, 0.0, 6.5)).is_some_and(|cycles| cycles < 2000), "trapped");
+        assert_eq!(commutation(swing(14.0, 0.0, 2.4)), None, "each less than a quarter");
+        assert_eq!(commutation(swing(900.0, 900.0, 9.5)), None, "brakes, on a spring");
     }
 
     /// Cycles after which a phase is found lost, of a reference of `length` (A) that goes on by so many turns per cycle, with what the motor

@@ -223,6 +223,7 @@ impl ClosedLoop {
             },
             current: self.state.power.measured_current(motor),
             dc_link: now.dc_link,
+            winding: now.temperatures.winding,
             known_rotation: self.state.power.rotation(),
         };
         let Control { params, state, .. } = control;

@@ -25,7 +25,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault that the drive finds itself.
-    pub const OWN: [Self; 12] = [
+    pub const OWN: [Self; 14] = [
         Self::MainsMissing,
         Self::Overload,
         Self::Encoder,
@@ -33,6 +33,8 @@ impl Fault {
         Self::Supervision(Finding::OverVoltage),
         Self::Supervision(Finding::UnderVoltage),
         Self::Supervision(Finding::LostPhase),
+        Self::Supervision(Finding::OverCurrent),
+        Self::Supervision(Finding::OverTemperature),
         Self::Supervision(Finding::Stall),
         Self::Supervision(Finding::Commutation),
         Self::Supervision(Finding::OverSpeed),
@@ -50,6 +52,8 @@ impl Fault {
             Self::LoadEncoder => ErrorCode::IncrementalSensor2,
             Self::Supervision(Finding::OverVoltage) => ErrorCode::DcLinkOverVoltage,
             Self::Supervision(Finding::LostPhase) => ErrorCode::ArmatureInterrupted,
+            Self::Supervision(Finding::OverCurrent) => ErrorCode::OverCurrent,
+            Self::Supervision(Finding::OverTemperature) => ErrorCode::Temperature,
             Self::Supervision(Finding::Stall) => ErrorCode::MotorBlocked,
             Self::Supervision(Finding::Commutation) => ErrorCode::Commutation,
             Self::Supervision(Finding::OverSpeed) => ErrorCode::Speed,

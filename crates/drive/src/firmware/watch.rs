@@ -15,7 +15,12 @@ pub(super) fn motion(p: &supervision::Params, x: &mut State, sensors: &Sensors, 
         return;
     }
     let is_cut = x.held.effort.cut.is_some();
-    let input = supervision::Motion { velocity: x.filtered_velocity, dc_link: sensors.dc_link, is_cut };
+    let input = supervision::Motion {
+        velocity: x.filtered_velocity,
+        dc_link: sensors.dc_link,
+        winding: sensors.winding,
+        is_cut,
+    };
     supervision::watch_motion(p, &mut x.supervision, &input, h);
 }
 

@@ -12,6 +12,10 @@ table! {
         overvoltage: f64 = Parameter::OVERVOLTAGE,
         /// : 7310h.
         overspeed: f64 = Parameter::OVERSPEED,
+        /// : 2310h.
+        overcurrent: f64 = Parameter::OVERCURRENT,
+        /// , with `[motor.thermal]`: 4310h.
+        winding_temperature: f64 = Parameter::WINDING_TEMPERATURE,
         /// The motor gains speed against its torque-producing current: 7122h.
         commutation: Commutation = (),
         /// The motor stands although the loops are at their limit: 7121h.

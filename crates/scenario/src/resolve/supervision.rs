@@ -17,6 +17,8 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         let keys = [
             ("undervoltage", given.undervoltage.span()),
             ("overvoltage", given.overvoltage.span()),
+            ("overcurrent", given.overcurrent.span()),
+            ("winding_temperature", given.winding_temperature.span()),
             ("commutation", given.commutation.span()),
             ("phase_loss", given.phase_loss.span()),
         ];
@@ -46,5 +48,20 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         None => None,
         Some(one) => Some(Phases { current: number(&one.current)?, time: number(&one.time)? }),
     };
-    Ok(Some(Params { undervoltage, overvoltage, overspeed: optional(&given.overspeed)?, commutation, stall, phases }))
+    let winding_temperature = optional(&given.winding_temperature)?;
+    let is_cold = matches!(known.motor, Some(Motor::Pmsm { effects, .. }) if !effects.warms_up());
+    if let Some(span) = given.winding_temperature.span().filter(|_| is_cold) {
+        report.error(span, "a winding without `[motor.thermal]` does not warm up", "add it, or leave this out");
+        return Err(Reported);
+    }
+    Ok(Some(Params {
+        undervoltage,
+        overvoltage,
+        overspeed: optional(&given.overspeed)?,
+        overcurrent: optional(&given.overcurrent)?,
+        winding_temperature,
+        commutation,
+        stall,
+        phases,
+    }))
 }

@@ -212,7 +212,9 @@ fn faults_and_their_supervision_are_those_of_the_file() {
         [drive.current]\nmeasured_dc_link = true\n[bus]\ncycle = \"1 ms\"\n\
         [drive.supervision]\nundervoltage = \"201 V\"\novervoltage = \"402 V\"\noverspeed = \"3000 rpm\"\n\
         commutation = { speed = \"300 rpm\", current = \"4 Arms\" }\nstall = { speed = \"30 rpm\", time = \"0.2 s\" }\n\
-        phase_loss = { current = \"1.5 Apk\", time = \"7 ms\" }\n";
+        phase_loss = { current = \"1.5 Apk\", time = \"7 ms\" }\novercurrent = \"21 Arms\"\nwinding_temperature = \"131 degC\"\n\
+        [motor.thermal]\nambient = \"25 degC\"\nto_housing = \"1 K/W\"\nto_ambient = \"1 K/W\"\nwinding_capacity = \"100 J/K\"\n\
+        housing_capacity = \"1000 J/K\"\n";
     let scenario = scenario(&format!("{SCREW}\n{given}"));
     let Actuator::Pmsm { wiring, .. } = &scenario.actuator else { panic!("a motor") };
     assert_eq!(*wiring, Wiring { swapped: Some(Swap::Ca), open: Some((Phase::B, 0.3)) });
@@ -222,6 +224,8 @@ fn faults_and_their_supervision_are_those_of_the_file() {
         undervoltage: Some(201.0),
         overvoltage: Some(402.0),
         overspeed: Some(3000.0 * rpm),
+        overcurrent: Some(21.0 * 2_f64.sqrt()),
+        winding_temperature: Some(131.0),
         commutation: Some(Commutation { speed: 300.0 * rpm, current: 4.0 * 2_f64.sqrt() }),
         stall: Some(Stall { speed: 30.0 * rpm, time: 0.2 }),
         phases: Some(Phases { current: 1.5, time: 7e-3 }),
@@ -231,7 +235,20 @@ fn faults_and_their_supervision_are_those_of_the_file() {
     let numbers = |p: &Params| {
         let (commutation, stall, phases) = (p.commutation.unwrap(), p.stall.unwrap(), p.phases.unwrap());
         let [low, high, speed] = [p.undervoltage, p.overvoltage, p.overspeed].map(Option::unwrap);
-        [low, high, speed, commutation.speed, commutation.current, stall.speed, stall.time, phases.current, phases.time]
+        let [most, warm] = [p.overcurrent, p.winding_temperature].map(Option::unwrap);
+        [
+            low,
+            high,
+            speed,
+            most,
+            warm,
+            commutation.speed,
+            commutation.current,
+            stall.speed,
+            stall.time,
+            phases.current,
+            phases.time,
+        ]
     };
     for (found, expected) in numbers(&found).into_iter().zip(numbers(&expected)) {
         assert!(same(found, expected), "{found} {expected}");
