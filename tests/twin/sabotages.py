@@ -285,12 +285,12 @@ def frames_frozen(random: Random, twin: Twin) -> Change | None:
     return tables and Change(twin.axis, tables=tables, note=f"{cycles} frames frozen from {at} s")
 
 
-def buffer_small(random: Random, twin: Twin) -> Change | None:
-    """A bus whose way is so long that the buffer of the drive is too small for it."""
-    if twin.tables.get("bus", {}).get("mode") != "ip":
-        return None
-    delay = round(random.decades(0.3, 1.17))
-    return Change(twin.axis, tables=bus_of(twin, delay=delay), note=f"{delay} cycles on the way to a buffer")
+def units_wrong(random: Random, twin: Twin) -> Change | None:
+    """The gear ratio that the drive computes its units with (6091h) is not that of the machine."""
+    whole = 9973
+    turns = whole + random.sign() * round(whole * random.decades(-3.6, -0.5))
+    objects = twin.axis.objects | {"6091h.1": round(turns), "6091h.2": whole}
+    return Change(replace(twin.axis, objects=objects), note=f"units {turns / whole:.4f} times as long")
 
 
 def master_gain(random: Random, twin: Twin) -> Change | None:
@@ -392,7 +392,7 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "frames lost": frames_lost,
     "frames late": frames_late,
     "frames frozen": frames_frozen,
-    "buffer small": buffer_small,
+    "units wrong": units_wrong,
     "master gain": master_gain,
     "fmu unstable": fmu_unstable,
     "shaken": shaken,
@@ -415,7 +415,7 @@ OF_PROGRAMS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("frames lost", "frames late"), BUSES),
     # The drive makes the way in the others, and what stands is sent the same all the time.
     "frames frozen": ("csp", "csv", "pp", "ip", "blocks", "velocity", "stop", "torque"),
-    "buffer small": ("ip",),
+    "units wrong": tuple(bus for bus in BUSES if bus not in ("torque", "hold over a bus")),
     "master gain": ("csv",),
     "switch wrong": ("homing",),
     "end stop moved": WAYS,
