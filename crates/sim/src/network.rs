@@ -401,7 +401,7 @@ impl Network {
         concerned::note(of_bus, (&self.turns.0, &self.turns.1, &self.task_faults), self.tick, recorder);
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(delay).for_each(|made| recorder.note_move(made)),
-            MotionTask::DriveProfile(way) => way.made(delay).for_each(|made| recorder.note_move(made)),
+            MotionTask::DriveProfile(way) => way.note(delay, recorder),
             MotionTask::Plc(plc) => plc.finish(t, delay, recorder),
         }
     }

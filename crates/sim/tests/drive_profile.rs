@@ -615,3 +615,26 @@ fn a_wrong_factor_group_scales_the_way_and_not_what_is_read() {
         }
     }
 }
+
+/// In profile position the drive makes its own profile, whatever that of the program is: linear ramps, or jerk-limited ones. Oracle: its
+/// set-point, which the request meets to a step of the drive, and by hand 0.1/0.4 + 0.4/4 = 0.35 s for a trapezoid over 100 mm.
+#[test]
+fn the_request_in_profile_position_is_the_profile_of_the_drive() {
+    for (objects, length) in [("", 0.35), ("\"6086h\" = 3\n\"60A4h.1\" = 40000000\n", 0.45)] {
+        let recording = run(&format!(
+            "{AXIS}[drive.objects]\n{objects}[bus]\ncycle = \"1 ms\"\nmode = \"pp\"\nunits = {{ drive = 1000, axis = \"1 mm\" }}\n\
+             [setpoint]\norder = 3\nvelocity = \"0.4 m/s\"\nacceleration = \"4 m/s2\"\njerk = \"90 m/s3\"\n\
+             [[program]]\nwait = \"0.1003 s\"\n[[program]]\nmove_to = \"100 mm\"\n[[program]]\nwait = \"0.25 s\"\n\
+             [[program]]\nmove_to = \"0 mm\"\n[[program]]\nwait = \"0.3 s\"\n"
+        ));
+        let [setpoint, request] = ["setpoint.position", "request.position"].map(|name| values(&recording, name));
+        let off = setpoint.iter().zip(request).map(|(x, wanted)| (x - wanted).abs()).fold(0.0, f64::max);
+        assert!(off < 0.4 * 0.3e-3, "{objects}: {off} m");
+        for made in &recording.moves {
+            assert!((made.end - made.start - length).abs() < 1e-9, "{objects}: {} s", made.end - made.start);
+            let begins = recording.index_at(made.start);
+            let moves = |row: usize| (setpoint[row] - setpoint[row - 1]).abs() > 0.0;
+            assert!(!moves(begins - 2) && moves(begins + 10), "{objects}: it begins at {} s", made.start);
+        }
+    }
+}

@@ -6,7 +6,6 @@ use super::reference::DelayedReference;
 use super::requests::Requests;
 use super::signals::Signals;
 use super::tables::Tables;
-use super::targets::Targets;
 use super::units::{Counted, DriveUnits, units};
 use super::{MotionTask, Network};
 use crate::error::BuildError;
@@ -139,7 +138,7 @@ impl Network {
             MotionTask::Moves(moves) => DelayedReference::of_program(period, delay, moves.program()),
             MotionTask::DriveProfile(_) | MotionTask::Plc(_) => DelayedReference::new(period, delay),
         };
-        let requests = requests(&task, bus.mode, period, delay);
+        let requests = requests(&task, period, delay);
         let network = Self {
             task,
             model,
@@ -174,17 +173,15 @@ impl Network {
 }
 
 /// Requests of `task`, which has cycles of `period` (s), and whose set-points are followed `delay` (s) later.
-fn requests(task: &MotionTask, mode: scenario::BusMode, period: f64, delay: f64) -> Requests {
+fn requests(task: &MotionTask, period: f64, delay: f64) -> Requests {
     match task {
         MotionTask::Moves(moves) => Requests::of_program(moves.program(), period, delay),
         MotionTask::DriveProfile(profile) => {
             let program = profile.moves().program();
-            match mode {
-                scenario::BusMode::ProfilePosition => Requests::of_targets(Targets::of(program, period), period, delay),
-                scenario::BusMode::InterpolatedPosition => {
-                    Requests::of_tables(Tables::of(program, profile.lags()), period, delay)
-                }
-                _ => Requests::of_program(program, period, delay),
+            match profile.targets() {
+                Some(targets) => Requests::of_targets(targets.clone(), period, delay),
+                None if profile.lags().is_empty() => Requests::of_program(program, period, delay),
+                None => Requests::of_tables(Tables::of(program, profile.lags()), period, delay),
             }
         }
         MotionTask::Plc(_) => Requests::of_cycles(period, delay),

@@ -4,15 +4,17 @@
 //! a table, which any other move has become in the program. Times count from the cycle in which the axis is powered.
 use super::Step;
 use super::program_cursor::ProgramCursor;
+use super::targets::Targets;
+use crate::error::BuildError;
 use servobench_base::Request;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_drive::device;
-use servobench_fieldbus::trajectory::{PointEncoding, Stream, Timing, Unsendable, points};
+use servobench_fieldbus::trajectory::{PointEncoding, Stream, Timing, points};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, ProfileCommand, Task};
 use servobench_motion::position_profile::Command;
 use servobench_planner::PlanDetails;
 use servobench_scenario::{Bus, BusMode};
-use servobench_trace::Move;
+use servobench_trace::Recorder;
 
 /// How far before its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
@@ -24,6 +26,8 @@ pub(super) struct DriveProfile {
     orders: Orders,
     /// By how much later than the program the drive begins each move (s), where points wait in its buffer; empty where none do.
     lags: Vec<f64>,
+    /// The ways of a drive that is told targets.
+    targets: Option<Targets>,
 }
 
 /// What is sent.
@@ -41,13 +45,13 @@ impl DriveProfile {
     /// The way of `moves` over `bus`, made by `drive`, which is told so late.
     ///
     /// # Errors
-    /// [`Unsendable`] names a point of a table that cannot be sent, or why none can.
+    /// [`BuildError`] names a point of a table that cannot be sent, or why none can, and a way that the drive cannot plan.
     pub(super) fn new(
         moves: ProgramCursor,
         bus: &Bus,
         drive: &device::Params,
         timing: Timing,
-    ) -> Result<Self, Unsendable> {
+    ) -> Result<Self, BuildError> {
         let program = moves.program();
         let orders = match bus.mode {
             BusMode::ProfileVelocity => {
@@ -63,7 +67,7 @@ impl DriveProfile {
                     let polynomials: Vec<_> = plan.spans().map(|span| (span.length, span.state)).collect();
                     Ok((start, points(polynomials, plan.end(), from, counts, encoding)?))
                 });
-                let stream = Stream::new(encoding, tables.collect::<Result<_, _>>()?, timing);
+                let stream = Stream::new(encoding, tables.collect::<Result<_, BuildError>>()?, timing);
                 stream.check()?;
                 Orders::Tables(stream)
             }
@@ -82,7 +86,9 @@ impl DriveProfile {
             }
             Orders::Positions { .. } | Orders::Velocities { .. } => Vec::new(),
         };
-        Ok(Self { moves, orders, lags })
+        let is_told = matches!(orders, Orders::Positions { .. });
+        let targets = is_told.then(|| Targets::of(moves.program(), drive, timing.task)).transpose()?;
+        Ok(Self { moves, orders, lags, targets })
     }
 
     pub(super) const fn moves(&self) -> &ProgramCursor {
@@ -94,10 +100,21 @@ impl DriveProfile {
         &self.lags
     }
 
-    /// What a recording says of the moves; they reach the axis `delay` (s) later.
-    pub(super) fn made(&self, delay: f64) -> impl Iterator<Item = Move> {
-        let lags = self.lags.iter().copied().chain(core::iter::repeat(0.0));
-        self.moves.moves(delay).zip(lags).map(|(made, lag)| made.later(lag))
+    /// Notes the moves as the drive makes them; they reach the axis `delay` (s) later.
+    pub(super) fn note(&self, delay: f64, recorder: &mut Recorder) {
+        let moves = self.moves.moves(delay);
+        match &self.targets {
+            Some(targets) => targets.made(moves).for_each(|made| recorder.note_move(made)),
+            None => {
+                let lags = self.lags.iter().copied().chain(core::iter::repeat(0.0));
+                moves.zip(lags).for_each(|(made, lag)| recorder.note_move(made.later(lag)));
+            }
+        }
+    }
+
+    /// The ways of a drive that is told targets.
+    pub(super) const fn targets(&self) -> Option<&Targets> {
+        self.targets.as_ref()
     }
 
     /// What goes over the serial interface of the drive in this cycle.

@@ -1,10 +1,12 @@
-//! The way of a drive that is told targets, in profile position: a trapezoid of velocity to each, whatever profile the program has.
-//!
-//! ```text
-//! v = min(6081h, √(a·d))      t_a = v/a      T = d/v + t_a      a = 6083h = 6084h
-//! ```
+//! The way of a drive that is told targets, in profile position: its own profile to each, whatever profile the program has: a trapezoid of
+//! velocity, or one of acceleration where its ramps are jerk-limited (6086h = 3, 60A4h).
+use crate::error::BuildError;
 use crate::program::Program;
 use servobench_base::{Request, Setpoint};
+use servobench_drive::device;
+use servobench_drive::modes::profile::Ramp;
+use servobench_motion::{Limits, Order, Profile};
+use servobench_trace::Move;
 
 /// A time so little after a cycle, as a share of it, is in that cycle.
 const ROUNDING: f64 = 1e-6;
@@ -18,26 +20,36 @@ pub(super) struct Targets {
 /// The way to a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Way {
-    /// When it begins (s), from where and over which distance (m or rad).
+    /// When the program begins it, and when the drive does (s); from where.
+    planned: f64,
     start: f64,
     from: f64,
-    distance: f64,
-    /// Its largest velocity, and its acceleration.
-    velocity: f64,
-    acceleration: f64,
+    profile: Profile,
+    /// Highest velocity, acceleration and jerk of it, `None` where there is no bound.
+    limits: [Option<f64>; 3],
 }
 
 impl Targets {
     /// Those of `program`, each of which is told in the first cycle that comes to it; cycles are `period` (s) apart.
-    pub(super) fn of(program: &Program, period: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`BuildError::Plan`] of a way that `drive` cannot plan.
+    pub(super) fn of(program: &Program, drive: &device::Params, period: f64) -> Result<Self, BuildError> {
         let told = |start: f64| (start / period - ROUNDING).ceil() * period;
-        let way = |(start, from, plan): (f64, f64, &servobench_planner::Plan)| {
-            let [velocity, acceleration, ..] = plan.limits().map(|sides| sides.above);
-            let distance = plan.end().x;
-            let velocity = velocity.min((acceleration * distance.abs()).sqrt());
-            Way { start: told(start), from, distance, velocity, acceleration }
+        let (order, jerk) = match drive.profile.ramp {
+            Ramp::Linear => (Order::Second, f64::INFINITY),
+            Ramp::JerkLimited(jerk) => (Order::Third, jerk),
         };
-        Self { ways: program.plans().map(way).collect() }
+        let way = |(index, (planned, from, plan)): (usize, (f64, f64, &servobench_planner::Plan))| {
+            let [velocity, acceleration, ..] = plan.limits().map(|sides| sides.above);
+            let velocity = velocity.min(drive.limits.profile_velocity);
+            let limits = Limits { velocity, acceleration, jerk, snap: f64::INFINITY };
+            let profile =
+                Profile::plan(order, plan.end().x, &limits).map_err(|error| BuildError::Plan { index, error })?;
+            let limits = [velocity, acceleration, jerk].map(|limit| limit.is_finite().then_some(limit));
+            Ok::<_, BuildError>(Way { planned, start: told(planned), from, profile, limits })
+        };
+        Ok(Self { ways: program.plans().enumerate().map(way).collect::<Result<_, _>>()? })
     }
 
     /// The request `passed` seconds after the beginning of the program.
@@ -45,27 +57,32 @@ impl Targets {
         let begun = self.ways.partition_point(|way| way.start <= passed);
         begun.checked_sub(1).map_or(Request::Stand, |last| self.ways[last].at(passed))
     }
+
+    /// The moves of the program as the drive makes them.
+    pub(super) fn made(&self, moves: impl Iterator<Item = Move>) -> impl Iterator<Item = Move> {
+        moves.zip(&self.ways).map(|(made, way)| {
+            let Way { planned, start, profile, limits: [velocity, acceleration, jerk], .. } = way;
+            let (made, duration) = (made.later(start - planned), profile.duration());
+            let peaks = profile.peaks();
+            Move {
+                end: made.start + duration,
+                cruise: (made.start + 0.5 * (duration - profile.cruise()), profile.cruise()),
+                peaks: [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap],
+                limits: [*velocity, *acceleration, *jerk, None],
+                ..made
+            }
+        })
+    }
 }
 
 impl Way {
     fn at(&self, passed: f64) -> Request {
-        let (size, a, since) = (self.distance.abs(), self.acceleration, passed - self.start);
-        let ramp = self.velocity / a;
-        let duration = size / self.velocity + ramp;
-        // Without a distance the duration is not a number.
-        if duration.is_nan() || since >= duration {
-            return Request::Rest(self.from + self.distance);
+        let since = passed - self.start;
+        if since >= self.profile.duration() {
+            return Request::Rest(self.from + self.profile.distance());
         }
-        let left = duration - since;
-        let (x, v, a) = if since < ramp {
-            (a * since * since / 2.0, a * since, a)
-        } else if left < ramp {
-            (size - a * left * left / 2.0, a * left, -a)
-        } else {
-            (self.velocity * (since - ramp / 2.0), self.velocity, 0.0)
-        };
-        let sign = self.distance.signum();
-        Request::Follow(Setpoint { x: self.from + sign * x, v: sign * v, a: sign * a, ..Setpoint::default() })
+        let setpoint = self.profile.at(since);
+        Request::Follow(Setpoint { x: self.from + setpoint.x, ..setpoint })
     }
 }
 
@@ -76,9 +93,10 @@ mod tests {
     /// Oracle: 1 m at 0.5 m/s and 1 m/s²: half a second of ramp, 1.5 s at full velocity; and 0.16 m, which is a triangle of 0.8 s.
     #[test]
     fn a_way_is_a_trapezoid_or_a_triangle() {
+        let limits = Limits { velocity: 0.5, acceleration: 1.0, jerk: f64::INFINITY, snap: f64::INFINITY };
         let way = |distance: f64| {
-            let velocity = 0.5_f64.min(distance.abs().sqrt());
-            Targets { ways: vec![Way { start: 1.0, from: 0.2, distance, velocity, acceleration: 1.0 }] }
+            let profile = Profile::plan(Order::Second, distance, &limits).unwrap();
+            Targets { ways: vec![Way { planned: 0.9, start: 1.0, from: 0.2, profile, limits: [None; 3] }] }
         };
         let x = |targets: &Targets, t: f64| match targets.at(t) {
             Request::Follow(setpoint) => (setpoint.x, setpoint.v),
