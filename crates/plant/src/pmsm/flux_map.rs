@@ -22,7 +22,11 @@ use table::FluxTable;
 
 /// Flux linkage by the currents.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FluxMap(Form);
+pub struct FluxMap {
+    form: Form,
+    /// A computed flux linkage has the rounding of this one, however small it is itself (V·s).
+    scale: f64,
+}
 
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
@@ -51,7 +55,8 @@ impl FluxMap {
     /// # Errors
     /// [`FluxMapError`] says what is wrong with the table and where, and the way out.
     pub fn table(data: &FluxData) -> Result<Self, FluxMapError> {
-        build::table(data).map(|table| Self(Form::Table(Arc::new(table))))
+        let scale = data.psi_d.iter().chain(&data.psi_q).fold(0.0, |most: f64, psi| most.max(psi.abs()));
+        build::table(data).map(|table| Self { form: Form::Table(Arc::new(table)), scale })
     }
 
     /// That of a motor whose data sheet gives `flux_linkage` (V·s) and `inductance` (H) without current.
@@ -59,7 +64,8 @@ impl FluxMap {
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
     pub fn curve(saturation: &Saturation, flux_linkage: f64, inductance: Dq) -> Result<Self, ParamError> {
-        Curve::new(saturation, flux_linkage, inductance).map(|curve| Self(Form::Curve(curve)))
+        Curve::new(saturation, flux_linkage, inductance)
+            .map(|curve| Self { form: Form::Curve(curve), scale: flux_linkage })
     }
 
     /// Flux linkage at the current `i` (V·s).
@@ -69,7 +75,7 @@ impl FluxMap {
     }
 
     pub(super) fn at(&self, i: Dq) -> FluxPoint {
-        match &self.0 {
+        match &self.form {
             Form::Table(table) => table.at(i),
             Form::Curve(curve) => curve.at(i),
         }
@@ -77,7 +83,7 @@ impl FluxMap {
 
     /// W(ψ₁) − W(ψ₀) − i₀·(ψ₁ − ψ₀) from the current `before` to `after`: what the field takes beyond first order, with its own digits.
     pub(super) fn beyond(&self, before: Dq, after: Dq) -> f64 {
-        match &self.0 {
+        match &self.form {
             Form::Table(table) => table.beyond(before, after),
             Form::Curve(curve) => curve.beyond(before, after),
         }
@@ -96,19 +102,35 @@ impl FluxMap {
         let mut i = near;
         for _ in 0..MOST_STEPS {
             let FluxPoint { flux: here, inductance } = self.at(i);
-            let step = inductance.solved(Dq { d: flux.d - here.d, q: flux.q - here.q });
+            let missing = Dq { d: flux.d - here.d, q: flux.q - here.q };
+            let step = inductance.solved(missing);
             i = Dq { d: i.d + step.d, q: i.q + step.q };
             // Quadratic convergence: the next step would be below the rounding.
-            if step.d.abs().max(step.q.abs()) <= CONVERGED * i.d.abs().max(i.q.abs()).max(f64::MIN_POSITIVE) {
+            if step.d.abs().max(step.q.abs()) <= CONVERGED * i.d.abs().max(i.q.abs())
+                || missing.d.abs().max(missing.q.abs()) <= self.rounding(flux)
+            {
                 return Some(i);
             }
         }
         None
     }
+
+    /// The square of `flux`, or of what its rounding is of (V²·s²).
+    pub(super) fn square(&self, flux: Dq) -> f64 {
+        (flux.d * flux.d + flux.q * flux.q).max(self.scale * self.scale)
+    }
+
+    /// Two flux linkages near `flux` that are apart by no more than this are the same one (V·s).
+    pub(super) fn rounding(&self, flux: Dq) -> f64 {
+        ROUNDINGS * f64::EPSILON * self.scale.max(flux.d.abs()).max(flux.q.abs())
+    }
 }
 
-/// A step of Newton's method that is so small is the last one.
+/// A step of Newton's method that is so small relative to the current is the last one.
 pub(super) const CONVERGED: f64 = 1e-8;
+/// So is one from flux linkages that are right but for so many roundings: near zero, where the magnets are all of the flux linkage, no step
+/// is small relative to the current. A polynomial of the third power has about as many.
+const ROUNDINGS: f64 = 8.0;
 /// As many steps are taken; more mean that it does not converge.
 pub(super) const MOST_STEPS: u32 = 25;
 

@@ -131,6 +131,7 @@ impl Saturated<'_> {
         // K_j without the correction.
         let free: [K; 2] = core::array::from_fn(|j| stages[j].slope(over.omega, moved(i, changes[j]), &points[j]));
 
+        let no_change = NO_CHANGE * self.map.square(before);
         let (mut lambda, mut corrections) = (0.0, 0);
         let mut near =
             Dq { d: i.d + SQRT_3 * (changes[1].d - changes[0].d), q: i.q + SQRT_3 * (changes[1].q - changes[0].q) };
@@ -140,8 +141,7 @@ impl Saturated<'_> {
             let after = self.map.current(Dq { d: before.d + half_d, q: before.q + half_q }, near)?;
             near = after;
             let square = h / 2.0 * (slopes[0].square() + slopes[1].square());
-            if h * square <= NO_CHANGE * (before.d * before.d + before.q * before.q) || corrections == MOST_CORRECTIONS
-            {
+            if h * square <= no_change || corrections == MOST_CORRECTIONS {
                 break (after, slopes);
             }
             let (mut work, mut size, mut per) = (0.0, 0.0, 0.0);
@@ -172,6 +172,8 @@ impl Saturated<'_> {
     /// I_j − i: Newton's method for all four.
     fn changes(&self, i: Dq, before: Dq, stages: &[Stage; 2], omega: f64, h: f64) -> Option<[Dq; 2]> {
         let mut changes = [Dq::default(); 2];
+        let driven = stages.iter().fold(0.0, |most: f64, one| most.max(one.driving.d.abs()).max(one.driving.q.abs()));
+        let rounding = self.map.rounding(moved(before, Dq { d: h * driven, q: 0.0 }));
         for _ in 0..MOST_STEPS {
             let points = changes.map(|change| self.map.at(moved(i, change)));
             let mut system = [[0.0; 5]; 4];
@@ -198,12 +200,13 @@ impl Saturated<'_> {
                 system[2 * n][4] -= point.flux.d - before.d;
                 system[2 * n + 1][4] -= point.flux.q - before.q;
             }
+            let missing = system.iter().fold(0.0, |most: f64, row| most.max(row[4].abs()));
             let [d1, q1, d2, q2] = solved(system);
             changes = [moved(changes[0], Dq { d: d1, q: q1 }), moved(changes[1], Dq { d: d2, q: q2 })];
             let step = d1.abs().max(q1.abs()).max(d2.abs()).max(q2.abs());
             let size =
                 changes.iter().fold(i.d.abs().max(i.q.abs()), |most, one| most.max(one.d.abs()).max(one.q.abs()));
-            if step <= CONVERGED * size.max(f64::MIN_POSITIVE) {
+            if step <= CONVERGED * size || missing <= rounding {
                 return Some(changes);
             }
         }

@@ -49,7 +49,7 @@ impl Sums {
         Output { torque, power }
     }
 
-    pub(super) fn add(&mut self, more: &Self) {
+    pub(crate) fn add(&mut self, more: &Self) {
         self.torque += more.torque;
         self.copper += more.copper;
         self.square += more.square;

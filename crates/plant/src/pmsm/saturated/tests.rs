@@ -351,3 +351,51 @@ fn nothing_in_is_nothing_out() {
     let after = motor.advance::<true>(i, &huge, &mut Sums::default());
     assert!(after.d.is_finite() && after.q.is_finite(), "{after:?}");
 }
+
+/// A current that nothing drives falls to the rounding of the magnets' flux linkage, through all that is on the way, and stays there: two
+/// hundred motors by a figure and by a table, at rest and pushed from a thousandth to a billionth of an ampere.
+#[test]
+fn a_motor_that_nothing_drives_comes_to_rest() {
+    let table = published(14, 12);
+    let mut random = {
+        let mut state = 39_u64;
+        move |from: f64, to: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            from + (to - from) * (state >> 11) as f64 / 9_007_199_254_740_992.0
+        }
+    };
+    for n in 0..200 {
+        let along = 10_f64.powf(random(-4.0, -1.5));
+        let inductance = Dq { d: along, q: random(0.3, 3.0) * along };
+        let flux_linkage = 10_f64.powf(random(-3.0, 0.0));
+        let current = flux_linkage / inductance.d * random(0.2, 2.0);
+        let saturation = Saturation { current, share: random(0.75, 1.0), residual: random(0.05, 0.5) };
+        let Ok(curve) = FluxMap::curve(&saturation, flux_linkage, inductance) else { continue };
+        let is_a_table = n % 5 == 0;
+        let (map, p) = if is_a_table {
+            (&table, Params { resistance: 60.0, ..RELUCTANCE })
+        } else {
+            (&curve, Params { resistance: inductance.d / random(1e-4, 5e-3), inductance, flux_linkage, ..SERVO })
+        };
+        let motor = plain(&p, map);
+        let h = 1.0 / 10_f64.powf(random(3.6, 5.0));
+        let least = map.rounding(map.flux(Dq::default())) / p.inductance.d.min(p.inductance.q);
+        let rotor = ElectricalAngle(random(-3.0, 3.0)).rotation();
+        let mut x = State { current: Dq { d: -0.3 * current, q: 0.8 * current } };
+        let rest = Input { voltage: AlphaBeta::default(), rotor, omega_e: 0.0 };
+        let slowest = p.inductance.d.max(p.inductance.q) / p.resistance;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of ticks")]
+        let ticks = (45.0 * slowest / h).min(30_000.0) as u32;
+        for k in 0..ticks {
+            motor.step(&mut x, &rest, h);
+            assert!(x.current.d.is_finite() && x.current.q.is_finite(), "motor {n}, tick {k}");
+        }
+        assert!(x.current.magnitude() < 100.0 * least + 1e-12 * current, "motor {n}: {:?}, {least}", x.current);
+        for size in [1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-15] {
+            // Within a tick a current follows its voltage, whatever there is of either.
+            let voltage = AlphaBeta { alpha: size * p.resistance, beta: -size * p.resistance };
+            let output = motor.step(&mut x, &Input { voltage, rotor, omega_e: 3.0 }, h);
+            assert!(x.current.magnitude().is_finite() && output.power.copper >= 0.0, "motor {n}, {size}: {x:?}");
+        }
+    }
+}
