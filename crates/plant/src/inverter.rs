@@ -7,19 +7,21 @@
 //!
 //! What a real one does beside that has a file each; [`Params`] switches it on.
 mod averaged;
+mod held;
 mod legs;
 mod link;
 mod modulation;
 mod params;
 mod switching;
+mod tick;
 
 pub(crate) use averaged::Averaged;
 #[cfg(test)]
-pub(crate) use legs::vector;
-pub(crate) use legs::{Legs, legs};
+pub(crate) use legs::{legs, vector};
 pub use link::{Brake, LinkParameter, LinkParams, LinkPower, LinkState, Sag};
 pub use params::{MOST_DEAD, Modulation, Parameter, Params};
-pub(crate) use switching::{Bridge, Input as SwitchingInput, Switching};
+pub(crate) use switching::{Bridge, Switching};
+pub(crate) use tick::{Input, Tick};
 
 use servobench_base::AlphaBeta;
 
@@ -39,6 +41,12 @@ pub fn output(wanted: AlphaBeta, u_dc: f64) -> AlphaBeta {
     }
     let ratio = limit / libm::sqrt(squared);
     AlphaBeta { alpha: wanted.alpha * ratio, beta: wanted.beta * ratio }
+}
+
+/// Whether `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
+pub(crate) fn falls_short(given: AlphaBeta, wanted: AlphaBeta) -> bool {
+    let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
+    given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)
 }
 
 #[cfg(test)]

@@ -9,171 +9,238 @@
 //! 4/π·E. Source: Holmes & Lipo, *Pulse Width Modulation for Power Converters* (the pulse that is lost); Jeong & Park, *IEEE
 //! Transactions on Industrial Electronics* 38(2), 1991 (the mean over a period).
 //!
-//! # A current near zero
+//! # A tick
+//!
+//! r is in series with the winding, whose equations have it; so it acts on the current that flows, however short L/R is. As long as no
+//! current changes its sign, E·sgn(i_x) is a voltage that stands still, on which the winding is as exact as on any. Where a current comes
+//! to zero within a tick, the tick ends there, and another one begins.
 //!
 //! A current that the error would reverse is held at zero (zero-current clamping): with both devices off and no current, the diodes block,
-//! and the leg goes where the motor takes it. So E·sgn(0) is whatever holds the current, up to E. Over a tick with the currents p_x at
-//! its end, had there been no E, that is
-//!
-//! ```text
-//! E·sgn(i_x) = L/h·clamp(p_x + μ, ±h·E/L)        μ = clamp(median(p)/2, ±h·E/3L)
-//! ```
-//! This is the currents' step against three dry frictions, solved exactly: it minimises Σ (i_x − p_x)²·L/2h + E·|i_x| over currents
-//! that sum up to zero, whose multiplier, the star point, is μ. A motor on less than 4/3·E along a phase takes no current at all.
-//!
-//! E is held over a tick: where a current passes zero it is off by at most h·E/L, of first order in the tick; everywhere else the
-//! error is exact. r·i_x is that of the middle of the tick, of second order. L is the smaller inductance, so that a salient motor is
-//! held from both sides, and not thrown from one to the other.
-#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use super::legs::{Legs, product, vector};
+//! and the leg goes where the motor takes it. So E·sgn(0) is whatever holds the current, up to E. From a zero on, what is held and what
+//! goes through it is solved by the winding's own [response](super::held) to a voltage over what is left of the tick: currents at its end
+//! have the sign that their error is against, and a second zero in one tick is at its end. A motor on less than 4/3·E along a phase takes no current at all.
+use super::held::{self, Response, changed};
+use super::legs::{Legs, legs, vector};
 use super::params::Params;
-use servobench_base::AlphaBeta;
+use super::tick::{Input, Tick};
+use crate::pmsm::{self, Equations, Span, Sums, Winding};
+use servobench_base::{AlphaBeta, Dq, Rotation};
+
+/// A current is no longer followed to its zero when it is as near to it, as a part of what it goes in that time; nor is one that is there
+/// after this part of the time.
+const AT_ZERO: f64 = 1e-9;
+/// A leg has no current when it is so much smaller than that of the largest one: the sum of the three has roundings.
+const NO_CURRENT: f64 = 1e-12;
+/// Steps towards a zero; the false position with halved ends takes six of a decay as long as its time.
+const MOST_STEPS: u32 = 24;
+/// Solutions of a winding that saturates: each takes the response of the one before along.
+const MOST_TRIALS: u32 = 8;
+/// Largest difference of the current from what the response says, as a part of what the error changes: a winding without saturation has
+/// the rounding.
+const AS_SAID: f64 = 1e-9;
 
 /// What an averaged inverter takes of each leg.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Averaged {
+    equations: Equations,
     /// Dead time in periods of the carrier.
     dead: f64,
     /// Threshold of a device (V).
     drop: f64,
     /// Resistance of a device (Ω).
     resistance: f64,
-}
-
-/// What is taken over a tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Taken {
-    /// By dead time and threshold, and of that the threshold's share.
-    error: Legs,
-    share: f64,
-    /// By the resistance.
-    ohmic: Legs,
+    /// Length of a tick (s).
+    h: f64,
 }
 
 impl Averaged {
-    pub(crate) fn new(p: &Params) -> Self {
-        Self { dead: p.dead_time * p.carrier, drop: p.device_drop, resistance: p.on_resistance }
+    /// Of `motor`, in ticks of `h` (s).
+    pub(crate) fn new(p: &Params, motor: &pmsm::Params, h: f64) -> Self {
+        Self {
+            equations: Equations::new(motor, p.on_resistance),
+            dead: p.dead_time * p.carrier,
+            drop: p.device_drop,
+            resistance: p.on_resistance,
+            h,
+        }
     }
 
-    /// What it takes of the legs of a link of `u_dc` (V) over a tick that begins with the currents `before` and would end with
-    /// `free`, where a volt changes a current by `gain` (A).
-    #[inline(always)]
-    pub(crate) fn taken(&self, before: Legs, free: Legs, u_dc: f64, gain: f64) -> Taken {
-        let drop = self.drop + self.dead * u_dc;
-        let ohmic: Legs = core::array::from_fn(|x| self.resistance * 0.5 * (before[x] + free[x]));
-        let free: Legs = core::array::from_fn(|x| free[x] - gain * ohmic[x]);
-        let most = gain * drop;
-        // They sum up to zero.
-        let median = -(free[0].max(free[1]).max(free[2]) + free[0].min(free[1]).min(free[2]));
-        let star = (0.5 * median).clamp(-most / 3.0, most / 3.0);
-        let error = free.map(|p| (p + star).clamp(-most, most) / gain);
-        let share = if drop > 0.0 { self.drop / drop } else { 0.0 };
-        Taken { error, share, ohmic }
+    /// Whether it takes nothing.
+    pub(crate) fn is_ideal(&self) -> bool {
+        self.dead + self.drop + self.resistance == 0.0
+    }
+
+    /// The winding of a motor without effects.
+    pub(crate) const fn equations(&self) -> &Equations {
+        &self.equations
+    }
+
+    /// Resistance of the devices before each phase (Ω).
+    pub(crate) const fn resistance(&self) -> f64 {
+        self.resistance
+    }
+
+    /// Goes from tick k to k+1 with this winding, in whose resistance that of the devices is; without `POWER` the powers and the loss are
+    /// left out.
+    pub(crate) fn step<const POWER: bool, W: Winding>(&self, winding: &W, current: &mut Dq, u: &Input) -> Tick {
+        let (before, ideal) = (*current, super::output(u.wanted, u.u_dc));
+        let most = self.drop + self.dead * u.u_dc;
+        let share = if most > 0.0 { self.drop / most } else { 0.0 };
+        let mut way = Way::<POWER, W> {
+            winding,
+            ideal,
+            omega: u.omega_e,
+            share,
+            i: before,
+            rotor: u.rotor,
+            left: self.h,
+            sums: Sums::default(),
+            taken: AlphaBeta::default(),
+        };
+        way.go(most);
+        let Way { i, rotor, sums, taken, .. } = way;
+        *current = i;
+        let ends = [before.to_alpha_beta(u.rotor), i.to_alpha_beta(rotor)];
+        let (per, ohmic) = (1.0 / self.h, 0.5 * self.resistance);
+        let voltage = AlphaBeta {
+            alpha: ideal.alpha - per * taken.alpha - ohmic * (ends[0].alpha + ends[1].alpha),
+            beta: ideal.beta - per * taken.beta - ohmic * (ends[0].beta + ends[1].beta),
+        };
+        let stored = if POWER { winding.stored(before, i) } else { 0.0 };
+        let over = (self.resistance, u.omega_e, self.h);
+        Tick::of::<POWER, W>(winding, &sums, stored, over, (voltage, super::falls_short(ideal, u.wanted)))
     }
 }
 
-impl Taken {
-    /// What the voltage is less.
-    #[inline(always)]
-    pub(crate) fn voltage(&self) -> AlphaBeta {
-        vector(core::array::from_fn(|x| self.error[x] + self.ohmic[x]))
+/// On the way through a tick.
+struct Way<'a, const POWER: bool, W> {
+    winding: &'a W,
+    ideal: AlphaBeta,
+    omega: f64,
+    /// Of the threshold in the error.
+    share: f64,
+    i: Dq,
+    rotor: Rotation,
+    /// What is left of the tick (s).
+    left: f64,
+    sums: Sums,
+    /// ∫ e dt (V·s).
+    taken: AlphaBeta,
+}
+
+impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
+    /// To the end of the tick, with an error of `most` (V) of a leg.
+    fn go(&mut self, most: f64) {
+        if most == 0.0 {
+            self.take(AlphaBeta::default(), self.left);
+            return;
+        }
+        let before = legs(self.i.to_alpha_beta(self.rotor));
+        let largest = before.iter().fold(0.0, |most: f64, i| most.max(i.abs()));
+        if !before.iter().any(|i| i.abs() <= NO_CURRENT * largest) {
+            let error = vector(before.map(|i| most.copysign(i)));
+            let mut sums = Sums::default();
+            let end = self.winding.advance::<POWER>(self.i, &self.over(error, self.left), &mut sums);
+            let after = self.after(end, self.left);
+            let Some((leg, when)) = first_zero(before, after) else {
+                self.accept(end, &sums, error, self.left);
+                return;
+            };
+            if when > AT_ZERO {
+                self.follow_to_zero(error, leg, [before[leg], after[leg]]);
+            }
+        }
+        self.finish_from_zero(most);
     }
 
-    /// Power that the devices turn into heat, with the mean currents `mean` (W). What dead time takes goes back into the link.
-    #[inline(always)]
-    pub(crate) fn loss(&self, mean: Legs) -> f64 {
-        self.share * product(self.error, mean) + product(self.ohmic, mean)
+    fn over(&self, error: AlphaBeta, time: f64) -> Span {
+        let voltage = AlphaBeta { alpha: self.ideal.alpha - error.alpha, beta: self.ideal.beta - error.beta };
+        let drop = AlphaBeta { alpha: self.share * error.alpha, beta: self.share * error.beta };
+        Span { voltage, drop, rotor: self.rotor, omega: self.omega, time }
     }
+
+    /// Currents of the legs after `time`, with `end` in the rotor's frame.
+    fn after(&self, end: Dq, time: f64) -> Legs {
+        legs(end.to_alpha_beta(self.rotor.ahead(self.omega * time)))
+    }
+
+    fn take(&mut self, error: AlphaBeta, time: f64) {
+        let mut sums = Sums::default();
+        let end = self.winding.advance::<POWER>(self.i, &self.over(error, time), &mut sums);
+        self.accept(end, &sums, error, time);
+    }
+
+    fn accept(&mut self, end: Dq, sums: &Sums, error: AlphaBeta, time: f64) {
+        self.i = end;
+        self.rotor = self.rotor.ahead(self.omega * time);
+        self.left -= time;
+        self.sums.add(sums);
+        self.taken.alpha += time * error.alpha;
+        self.taken.beta += time * error.beta;
+    }
+
+    /// To where the current of `leg`, which is at these `ends` of the time, is zero: by false position, an end that stays being halved.
+    fn follow_to_zero(&mut self, error: AlphaBeta, leg: usize, ends: [f64; 2]) {
+        let ([mut low, mut high], [mut at_low, mut at_high]) = ([0.0, self.left], ends);
+        let enough = AT_ZERO * (ends[0] - ends[1]).abs();
+        let (mut time, mut last) = (self.left, 0);
+        for _ in 0..MOST_STEPS {
+            time = (low * at_high - high * at_low) / (at_high - at_low);
+            let end = self.winding.advance::<false>(self.i, &self.over(error, time), &mut Sums::default());
+            let here = self.after(end, time)[leg];
+            if here.abs() <= enough {
+                break;
+            }
+            if (here > 0.0) == (ends[0] > 0.0) {
+                (low, at_low) = (time, here);
+                at_high *= if last == -1 { 0.5 } else { 1.0 };
+                last = -1;
+            } else {
+                (high, at_high) = (time, here);
+                at_low *= if last == 1 { 0.5 } else { 1.0 };
+                last = 1;
+            }
+        }
+        self.take(error, time);
+    }
+
+    /// What is left of the tick, with a leg that has no current.
+    fn finish_from_zero(&mut self, most: f64) {
+        let time = self.left;
+        let end_of = |way: &Self, error: AlphaBeta| {
+            let end = way.winding.advance::<false>(way.i, &way.over(error, time), &mut Sums::default());
+            end.to_alpha_beta(way.rotor.ahead(way.omega * time))
+        };
+        let mut free = end_of(self, AlphaBeta::default());
+        let less = |a: AlphaBeta, b: AlphaBeta| AlphaBeta { alpha: a.alpha - b.alpha, beta: a.beta - b.beta };
+        let [along_alpha, along_beta] = [AlphaBeta { alpha: most, beta: 0.0 }, AlphaBeta { alpha: 0.0, beta: most }]
+            .map(|e| less(free, end_of(self, e)));
+        let m: Response =
+            [[along_alpha.alpha / most, along_beta.alpha / most], [along_alpha.beta / most, along_beta.beta / most]];
+        let size = most * (m[0][0] + m[1][1]);
+        let mut trials = 0;
+        loop {
+            let error = held::error(free, &m, most);
+            let mut sums = Sums::default();
+            let end = self.winding.advance::<POWER>(self.i, &self.over(error, time), &mut sums);
+            let off = less(end.to_alpha_beta(self.rotor.ahead(self.omega * time)), less(free, changed(&m, error)));
+            trials += 1;
+            // What is not a number is not repeated.
+            let is_off = off.alpha.abs().max(off.beta.abs()) > AS_SAID * size;
+            if !is_off || trials == MOST_TRIALS {
+                self.accept(end, &sums, error, time);
+                return;
+            }
+            free = AlphaBeta { alpha: free.alpha + off.alpha, beta: free.beta + off.beta };
+        }
+    }
+}
+
+/// The leg whose current changes its sign first, and after which part of the time it does if it falls evenly.
+fn first_zero(before: Legs, after: Legs) -> Option<(usize, f64)> {
+    let zeros = (0..3).filter(|x| before[*x] * after[*x] < 0.0).map(|x| (x, before[x] / (before[x] - after[x])));
+    zeros.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::legs::legs;
-    use super::*;
-    use core::f64::consts::PI;
-    use proptest::prelude::*;
-
-    /// 2.3 µs of 62.5 µs on 320 V: 11.776 V of each leg.
-    const DEAD: Averaged = Averaged { dead: 2.3e-6 * 16e3, drop: 0.0, resistance: 0.0 };
-    const E: f64 = 2.3e-6 * 16e3 * 320.0;
-
-    fn of(i: AlphaBeta, gain: f64) -> Taken {
-        DEAD.taken(legs(i), legs(i), 320.0, gain)
-    }
-
-    fn at(angle: f64) -> AlphaBeta {
-        AlphaBeta { alpha: 5.0 * angle.cos(), beta: 5.0 * angle.sin() }
-    }
-
-    /// Oracle: the published forms −t_d·f·U·sgn(i) of a leg, 4/3 of it as a vector, 4/π of it as the fundamental of a phase. The current
-    /// is beyond twenty times what a tick changes.
-    #[test]
-    fn leg_vector_and_fundamental_are_the_published_ones() {
-        let gain = 0.25 / E;
-        let (steps, mut in_phase, mut in_quadrature) = (7_000, 0.0, 0.0);
-        for k in 0..steps {
-            let angle = 2.0 * PI * (f64::from(k) + 0.37) / f64::from(steps);
-            let (i, taken) = (legs(at(angle)), of(at(angle), gain));
-            for (i, error) in i.into_iter().zip(taken.error).filter(|(i, _)| i.abs() > 0.25) {
-                assert!((error - E.copysign(i)).abs() < 1e-12 * E, "{angle} {i}: {taken:?}");
-            }
-            let vector = taken.voltage();
-            let length = vector.alpha.hypot(vector.beta);
-            if i.iter().all(|i| i.abs() > 0.25) {
-                assert!((length / (4.0 / 3.0 * E) - 1.0).abs() < 1e-12, "{angle}: {length}");
-            }
-            in_phase += vector.alpha * angle.cos() * 2.0 / f64::from(steps);
-            in_quadrature += vector.alpha * angle.sin() * 2.0 / f64::from(steps);
-        }
-        // Clamping rounds the corners, by (h·E/L)/(5 A)/6 of a step's width; 1 % is what is asked for.
-        assert!((in_phase / (4.0 / PI * E) - 1.0).abs() < 2e-3, "{in_phase}");
-        assert!(in_quadrature.abs() < 1e-3 * E, "{in_quadrature}");
-    }
-
-    /// Oracle: the balance of voltages. Along a phase, one leg stands against two in parallel.
-    #[test]
-    fn below_four_thirds_of_the_error_there_is_no_current() {
-        let gain = 62.5e-6 / 3.485e-3;
-        for direction in [1.0, -1.0] {
-            for (share, flows) in [(0.2, 0.0), (0.99, 0.0), (1.01, 0.01), (1.5, 0.5)] {
-                let free = gain * share * 4.0 / 3.0 * E * direction;
-                let taken = DEAD.taken([0.0; 3], legs(AlphaBeta { alpha: free, beta: 0.0 }), 320.0, gain);
-                let current = free - gain * taken.voltage().alpha;
-                let expected = gain * flows * 4.0 / 3.0 * E * direction;
-                assert!((current - expected).abs() < 1e-14, "{share}: {current} {expected}");
-            }
-        }
-    }
-
-    proptest! {
-        /// Oracle: what makes a step against friction the right one (Karush, Kuhn and Tucker): each error within ±E, at its end where
-        /// the current flows, against it; and no current is reversed.
-        #[test]
-        fn each_leg_is_held_or_braked(alpha in -2.0..2.0_f64, beta in -2.0..2.0_f64, gain in 0.001..0.3_f64) {
-            let free = AlphaBeta { alpha, beta };
-            let taken = of(free, gain);
-            let end: Legs = {
-                let u = taken.voltage();
-                legs(AlphaBeta { alpha: alpha - gain * u.alpha, beta: beta - gain * u.beta })
-            };
-            for x in 0..3 {
-                // Some roundings of numbers up to gain·E, divided by the gain.
-                prop_assert!(taken.error[x].abs() <= E * (1.0 + 1e-12));
-                if end[x].abs() > 1e-12 {
-                    prop_assert!((taken.error[x] - E.copysign(end[x])).abs() < 1e-9, "{end:?} {taken:?}");
-                }
-            }
-        }
-    }
-
-    /// Oracle: U_T·Σ|i_x| + r·Σ i_x², and nothing by dead time.
-    #[test]
-    fn devices_turn_threshold_and_resistance_into_heat() {
-        let real = Averaged { drop: 0.9, resistance: 0.05, ..DEAD };
-        let i = legs(at(0.4));
-        let taken = real.taken(i, i, 320.0, 1e-3);
-        let expected: f64 = i.iter().map(|i| 0.9 * i.abs() + 0.05 * i * i).sum();
-        assert!((taken.loss(i) / expected - 1.0).abs() < 1e-12, "{} {expected}", taken.loss(i));
-        assert!(of(at(0.4), 1e-3).loss(i).abs() < 1e-15);
-    }
-}
+mod tests;

@@ -28,7 +28,7 @@ pub(crate) fn vector([a, b, c]: Legs) -> AlphaBeta {
 }
 
 /// Power of the currents `i` at the voltages `u`.
-#[inline(always)]
+#[cfg(test)]
 pub(crate) fn product(u: Legs, i: Legs) -> f64 {
     u[0] * i[0] + u[1] * i[1] + u[2] * i[2]
 }

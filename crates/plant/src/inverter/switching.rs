@@ -17,6 +17,7 @@
 use super::legs::{Legs, legs, vector};
 use super::modulation::duties;
 use super::params::Params;
+use super::tick::{Input, Tick};
 use crate::pmsm::{self, Equations, Span, Sums, Winding};
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 
@@ -55,34 +56,6 @@ pub(crate) struct Bridge {
     /// When it is told otherwise, and when its new device turns on: since the half period began (s); infinite: not in this half.
     edge: Legs,
     on: Legs,
-}
-
-/// What a tick gives beside the current.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Tick {
-    /// Mean torque (N·m).
-    pub(crate) torque: f64,
-    /// Mean powers of the motor (W).
-    pub(crate) power: pmsm::Power,
-    /// Mean loss of the devices (W).
-    pub(crate) loss: f64,
-    /// Mean voltage at the motor's terminals but for what a resistance of the devices takes (V).
-    pub(crate) voltage: AlphaBeta,
-    /// Whether the hexagon shortened what was asked for.
-    pub(crate) shortened: bool,
-}
-
-/// What acts from tick k to k+1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Input {
-    /// Voltage that is asked for (V).
-    pub(crate) wanted: AlphaBeta,
-    /// Voltage of the link (V).
-    pub(crate) u_dc: f64,
-    /// Rotor at tick k.
-    pub(crate) rotor: Rotation,
-    /// Mean electrical speed over the tick (rad/s).
-    pub(crate) omega_e: f64,
 }
 
 impl Default for Bridge {
@@ -200,15 +173,9 @@ impl Switching {
         *current = i;
         let stored = if POWER { winding.stored(before, i) } else { 0.0 };
         let per = 1.0 / self.h;
-        let pmsm::Output { torque, power } = sums.output(stored, winding.electrical_ratio(), u.omega_e, self.h);
         let voltage = AlphaBeta { alpha: fluxes[0] * per, beta: fluxes[1] * per };
-        let shortened = duties.shortened;
-        if !POWER {
-            return Tick { torque, voltage, shortened, ..Tick::default() };
-        }
-        let ohmic = 1.5 * self.resistance * sums.square * per;
-        let power = pmsm::Power { electrical: power.electrical - ohmic, ..power };
-        Tick { torque, power, loss: ohmic + 1.5 * sums.other * per, voltage, shortened }
+        let over = (self.resistance, u.omega_e, self.h);
+        Tick::of::<POWER, W>(winding, &sums, stored, over, (voltage, duties.shortened))
     }
 
     /// The same time without current or voltage: the carrier goes on.

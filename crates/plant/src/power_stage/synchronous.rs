@@ -211,7 +211,7 @@ impl Synchronous {
             return self.advance_real(wanted, pmsm::Travel { position: motor.position, speed: mean_speed }, h);
         }
         let given = inverter::output(wanted, self.u_dc);
-        self.shortens = is_shorter(given, wanted);
+        self.shortens = inverter::falls_short(given, wanted);
         let ticks = &self.motor;
         let omega_e = ticks.params().electrical_ratio * mean_speed;
         let input = pmsm::Input { voltage: given, rotor: self.rotor.rotation(), omega_e };
@@ -251,12 +251,6 @@ impl Synchronous {
         (self.last_speed, self.shortens, self.voltage) = (motor.velocity, false, Dq::default());
         output.torque
     }
-}
-
-/// Whether `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
-fn is_shorter(given: AlphaBeta, wanted: AlphaBeta) -> bool {
-    let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
-    given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)
 }
 
 #[cfg(test)]

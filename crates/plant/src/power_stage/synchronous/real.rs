@@ -4,10 +4,10 @@
 //! cable (mirror image of what is asked for, a phase that opens) → inverter (averaged: one voltage; switching: one from edge to edge) → winding (currents, torque, losses) → rotor (cogging, drag of the
 //! iron, temperature) → link (supplies what motor and devices took)
 //! ```
-use super::{Synchronous, is_shorter};
-use crate::inverter::{self, Averaged, Bridge, Legs, LinkParams, LinkPower, LinkState, Modulation, Switching, legs};
+use super::Synchronous;
+use crate::inverter::{self, Averaged, Bridge, LinkParams, LinkPower, LinkState, Modulation, Switching};
 use crate::pmsm::{self, Winding as _};
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError};
 use std::sync::Arc;
 
 /// Largest turn of the rotor in a tick (rad, electrical). One that turns further has diverged, and its windings, which are followed in
@@ -27,8 +27,7 @@ pub(super) struct RealInverter {
 
 #[derive(Debug, Clone)]
 enum Modulator {
-    /// With what it takes, and the current that a volt changes in a tick, at the smaller inductance (A).
-    Averaged(Averaged, f64),
+    Averaged(Arc<Averaged>),
     Switching(Arc<Switching>, Bridge),
 }
 
@@ -46,9 +45,7 @@ impl RealInverter {
         inverter.check()?;
         link.map_or(Ok(()), LinkParams::check)?;
         let modulator = match inverter.modulation {
-            Modulation::Averaged => {
-                Modulator::Averaged(Averaged::new(inverter), h / motor.inductance.d.min(motor.inductance.q))
-            }
+            Modulation::Averaged => Modulator::Averaged(Arc::new(Averaged::new(inverter, motor, h))),
             Modulation::Switching => {
                 Modulator::Switching(Arc::new(Switching::new(inverter, motor, h)?), Bridge::default())
             }
@@ -81,6 +78,40 @@ impl RealInverter {
         let (params, state) = self.link.as_mut()?;
         self.link_power = params.step(state, power + self.loss, h);
         Some(state.voltage)
+    }
+}
+
+impl Modulator {
+    fn is_ideal(&self) -> bool {
+        matches!(self, Self::Averaged(averaged) if averaged.is_ideal())
+    }
+
+    /// Resistance of the devices before each phase (Ω).
+    fn resistance(&self) -> f64 {
+        match self {
+            Self::Averaged(averaged) => averaged.resistance(),
+            Self::Switching(switching, _) => switching.resistance(),
+        }
+    }
+
+    /// The winding of a motor without effects, behind that.
+    fn equations(&self) -> pmsm::Equations {
+        match self {
+            Self::Averaged(averaged) => *averaged.equations(),
+            Self::Switching(switching, _) => *switching.equations(),
+        }
+    }
+
+    fn step<const POWER: bool, W: pmsm::Winding>(
+        &mut self,
+        winding: &W,
+        current: &mut Dq,
+        input: &inverter::Input,
+    ) -> inverter::Tick {
+        match self {
+            Self::Averaged(averaged) => averaged.step::<POWER, W>(winding, current, input),
+            Self::Switching(switching, bridge) => switching.step::<POWER, W>(winding, bridge, current, input),
+        }
     }
 }
 
@@ -127,48 +158,21 @@ impl Winding<'_> {
     fn on_ideal(&self, x: &mut pmsm::State, wanted: AlphaBeta, u_dc: f64, input: pmsm::Input) -> Driven {
         let input = pmsm::Input { voltage: inverter::output(wanted, u_dc), ..input };
         let voltage = input.voltage_at_middle(self.h);
-        Driven { output: self.step(x, &input), voltage, shortens: is_shorter(input.voltage, wanted), loss: 0.0 }
+        Driven {
+            output: self.step(x, &input),
+            voltage,
+            shortens: inverter::falls_short(input.voltage, wanted),
+            loss: 0.0,
+        }
     }
 
-    /// ```text
-    /// currents at the end without an error → what the inverter takes → motor on what is left
-    /// ```
-    fn on_averaged(
-        &self,
-        (averaged, gain): (&Averaged, f64),
-        x: &mut pmsm::State,
-        wanted: AlphaBeta,
-        u_dc: f64,
-        input: pmsm::Input,
-    ) -> Driven {
-        let (rotor, turn) = (input.rotor, input.omega_e * self.h);
-        let ideal = inverter::output(wanted, u_dc);
-        let input = pmsm::Input { voltage: ideal, ..input };
-        let (before, mut free) = (x.current, *x);
-        self.step(&mut free, &input);
-        let in_legs = |current: Dq, rotor: Rotation| legs(current.to_alpha_beta(rotor));
-        let after = in_legs(free.current, rotor.ahead(turn));
-        let taken = averaged.taken(in_legs(before, rotor), after, u_dc, gain);
-        let error = taken.voltage();
-        let voltage = AlphaBeta { alpha: ideal.alpha - error.alpha, beta: ideal.beta - error.beta };
-        let input = pmsm::Input { voltage, ..input };
-        let output = self.step(x, &input);
-        let loss = taken.loss(mean_legs([before, x.current], rotor, turn));
-        Driven { output, voltage: input.voltage_at_middle(self.h), shortens: is_shorter(ideal, wanted), loss }
-    }
-
-    fn on_switching<const POWER: bool>(
-        &self,
-        switching: &Switching,
-        bridge: &mut Bridge,
-        x: &mut pmsm::State,
-        input: &inverter::SwitchingInput,
-    ) -> Driven {
-        let winding = self.real.and_then(|real| real.winding(self.params, switching.resistance()));
-        let tick = match (self.with_open_phase(switching.resistance()), winding) {
-            (Some(open), _) => switching.step::<POWER, _>(&open, bridge, &mut x.current, input),
-            (None, Some(winding)) => switching.step::<POWER, _>(&winding, bridge, &mut x.current, input),
-            (None, None) => switching.step::<POWER, _>(switching.equations(), bridge, &mut x.current, input),
+    fn on_real<const POWER: bool>(&self, on: &mut Modulator, x: &mut pmsm::State, input: &inverter::Input) -> Driven {
+        let series = on.resistance();
+        let winding = self.real.and_then(|real| real.winding(self.params, series));
+        let tick = match (self.with_open_phase(series), winding) {
+            (Some(open), _) => on.step::<POWER, _>(&open, &mut x.current, input),
+            (None, Some(winding)) => on.step::<POWER, _>(&winding, &mut x.current, input),
+            (None, None) => on.step::<POWER, _>(&on.equations(), &mut x.current, input),
         };
         Driven {
             output: pmsm::Output { torque: tick.torque, power: tick.power },
@@ -210,19 +214,17 @@ impl Synchronous {
             line = cable.line();
         }
         let winding = Winding { ticks: &self.motor, real: self.effects.as_deref(), params: &params, line, h };
-        let input = pmsm::Input { voltage: wanted, rotor, omega_e };
         let mut driven = match self.inverter.as_mut().map(|inverter| &mut inverter.modulator) {
-            None => winding.on_ideal(x, wanted, u_dc, input),
-            Some(Modulator::Averaged(averaged, gain)) => winding.on_averaged((averaged, *gain), x, wanted, u_dc, input),
-            Some(Modulator::Switching(switching, bridge)) => {
-                let input = inverter::SwitchingInput { wanted, u_dc, rotor, omega_e };
+            Some(modulator) if !modulator.is_ideal() => {
+                let input = inverter::Input { wanted, u_dc, rotor, omega_e };
                 let needs_losses = self.effects.as_ref().is_some_and(|real| real.needs_losses());
                 if self.power.is_some() || needs_losses {
-                    winding.on_switching::<true>(switching, bridge, x, &input)
+                    winding.on_real::<true>(modulator, x, &input)
                 } else {
-                    winding.on_switching::<false>(switching, bridge, x, &input)
+                    winding.on_real::<false>(modulator, x, &input)
                 }
             }
+            _ => winding.on_ideal(x, wanted, u_dc, pmsm::Input { voltage: wanted, rotor, omega_e }),
         };
         if arc > 0.0 {
             driven.output.power.copper += arc;
@@ -263,16 +265,6 @@ impl Synchronous {
         }
         output
     }
-}
-
-/// Mean currents of the legs over a tick in which the rotor turns by `turn` from `rotor`: of second order in what `ends` are apart, exact
-/// in the turn.
-fn mean_legs(ends: [Dq; 2], rotor: Rotation, turn: f64) -> Legs {
-    let half = turn / 2.0;
-    let chord = if half == 0.0 { 1.0 } else { libm::sin(half) / half };
-    let [first, last] = ends;
-    let mean = Dq { d: 0.5 * chord * (first.d + last.d), q: 0.5 * chord * (first.q + last.q) };
-    legs(mean.to_alpha_beta(rotor.ahead(half)))
 }
 
 #[cfg(test)]

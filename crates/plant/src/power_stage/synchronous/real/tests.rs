@@ -174,8 +174,8 @@ fn a_winding_that_may_vary_is_followed_between_the_same_edges() {
     }
 }
 
-/// Oracle: each other, over a revolution, with everything that a motor has. The averaged inverter holds its error over a tick and
-/// ends at the circle; neither is met here.
+/// Oracle: each other, over a revolution, with everything that a motor has. The averaged inverter ends
+/// at the circle, which is not met here.
 #[test]
 fn both_modulations_drive_a_motor_with_effects_alike() {
     let p = Params { carrier: 16e3, ..Params::IDEAL };
