@@ -130,7 +130,7 @@ fn a_slide_at_an_angle_counts_by_its_cosine() {
 #[test]
 fn runs_start_where_the_scenario_says() {
     let mut scenario = scenario_file("own-mjcf.toml");
-    scenario.actuator = Actuator::Off;
+    scenario.actuator = Actuator::Off(None);
     scenario.duration = Some(1e-3);
     scenario.initial = Initial { load_position: 0.25, load_velocity: 0.5 };
     for (load, bodies, motor) in [("load", &["motor", "load"][..], 0.0), ("carriage", &["motor"], 0.25)] {

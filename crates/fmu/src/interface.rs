@@ -144,7 +144,7 @@ impl Variable {
 /// The variables of `part` of `scenario`; `stepper` is its loop.
 pub(crate) fn variables(part: Part, scenario: &Scenario, stepper: &Stepper) -> Vec<Variable> {
     let (axis, motor) = (scenario.axis.motion.unit(), scenario.axis.motor_motion.unit());
-    let is_commanded = part != Part::Mechanics && !matches!(scenario.actuator, Actuator::Off);
+    let is_commanded = part != Part::Mechanics && !matches!(scenario.actuator, Actuator::Off(_));
     let table = Table { axis, motor, all: Vec::new() };
     table
         .time()

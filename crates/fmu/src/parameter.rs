@@ -56,7 +56,7 @@ fn drive(scenario: &Scenario) -> Option<&Params> {
 
 fn drive_mut(scenario: &mut Scenario) -> Option<&mut Params> {
     match &mut scenario.actuator {
-        Actuator::Prescribed | Actuator::Off => None,
+        Actuator::Prescribed | Actuator::Off(_) => None,
         Actuator::Pmsm { drive, .. } | Actuator::IdealSource { drive, .. } => Some(&mut drive.params),
     }
 }

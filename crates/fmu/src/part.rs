@@ -20,7 +20,7 @@ impl Part {
         own.record.channels.clear();
         if self == Self::Mechanics {
             // All that acts on the mechanics comes in from outside.
-            own.actuator = Actuator::Off;
+            own.actuator = Actuator::Off(None);
             (own.bus, own.plc, own.interpolation) = (None, None, None);
             own.program.clear();
             own.disturbances.clear();

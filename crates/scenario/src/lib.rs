@@ -62,9 +62,9 @@ pub use points::{
 };
 pub use random::Seed;
 pub use scenario::{
-    Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu, Initial,
-    InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc, Record, Requirements,
-    Scenario, Step, TimeBound,
+    Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu,
+    IdleMotor, Initial, InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc,
+    Record, Requirements, Scenario, Step, TimeBound,
 };
 pub use schema::{json_schema, sweep_schema};
 pub use source::{SourceId, Sources};

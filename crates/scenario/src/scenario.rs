@@ -13,7 +13,7 @@ mod plc;
 mod program;
 mod requirements;
 
-pub use actuator::Actuator;
+pub use actuator::{Actuator, IdleMotor};
 pub use axis::{Axis, AxisMechanics};
 pub use bus::{Bus, BusMode, DriveUnits, ObjectWrite};
 pub use disturbance::{Disturbance, DisturbedBody, Initial};

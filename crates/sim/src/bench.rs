@@ -17,6 +17,7 @@ use servobench_drive::measurement;
 use servobench_drive::unwrap::Unwrap;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::{JUDGED_BY, Occasion};
+use servobench_plant::pmsm::Effects;
 use servobench_plant::{Chain, Encoder, EncoderState, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_signals::{
@@ -106,7 +107,7 @@ impl Bench {
         let mut power = plant::power_stage(&scenario.actuator, direction * motor.velocity, base_rate.period())?;
         let is_replaced = coupled::replaces_the_drive(scenario);
         let mut control = match &scenario.actuator {
-            Actuator::Prescribed | Actuator::Off => None,
+            Actuator::Prescribed | Actuator::Off(_) => None,
             _ if is_replaced => None,
             Actuator::Pmsm { encoder, drive, .. } | Actuator::IdealSource { encoder, drive, .. } => {
                 Some(Control::new(drive, *encoder, base_rate.period())?)
@@ -245,14 +246,15 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let effort_unit = scenario.axis.motor_motion.effort_unit();
     let is_replaced = coupled::replaces_the_drive(scenario);
     let gives = |signal| scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal);
+    let of = |effects: &Effects| MotorEffects { iron_loss: effects.iron.is_some(), thermal_model: effects.warms_up() };
     let effects = match &scenario.actuator {
-        Actuator::Pmsm { effects, .. } => {
-            MotorEffects { iron_loss: effects.iron.is_some(), thermal_model: effects.warms_up() }
-        }
-        Actuator::Prescribed | Actuator::Off | Actuator::IdealSource { .. } => MotorEffects::default(),
+        Actuator::Pmsm { effects, .. } => of(effects),
+        Actuator::Off(Some(idle)) => of(&idle.effects),
+        Actuator::Prescribed | Actuator::Off(None) | Actuator::IdealSource { .. } => MotorEffects::default(),
     };
+    let is_idle = matches!(scenario.actuator, Actuator::Off(Some(_)));
     let amplifier = match &scenario.actuator {
-        Actuator::Prescribed | Actuator::Off => None,
+        Actuator::Prescribed | Actuator::Off(_) => None,
         Actuator::Pmsm { .. } => Some(Amplifier::Current),
         Actuator::IdealSource { source, .. } => Some(Amplifier::Ideal {
             output_unit: match source.output {
@@ -281,6 +283,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
             _ if gives(LoopSignal::VoltageQ) => Motor::Currents,
             Some(Amplifier::Current) => Motor::Currents,
             Some(Amplifier::Ideal { .. }) => Motor::Effort,
+            None if is_idle => Motor::Effort,
             None => Motor::Motion,
         },
     }
@@ -295,7 +298,9 @@ fn erring(actuator: &Actuator) -> Erring {
             motor.is_some(),
             matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
         ],
-        current: matches!(actuator, Actuator::Pmsm { .. }) && (drive.current_sensor.is_some() || motor.is_some()),
+        // Sensors at the legs see another current than the motor's where its wires are swapped.
+        current: matches!(actuator, Actuator::Pmsm { wiring, .. }
+            if drive.current_sensor.is_some() || motor.is_some() || wiring.swapped.is_some()),
         velocity: drive.params.blocks.measurement.is_some(),
     }
 }

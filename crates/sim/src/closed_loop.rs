@@ -198,7 +198,7 @@ impl ClosedLoop {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
             }
             (now.reference, now.motor_reference) = (now.setpoint.x, now.setpoint.x);
-            return PowerCommand::Output(0.0);
+            return PowerCommand::Off;
         };
         let reading = control.motor_encoder.read(motor);
         now.alarms.motor_encoder = reading.error;

@@ -177,7 +177,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         AxisMechanics::InTheFmu => return Ok(Err(NotAnalysed::ForeignMechanics("an FMU"))),
     };
     let (drive, source, encoder) = match &scenario.actuator {
-        Actuator::Prescribed | Actuator::Off => return Ok(Err(NotAnalysed::NoDrive)),
+        Actuator::Prescribed | Actuator::Off(_) => return Ok(Err(NotAnalysed::NoDrive)),
         Actuator::Pmsm { motor, encoder, drive, .. } => (drive, Source::Pmsm(*motor), encoder),
         Actuator::IdealSource { source, encoder, drive } => (drive, Source::Ideal { gain: source.gain }, encoder),
     };

@@ -14,7 +14,7 @@ pub fn channel_limits(scenario: &Scenario) -> Vec<(Signal, f64)> {
             vec![effort, (Signal::CurrentQ, current), (Signal::VoltageMagnitude, voltage)]
         }
         Actuator::IdealSource { source, .. } => vec![effort, (Signal::CommandOutput, source.limit)],
-        Actuator::Prescribed | Actuator::Off => Vec::new(),
+        Actuator::Prescribed | Actuator::Off(_) => Vec::new(),
     };
     limits.into_iter().filter(|(_, limit)| limit.is_finite()).collect()
 }

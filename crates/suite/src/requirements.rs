@@ -30,7 +30,7 @@ pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Op
         tolerances: scenario.requirements.tolerances,
         driven: match scenario.actuator {
             Actuator::Prescribed => Driven::Exactly,
-            Actuator::Off => Driven::Not,
+            Actuator::Off(_) => Driven::Not,
             Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => Driven::ByLoops,
         },
         linear_loop,

@@ -105,7 +105,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
 fn refuse_without_a_drive(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
     let (message, help) = match actuator {
         Some(Actuator::Prescribed) => ("the motor follows the set-point exactly: there is no drive on the bus", ""),
-        Some(Actuator::Off) => {
+        Some(Actuator::Off(_)) => {
             ("the power stage is off for good", "leave `enabled` out of `[drive]`: the master powers the drive")
         }
         Some(Actuator::Pmsm { .. } | Actuator::IdealSource { .. }) | None => return,

@@ -8,7 +8,7 @@ use crate::parameter_key::parameter_key;
 use crate::resolve::estimate::{self, Belief};
 use crate::resolve::motor::Motor;
 use crate::resolve::{blocks, current, inverter, loops, need, sensors};
-use crate::scenario::{Actuator, Axis, Drive, Feedback};
+use crate::scenario::{Actuator, Axis, Drive, Feedback, IdleMotor};
 use servobench_base::{ParamError, Rate};
 use servobench_drive::current::operating_point::Strategy;
 use servobench_drive::current::{Gains, q_current, voltage_limit};
@@ -20,6 +20,13 @@ pub(super) struct Known<'a> {
     pub(super) base_rate: Option<Rate>,
     pub(super) axis: Option<&'a Axis>,
     pub(super) motor: Option<&'a Motor>,
+}
+
+/// The motor of a power stage that is off, where its teeth or its iron act on the axis.
+fn idle(motor: &Motor) -> Option<Box<IdleMotor>> {
+    let Motor::Pmsm { motor, effects, .. } = motor else { return None };
+    let acts = !effects.cogging.is_empty() || effects.iron.is_some();
+    acts.then(|| Box::new(IdleMotor { motor: *motor, effects: (**effects).clone() }))
 }
 
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Actuator> {
@@ -66,7 +73,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
 
     let (stage, current_tuning) = match known.motor? {
         Motor::Prescribed => return Some(Actuator::Prescribed),
-        _ if !enabled => return Some(Actuator::Off),
+        motor if !enabled => return Some(Actuator::Off(idle(motor))),
         Motor::Pmsm { motor, max_current, .. } => {
             let (described, dc_link, base_rate) = (described?, dc_link?, known.base_rate?);
             let mut params = current_params(&described, estimates, (motor, *max_current, dc_link));

@@ -307,7 +307,7 @@ fn controller(file: &File, by_voltage: bool, span: Span, actuator: Option<&Actua
                 "give another `motor`",
             );
         }
-        Some(Actuator::IdealSource { .. } | Actuator::Off) if by_voltage => {
+        Some(Actuator::IdealSource { .. } | Actuator::Off(_)) if by_voltage => {
             report.error(span, "a voltage is for a motor with currents", "connect `effort.motor`");
         }
         _ => {}

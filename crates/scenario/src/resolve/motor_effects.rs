@@ -195,6 +195,19 @@ fn table(
         report.error(file.span, format!("{}:{error}", path.display()), "");
         Reported
     })?;
+    for (name, currents) in [("i_d", &data.i_d), ("i_q", &data.i_q)] {
+        if !currents.contains(&0.0) {
+            let ends = [currents.first(), currents.last()].map(|end| end.copied().unwrap_or(f64::NAN));
+            let message = format!(
+                "{}: `{name}` must have 0 A among its currents, got {} A to {} A without it",
+                path.display(),
+                ends[0],
+                ends[1]
+            );
+            report.error(file.span, message, "the run begins without current: add the rows of 0 A to the table");
+            return Err(Reported);
+        }
+    }
     let map = FluxMap::table(&data).map_err(|error| {
         report.error(file.span, format!("{}: {error}", path.display()), error.way_out());
         Reported

@@ -8,8 +8,8 @@ use servobench_plant::{Encoder, IdealSource, Wiring, inverter, pmsm};
 pub enum Actuator {
     /// The motor side follows the set-point exactly.
     Prescribed,
-    /// The power stage is off: no current, no force, and the axis is free.
-    Off,
+    /// The power stage is off: no current, and the axis is free but for what acts on the rotor of its motor without one.
+    Off(Option<Box<IdleMotor>>),
     /// A permanent-magnet synchronous motor on an inverter.
     Pmsm {
         /// The motor.
@@ -40,12 +40,21 @@ pub enum Actuator {
     },
 }
 
+/// A motor without current whose teeth or iron act on the axis all the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IdleMotor {
+    /// The motor.
+    pub motor: pmsm::Params,
+    /// What it does beside its equations.
+    pub effects: pmsm::Effects,
+}
+
 impl Actuator {
     /// The drive, where there is one.
     #[must_use]
     pub const fn drive(&self) -> Option<&Drive> {
         match self {
-            Self::Prescribed | Self::Off => None,
+            Self::Prescribed | Self::Off(_) => None,
             Self::Pmsm { drive, .. } | Self::IdealSource { drive, .. } => Some(drive),
         }
     }
@@ -54,7 +63,7 @@ impl Actuator {
     #[must_use]
     pub const fn encoder(&self) -> Option<Encoder> {
         match self {
-            Self::Prescribed | Self::Off => None,
+            Self::Prescribed | Self::Off(_) => None,
             Self::Pmsm { encoder, .. } | Self::IdealSource { encoder, .. } => Some(*encoder),
         }
     }
@@ -74,7 +83,7 @@ impl Actuator {
                 Stage::Direct { gain } => self.max_effort().min(gain * source.limit),
                 Stage::Current { .. } => self.max_effort(),
             },
-            Self::Prescribed | Self::Off | Self::Pmsm { .. } => self.max_effort(),
+            Self::Prescribed | Self::Off(_) | Self::Pmsm { .. } => self.max_effort(),
         };
         rated.is_finite().then_some(rated)
     }

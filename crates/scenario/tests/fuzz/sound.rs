@@ -18,7 +18,7 @@ pub(crate) fn check(scenario: &Scenario) {
         assert_eq!(chain.check(), Ok(()));
     }
     match actuator {
-        Actuator::Prescribed | Actuator::Off => {}
+        Actuator::Prescribed | Actuator::Off(_) => {}
         Actuator::Pmsm { motor, effects, wiring, encoder, dc_link, inverter, link, drive } => {
             assert_eq!(wiring.check(), Ok(()));
             assert_eq!((motor.check(), effects.check(), encoder.check()), (Ok(()), Ok(()), Ok(())));

@@ -62,7 +62,7 @@ load_velocity = "60 rpm"
 #[test]
 fn a_drive_that_is_off_needs_no_loops() {
     let scenario = scenario(RING_DOWN);
-    assert_eq!(scenario.actuator, Actuator::Off);
+    assert_eq!(scenario.actuator, Actuator::Off(None));
     assert!(same(scenario.initial.load_position, PI / 2.0) && same(scenario.initial.load_velocity, TAU));
     assert!(same(scenario.axis.transmission, 0.2));
     assert_eq!((scenario.duration, scenario.record.rate.hertz(), scenario.name.as_str()), (None, 16_000, "test"));

@@ -15,7 +15,7 @@ pub(super) fn mechanics(
 ) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {
     let drive = match scenario.actuator {
         Actuator::Prescribed => plant::Drive::Prescribed,
-        Actuator::Off | Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => plant::Drive::Effort,
+        Actuator::Off(_) | Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => plant::Drive::Effort,
     };
     if engine.name().simulates(ModelKind::Fmu) {
         let model = scenario.axis.fmu.clone().ok_or(BuildError::NoFmu { engine: engine.name() })?;
@@ -54,7 +54,7 @@ pub(super) fn mechanics(
 /// Largest effort that the drive asks for; 0 where there is none, or where FMUs are the drive and nobody can tell.
 fn max_effort(scenario: &Scenario) -> f64 {
     match scenario.actuator {
-        Actuator::Prescribed | Actuator::Off => 0.0,
+        Actuator::Prescribed | Actuator::Off(_) => 0.0,
         _ if replaces_the_drive(scenario) => 0.0,
         Actuator::Pmsm { .. } | Actuator::IdealSource { .. } => scenario.actuator.max_effort(),
     }
@@ -91,7 +91,8 @@ pub(super) fn switches(scenario: &Scenario) -> Result<Switches, BuildError> {
 /// ticks of `h` (s).
 pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<PowerStage, BuildError> {
     Ok(match actuator {
-        Actuator::Prescribed | Actuator::Off => PowerStage::OFF,
+        Actuator::Prescribed | Actuator::Off(None) => PowerStage::OFF,
+        Actuator::Off(Some(idle)) => PowerStage::pmsm(idle.motor, 0.0, speed, h)?.with_effects(&idle.effects, h)?,
         Actuator::IdealSource { source, .. } => PowerStage::ideal(source),
         Actuator::Pmsm { motor, effects, wiring, dc_link, inverter, link, drive, .. } => {
             let mut stage =

@@ -260,7 +260,7 @@ fn counted(scenario: &Scenario, loops: &drive::Params) -> Result<Counted, BuildE
             increment: encoder.increment,
             transmission: loops.transmission,
         },
-        (Feedback::Motor, Actuator::Prescribed | Actuator::Off) => {
+        (Feedback::Motor, Actuator::Prescribed | Actuator::Off(_)) => {
             return Err(BuildError::NoDriveOnTheBus);
         }
     })

@@ -114,7 +114,7 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
             drive.params.stage = Stage::Direct { gain: source.gain * random.logarithmic(0.7, 1.4) };
             drive
         }
-        Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
+        Actuator::Prescribed | Actuator::Off(_) => panic!("neither is asked for"),
     };
     let params = &mut drive.params;
     params.base_rate = rate(1);
@@ -167,7 +167,7 @@ fn late(random: &mut Random, scenario: &mut Scenario) {
             *encoder = motor;
             drive
         }
-        Actuator::Prescribed | Actuator::Off => panic!("neither is asked for"),
+        Actuator::Prescribed | Actuator::Off(_) => panic!("neither is asked for"),
     };
     if let Feedback::Load(encoder) = &mut drive.position_feedback {
         *encoder = load;

@@ -212,7 +212,7 @@ fn current_rate(drive: &Params) -> f64 {
 /// What drive and motor give at most.
 fn available(actuator: &Actuator) -> f64 {
     let motor = match actuator {
-        Actuator::Prescribed | Actuator::Off => f64::INFINITY,
+        Actuator::Prescribed | Actuator::Off(_) => f64::INFINITY,
         Actuator::Pmsm { motor, drive, .. } => {
             drive.params.current_loop().map_or(f64::INFINITY, |(current, _)| match current.operation.strategy {
                 Strategy::DReference => motor.effort_constant(current.d_reference) * current.max_q_current(),

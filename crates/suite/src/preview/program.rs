@@ -62,7 +62,7 @@ impl PlannedProgram {
 
     pub(super) fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
         let mut doubts = Vec::new();
-        if matches!(scenario.actuator, Actuator::Off) && !self.moves.is_empty() {
+        if matches!(scenario.actuator, Actuator::Off(_)) && !self.moves.is_empty() {
             let moves = if self.moves.len() == 1 { "move: it is not" } else { "moves: none of them is" };
             let message = format!("the drive is off, and the program has {} {moves} executed", self.moves.len());
             doubts.push(Doubt::new("drive.enabled", message, "leave `enabled` out, or the moves"));
