@@ -261,8 +261,7 @@ impl ClosedLoop {
                     switches,
                 };
                 let t = self.base_rate.time(Tick(k));
-                let program = self.state.begun.map(|_| since);
-                let prompt = Prompt { t, program, setpoint: external.setpoint };
+                let prompt = Prompt { t, program: self.state.begun.map(|_| since), setpoint: external.setpoint };
                 let (demand, limits) = network.step(k, &prompt, switches.index, measure, recorder);
                 let command = drive::step(params, state, demand, limits, &sensors);
                 now.setpoint = network.setpoint(now.motor.position);

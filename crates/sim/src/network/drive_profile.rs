@@ -96,7 +96,7 @@ impl DriveProfile {
     }
 
     /// By how much later than the program the drive begins each move (s); empty where it begins with it.
-    pub(super) fn lags(&self) -> &[f64] {
+    pub(super) const fn lags(&self) -> &[f64] {
         &self.lags
     }
 
