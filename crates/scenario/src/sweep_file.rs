@@ -78,6 +78,8 @@ table! {
         range: Range = (),
         /// Drawn: every value between two is as likely as any other.
         uniform: Uniform = (),
+        /// Drawn: every whole number between two is as likely as any other, for seeds.
+        whole: Whole = (),
         /// Drawn: Gauss's distribution.
         normal: Normal = (),
         /// Drawn: most likely in the middle, less and less towards two ends.
@@ -110,6 +112,16 @@ table! {
         mean: Amount = (),
         /// How far the ends are from the middle, in parts of it.
         tolerance: f64 = positive(Plain(&RATIO), "5 %"),
+    }
+}
+
+table! {
+    /// Every whole number between two is as likely as any other.
+    pub(crate) struct Whole requires ["from", "to"] {
+        /// The smallest number.
+        from: Amount = (),
+        /// The largest number, in the unit of the smallest.
+        to: Amount = (),
     }
 }
 
@@ -323,10 +335,10 @@ enum Varied {
 
 fn one(vary: &Vary, span: Span, report: &mut Report) -> Result<Varied, Reported> {
     let key = vary.key.given().ok_or(Reported)?;
-    let given =
-        [vary.values.span(), vary.range.span(), vary.uniform.span(), vary.normal.span(), vary.triangular.span()];
+    let drawn = [vary.uniform.span(), vary.whole.span(), vary.normal.span(), vary.triangular.span()];
+    let given = [&[vary.values.span(), vary.range.span()], &drawn[..]].concat();
     if given.iter().flatten().count() != 1 {
-        let message = format!("`{key}` needs one of `values`, `range`, `uniform`, `normal` and `triangular`");
+        let message = format!("`{key}` needs one of `values`, `range`, `uniform`, `whole`, `normal` and `triangular`");
         let what = if given.iter().flatten().next().is_none() { "it has none" } else { "it has more than one" };
         report.error(span, format!("{message}; {what}"), "");
         return Err(Reported);
@@ -365,6 +377,10 @@ fn distribution(vary: &Vary, report: &mut Report) -> Result<(Distribution, Strin
             _ => return Err(incomplete(report, table.span, "`from` and `to`, or `mean` and `tolerance`")),
         };
         return Ok((Distribution::Uniform { low, high }, unit, table.span));
+    }
+    if let Some(table) = vary.whole.optional()? {
+        let ([low, high], unit) = ends(&table.from, &table.to, report)?;
+        return Ok((Distribution::Whole { low, high }, unit, table.span));
     }
     if let Some(table) = vary.normal.optional()? {
         let (mean, unit) = number(&table.mean, None, report)?;

@@ -153,3 +153,27 @@ fn the_machine_is_given_where_combinations_are_chosen() {
     assert_eq!(chosen.axes().iter().map(|axis| axis.key.as_str()).collect::<Vec<_>>(), ["setpoint.jerk"]);
     assert!(sweep.chosen().is_none(), "tables have every combination");
 }
+
+/// Seeds are whole numbers in each range and each draw: a scenario takes no others.
+#[test]
+fn seeds_are_whole_numbers() {
+    let vary = "[[vary]]\nkey = \"motor.encoder.seed\"\n";
+    let range = points(&format!("{HEAD}{vary}range = {{ from = 1, to = 20, count = 20 }}\n"));
+    let expected: Vec<String> = (1..=20).map(|seed| format!("motor.encoder.seed={seed}")).collect();
+    assert_eq!(range, expected);
+    let drawn = points(&format!(
+        "{HEAD}{vary}whole = {{ from = 0, to = 4294967295 }}\n[draws]\ncount = 50\nmethod = \"random\"\n"
+    ));
+    let seeds: Vec<u32> = drawn.iter().map(|one| one.split('=').nth(1).unwrap().parse().unwrap()).collect();
+    assert!(seeds.len() == 50 && seeds.iter().any(|seed| *seed > 1 << 31), "{seeds:?}");
+    let wrong = mistakes(&format!("{HEAD}{vary}whole = {{ from = 0.5, to = 3 }}\n[draws]\ncount = 2\n"));
+    assert!(wrong.iter().any(|line| line.contains("lower to a higher whole number")), "{wrong:?}");
+}
+
+/// A range through zero has zero in it, not a remainder of rounding.
+#[test]
+fn a_range_through_zero_contains_zero() {
+    let vary = "[[vary]]\nkey = \"axis.load.bias\"\nrange = { from = \"-0.1 N\", to = \"0.3 N\", count = 5 }\n";
+    let values = ["-0.1", "0", "0.1", "0.2", "0.3"].map(|value| format!("axis.load.bias={value} N"));
+    assert_eq!(points(&format!("{HEAD}{vary}")), values);
+}

@@ -98,21 +98,43 @@ pub fn spaced(key: &str, [from, to]: [f64; 2], count: usize, spacing: Spacing) -
     if spacing == Spacing::Logarithmic && !same_sign {
         return Err(SweepError::NoLogarithm { key: key(), from, to });
     }
-    let last = count - 1;
+    let (last, size) = (count - 1, from.abs().max(to.abs()));
     let at = |k: usize| {
         let share = k as f64 / last as f64;
         match spacing {
             _ if k == 0 => from,
             _ if k == last => to,
             // Not the difference of the ends, which may be beyond all numbers.
-            Spacing::Linear => from * (1.0 - share) + to * share,
+            Spacing::Linear => neat(from * (1.0 - share) + to * share, size, ROUNDING),
             Spacing::Logarithmic => {
                 let (low, high) = (libm::log(from.abs()), libm::log(to.abs()));
-                from.signum() * libm::exp(low * (1.0 - share) + high * share)
+                let value = from.signum() * libm::exp(low * (1.0 - share) + high * share);
+                // What a logarithm is rounded by counts as much as it is large.
+                neat(value, value.abs(), ROUNDING * (1.0 + low.abs().max(high.abs())))
             }
         }
+        .clamp(from.min(to), from.max(to))
     };
     Ok((0..count).map(at).collect())
+}
+
+/// Roundings of a value between two ends, in parts of the larger one.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Digits within which a value counts as a decimal number that was meant.
+const DIGITS: i32 = 12;
+
+/// `value`, which is rounded by `rounding` parts of `size`; the decimal number of a few digits that is so near, if there is one: 11 for
+/// 10.999999999999998, and 0 for 2e-17 between -1 and 1.
+fn neat(value: f64, size: f64, rounding: f64) -> f64 {
+    let off = rounding * size;
+    if value.abs() <= off {
+        return 0.0;
+    }
+    // A decimal at the place of the last digit of a number as large as `size`.
+    let digits = DIGITS - (libm::floor(libm::log10(size)) - libm::floor(libm::log10(value.abs()))) as i32;
+    let Some(decimals) = usize::try_from(digits - 1).ok() else { return value };
+    let near: f64 = format!("{value:.decimals$e}").parse().unwrap_or(value);
+    if (near - value).abs() <= off { near } else { value }
 }
 
 #[cfg(test)]
@@ -132,6 +154,36 @@ mod tests {
         assert_eq!(spaced("k", [3.0, 1.0], 3, Spacing::Linear).unwrap(), [3.0, 2.0, 1.0]);
         let negative = spaced("k", [-1.0, -100.0], 3, Spacing::Logarithmic).unwrap();
         assert!((negative[1] + 10.0).abs() < 1e-13, "{negative:?}");
+    }
+
+    /// Every range from 1 to N, up and down and through zero: each number as it would be written by hand.
+    #[test]
+    fn whole_numbers_stay_whole() {
+        for last in 2..=400_u32 {
+            let up = spaced("seed", [1.0, f64::from(last)], last as usize, Spacing::Linear).unwrap();
+            assert!(up.iter().zip(1..).all(|(x, k)| x.to_bits() == f64::from(k).to_bits()), "1 to {last}");
+        }
+        for half in 1..=100_i32 {
+            let ends = [f64::from(-half), f64::from(half)];
+            let through = spaced("x", ends, 2 * half as usize + 1, Spacing::Linear).unwrap();
+            assert!(through.iter().zip(-half..).all(|(x, k)| x.to_bits() == f64::from(k).to_bits()), "±{half}");
+            // The same in tenths and in thousandths of a millimetre.
+            for unit in [10.0, 1e6] {
+                let through = spaced("x", ends.map(|end| end / unit), 2 * half as usize + 1, Spacing::Linear).unwrap();
+                let is_near = |(x, k): (&f64, i32)| x.to_bits() == (f64::from(k) / unit).to_bits();
+                assert!(through.iter().zip(-half..).all(is_near), "±{half}/{unit}");
+            }
+        }
+        let (zero, uneven) = (spaced("x", [-0.1, 0.3], 5, Spacing::Linear).unwrap(), [-0.1, 0.0, 0.1, 0.2, 0.3]);
+        assert!(zero.iter().zip(uneven).all(|(x, k)| x.to_bits() == f64::to_bits(k)), "{zero:?}");
+        let decades = spaced("x", [1e-3, 1e6], 10, Spacing::Logarithmic).unwrap();
+        assert_eq!(decades, [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6]);
+        let twice = spaced("x", [1.0, 1024.0], 11, Spacing::Logarithmic).unwrap();
+        assert_eq!(twice, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0]);
+        // Large seeds, and what is no decimal number keeps its digits.
+        let large = spaced("seed", [4_294_967_286.0, 4_294_967_295.0], 10, Spacing::Linear).unwrap();
+        assert_eq!(large[3], 4_294_967_289.0);
+        assert_eq!(spaced("x", [0.0, 1.0], 4, Spacing::Linear).unwrap()[1], 1.0 / 3.0);
     }
 
     #[test]

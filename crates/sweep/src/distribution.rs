@@ -14,6 +14,13 @@ pub enum Distribution {
         /// The largest.
         high: f64,
     },
+    /// Every whole number from one to another is as likely as any other: seeds.
+    Whole {
+        /// The smallest.
+        low: f64,
+        /// The largest.
+        high: f64,
+    },
     /// Gauss's.
     Normal {
         /// Its middle.
@@ -41,6 +48,9 @@ impl Distribution {
             Self::Uniform { low, high } if !(finite(&[low, high]) && low <= high) => {
                 Some(format!("a uniform distribution goes from a lower to a higher value, not from {low} to {high}"))
             }
+            Self::Whole { low, high } if !(is_whole(low) && is_whole(high) && low <= high) => {
+                Some(format!("whole numbers go from a lower to a higher whole number, not from {low} to {high}"))
+            }
             Self::Normal { mean, sigma } if !(finite(&[mean.abs() + FURTHEST * sigma]) && sigma >= 0.0) => {
                 Some(format!("the standard deviation {sigma} about {mean} must be finite and not negative"))
             }
@@ -49,7 +59,7 @@ impl Distribution {
                     "a triangular distribution has its most likely value between its ends, not {mode} between {low} and {high}"
                 ))
             }
-            Self::Uniform { .. } | Self::Normal { .. } | Self::Triangular { .. } => None,
+            Self::Uniform { .. } | Self::Whole { .. } | Self::Normal { .. } | Self::Triangular { .. } => None,
         }
     }
 
@@ -58,6 +68,7 @@ impl Distribution {
     pub fn quantile(&self, share: f64) -> f64 {
         match *self {
             Self::Uniform { low, high } => low * (1.0 - share) + high * share,
+            Self::Whole { low, high } => (low + libm::floor(share * (high - low + 1.0))).min(high),
             Self::Normal { mean, sigma } => mean + sigma * standard_quantile(share),
             Self::Triangular { low, mode, high } => {
                 let (rise, fall, width) = (mode - low, high - mode, high - low);
@@ -69,6 +80,13 @@ impl Distribution {
             }
         }
     }
+}
+
+/// The largest number up to which a distribution of whole numbers goes: 2⁵², above which halves, and so shares of one, are rounded away.
+const LARGEST_WHOLE: f64 = 4_503_599_627_370_496.0;
+
+fn is_whole(value: f64) -> bool {
+    value.abs() <= LARGEST_WHOLE && libm::floor(value).to_bits() == value.to_bits()
 }
 
 /// The quantile of Gauss's distribution with mean 0 and standard deviation 1: a rational approximation, good to 4.5e-4, and Halley's
@@ -127,6 +145,11 @@ mod tests {
         assert!((right.quantile(0.75) - 0.5).abs() < 1e-15);
         let uniform = Distribution::Uniform { low: -1.0, high: 3.0 };
         assert!((uniform.quantile(0.25)).abs() < 1e-15);
+        // A die.
+        let die = Distribution::Whole { low: 1.0, high: 6.0 };
+        for (share, value) in [(1e-9, 1.0), (0.1666, 1.0), (0.1667, 2.0), (0.5, 4.0), (1.0 - 1e-16, 6.0)] {
+            assert!((die.quantile(share) - value).abs() < 1e-15, "{share}");
+        }
         let none = Distribution::Uniform { low: 5.0, high: 5.0 };
         assert!((none.quantile(0.3) - 5.0).abs() < 1e-14 && none.objection().is_none());
     }
@@ -140,6 +163,10 @@ mod tests {
         assert!(objects(Distribution::Normal { mean: f64::INFINITY, sigma: 1.0 }));
         assert!(objects(Distribution::Triangular { low: 0.0, mode: 2.0, high: 1.0 }));
         assert!(!objects(Distribution::Triangular { low: 0.0, mode: 0.5, high: 1.0 }));
+        assert!(objects(Distribution::Whole { low: 0.5, high: 3.0 }));
+        assert!(objects(Distribution::Whole { low: 4.0, high: 3.0 }));
+        assert!(objects(Distribution::Whole { low: 0.0, high: 1e16 }));
+        assert!(!objects(Distribution::Whole { low: -3.0, high: 4_294_967_295.0 }));
         // What is beyond all numbers, or would be drawn there.
         assert!(objects(Distribution::Triangular { low: -1e308, mode: 0.5, high: 1e308 }));
         assert!(objects(Distribution::Normal { mean: 0.0, sigma: 1e307 }));
