@@ -37,6 +37,7 @@ mod sweep_closed_forms;
 mod timing;
 #[cfg(unix)]
 mod view;
+mod workflows;
 
 use serde_json::Value;
 use std::fs;
