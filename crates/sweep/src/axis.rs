@@ -131,6 +131,7 @@ fn neat(value: f64, size: f64, rounding: f64) -> f64 {
         return 0.0;
     }
     // A decimal at the place of the last digit of a number as large as `size`.
+    #[expect(clippy::cast_possible_truncation, reason = "at most twice the exponents of a number")]
     let digits = DIGITS - (libm::floor(libm::log10(size)) - libm::floor(libm::log10(value.abs()))) as i32;
     let Some(decimals) = usize::try_from(digits - 1).ok() else { return value };
     let near: f64 = format!("{value:.decimals$e}").parse().unwrap_or(value);
@@ -164,12 +165,13 @@ mod tests {
             assert!(up.iter().zip(1..).all(|(x, k)| x.to_bits() == f64::from(k).to_bits()), "1 to {last}");
         }
         for half in 1..=100_i32 {
+            let count = 2 * half.unsigned_abs() as usize + 1;
             let ends = [f64::from(-half), f64::from(half)];
-            let through = spaced("x", ends, 2 * half as usize + 1, Spacing::Linear).unwrap();
+            let through = spaced("x", ends, count, Spacing::Linear).unwrap();
             assert!(through.iter().zip(-half..).all(|(x, k)| x.to_bits() == f64::from(k).to_bits()), "±{half}");
             // The same in tenths and in thousandths of a millimetre.
             for unit in [10.0, 1e6] {
-                let through = spaced("x", ends.map(|end| end / unit), 2 * half as usize + 1, Spacing::Linear).unwrap();
+                let through = spaced("x", ends.map(|end| end / unit), count, Spacing::Linear).unwrap();
                 let is_near = |(x, k): (&f64, i32)| x.to_bits() == (f64::from(k) / unit).to_bits();
                 assert!(through.iter().zip(-half..).all(is_near), "±{half}/{unit}");
             }
@@ -182,8 +184,8 @@ mod tests {
         assert_eq!(twice, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0]);
         // Large seeds, and what is no decimal number keeps its digits.
         let large = spaced("seed", [4_294_967_286.0, 4_294_967_295.0], 10, Spacing::Linear).unwrap();
-        assert_eq!(large[3], 4_294_967_289.0);
-        assert_eq!(spaced("x", [0.0, 1.0], 4, Spacing::Linear).unwrap()[1], 1.0 / 3.0);
+        assert_eq!(large[3].to_bits(), 4_294_967_289_f64.to_bits());
+        assert_eq!(spaced("x", [0.0, 1.0], 4, Spacing::Linear).unwrap()[1].to_bits(), (1.0_f64 / 3.0).to_bits());
     }
 
     #[test]
