@@ -133,6 +133,13 @@ fn what_cannot_be_advised_says_why() {
     assert!(refusal(SLIDE, &[], 2).contains("has no `[limits]`"));
     let limited = format!("{SLIDE}\n[limits]\ntorque_peak = \"1 kN\"\n");
     assert!(refusal(&limited, &[], 2).contains("--within KEY=RANGE"));
+    // 99 % needs 368 draws: nothing is run.
+    let few = refusal(HANGING, &["--draws", "200"], 2);
+    assert!(few.contains("needs 368") && !few.contains("looking for"), "{few}");
+    assert!(refusal(HANGING, &["--share", "99.99999999 %"], 2).contains("promise less"));
+    let within = ["--within", "axis.motor_side.mass=19 kg..21 kg"];
+    let unstable = refusal(&limited.replace("60 1/s", "60000 1/s"), &within, 2);
+    assert!(unstable.contains("unstable") && unstable.contains("axis.motor_side.mass=19 kg"), "{unstable}");
     assert!(refusal(HANGING, &["--shaper", "zvx"], 2).contains("zvx"));
     assert!(refusal(HANGING, &["--choose", "a"], 2).contains("is no key with values"));
     assert!(refusal(HANGING, &["--within", "axis.load.mass=12 kg"], 2).contains("14 Hz..22 Hz"));

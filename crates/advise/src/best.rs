@@ -3,7 +3,7 @@ use crate::machines::Machines;
 use crate::refine::refined;
 use crate::search::{Allowance, Bench, Found, Planned, SAME, Search, Worst};
 use crate::set_point::{Family, SetPoint, grid};
-use crate::verify::{Plan, Verification, on_draws, on_grid};
+use crate::verify::{Plan, Verification, needed, on_draws, on_grid, shown_by};
 use servobench_motion::Limits;
 use servobench_sweep::SweepError;
 use thiserror::Error;
@@ -90,6 +90,28 @@ pub enum AdviseError {
         /// Rounds of search and verification.
         rounds: u32,
     },
+    /// Fewer draws than the promise needs, were they all clean.
+    #[error(
+        "{draws} draws show {shown:.1} % of the machines at most: a promise of {wanted} % needs {needed}; draw as many, or promise less"
+    )]
+    TooFewDraws {
+        /// Draws.
+        draws: u32,
+        /// Share that as many clean draws show (%).
+        shown: f64,
+        /// Share that is wanted (%).
+        wanted: f64,
+        /// Draws that it needs.
+        needed: u32,
+    },
+    /// A promise that no number of draws shows.
+    #[error("a promise of {wanted} % of the machines needs more than {most} draws; promise less")]
+    TooMuch {
+        /// Share that is wanted (%).
+        wanted: f64,
+        /// The most draws.
+        most: u32,
+    },
     /// A box that is too wide to be verified.
     #[error(
         "`{key}` moves the mode through {needed} machines that would have to be run, at most {most} are: make its range smaller, or advise \
@@ -140,8 +162,9 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         };
         // Draws that have helped to find it prove nothing.
         let seed = question.seed.wrapping_add(u64::from(round));
-        let Question { machines, frequency, draws, .. } = question;
-        let plan = Plan { machines, frequency: *frequency, draws: *draws, seed, looks };
+        let Question { machines, frequency, draws, share, .. } = question;
+        let draws = (*draws).max(needed(*share, looks)?);
+        let plan = Plan { machines, frequency: *frequency, draws, seed, looks };
         let grid = on_grid(&mut search, &best.planned, plan)?;
         let off_grid = grid.failed(&allowed);
         if !off_grid.is_empty() {
@@ -219,6 +242,20 @@ fn best(
     let mut all: Vec<Found> = starts.into_iter().map(refine).collect();
     all.sort_by(|one, other| one.worst.time.total_cmp(&other.worst.time));
     all
+}
+
+/// Refuses a promise that the draws of a question do not show, were they all clean.
+///
+/// # Errors
+/// [`AdviseError::TooFewDraws`], [`AdviseError::TooMuch`]
+pub fn refuse_impossible(question: &Question) -> Result<(), AdviseError> {
+    let least = needed(question.share, 0)?;
+    if question.draws < least {
+        let percent = |share: f64| 100.0 * share;
+        let (draws, wanted) = (question.draws, percent(question.share));
+        return Err(AdviseError::TooFewDraws { draws, shown: percent(shown_by(draws, 0)), wanted, needed: least });
+    }
+    Ok(())
 }
 
 /// The best of each family but one.

@@ -19,7 +19,7 @@ mod search;
 mod set_point;
 mod verify;
 
-pub use best::{Advice, AdviseError, Price, Question, advise};
+pub use best::{Advice, AdviseError, Price, Question, advise, refuse_impossible};
 pub use machines::{Machines, Range, Stretch};
 pub use search::{Bench, Reading, Worst};
 pub use set_point::{Family, SetPoint};

@@ -39,6 +39,34 @@ pub(crate) struct Plan<'a> {
 /// What a promised share may be wrong with, whatever the search has looked at.
 const DOUBT: f64 = 0.05;
 
+/// The most draws that one look may have.
+const MOST: u32 = 1_000_000;
+
+/// Confidence of a look at draws after `looks` others.
+fn confidence(looks: i32) -> f64 {
+    1.0 - DOUBT * 0.5_f64.powi(looks + 1)
+}
+
+/// Share of the machines that `draws` show, were they all clean, after `looks` others.
+pub(crate) fn shown_by(draws: u32, looks: i32) -> f64 {
+    Proportion::new(u64::from(draws), 0).at_least(confidence(looks))
+}
+
+/// Draws, all clean, that show `share` of the machines after `looks` others: n with shareⁿ ≤ 1 − confidence.
+///
+/// # Errors
+/// [`AdviseError::TooMuch`] above 1 000 000.
+pub(crate) fn needed(share: f64, looks: i32) -> Result<u32, AdviseError> {
+    let draws = libm::ceil(libm::log(1.0 - confidence(looks)) / libm::log(share.max(f64::MIN_POSITIVE)));
+    if draws.is_nan() || draws > f64::from(MOST) {
+        return Err(AdviseError::TooMuch { wanted: 100.0 * share, most: MOST });
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to a million")]
+    let draws = draws.max(1.0) as u32;
+    // The bound is found by bisection, which rounds.
+    Ok((draws..=MOST).find(|draws| shown_by(*draws, looks) >= share).unwrap_or(MOST))
+}
+
 /// A set-point on machines, and what it gave there.
 #[derive(Debug)]
 pub(crate) struct Tried {
@@ -87,7 +115,7 @@ pub(crate) fn on_draws(
         grid: grid.machines.len(),
         spacing: moves.then_some(LOBE / planned.duration),
         draws,
-        share: draws.at_least(1.0 - DOUBT * 0.5_f64.powi(plan.looks + 1)),
+        share: draws.at_least(confidence(plan.looks)),
         worst: worst_of(grid.each().chain(drawn.each())),
     };
     Ok((verification, failed))
@@ -102,4 +130,21 @@ fn drawn(plan: Plan<'_>) -> Result<Vec<Vec<f64>>, SweepError> {
     });
     let draws = Draws::new(plan.draws, plan.seed, Method::Random, keys.collect())?;
     Ok((0..plan.draws).map(|index| draws.numbers(index).collect()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: 0.99³⁶⁸ = 0.02476 is below 2.5 %, 0.99³⁶⁷ = 0.02501 is not.
+    #[test]
+    fn a_promise_needs_as_many_draws_as_show_it() {
+        assert_eq!(needed(0.99, 0).unwrap(), 368);
+        assert!(shown_by(368, 0) >= 0.99 && shown_by(367, 0) < 0.99);
+        // 93.2 % of two hundred at 97.5 %: 0.025^(1/200) = 0.98172.
+        assert!((shown_by(200, 0) - 0.025_f64.powf(0.005)).abs() < 1e-9);
+        assert_eq!(needed(0.0, 0).unwrap(), 1);
+        assert!(needed(0.99, 1).unwrap() > 368);
+        assert!(matches!(needed(1.0 - 1e-9, 0), Err(AdviseError::TooMuch { .. })));
+    }
 }

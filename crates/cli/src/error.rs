@@ -227,6 +227,7 @@ impl CliError {
             | Self::NoSweep
             | Self::OtherTable(_)
             | Self::Advise(_)
+            | Self::NoAdvice(AdviseError::TooFewDraws { .. } | AdviseError::TooMuch { .. })
             | Self::TrustAgain
             | Self::NothingForTheViewer
             | Self::View(ViewError::Label { .. })

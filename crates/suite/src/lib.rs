@@ -35,5 +35,6 @@ pub use preview::{
     Cost, Delay, Demand, Doubt, EffortDemand, EngineSteps, Inertias, LoopBandwidth, LoopStability, Modes,
     PlannedProgram, Preview, VoltageDemand, check_warnings, preview,
 };
+pub use requirements::instability;
 pub use usage::{LoadMode, Usage, limits_of_set_point, load_mode};
 pub use worker::{RunLimits, WorkerCommand, WorkerError, Workers};

@@ -52,7 +52,20 @@ fn winding_limit(actuator: &Actuator) -> Option<f64> {
 fn linear_loop(scenario: &Scenario, recording: &Recording) -> (LinearLoop, Option<Poles>, Option<String>) {
     let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
     let speeds = is_scheduled.then(|| Speeds::recorded(recording, scenario.axis.transmission)).flatten();
-    match analyse_stability(scenario, Depth::Verdict, speeds.as_ref()) {
+    analysed(scenario, speeds.as_ref())
+}
+
+/// Why the linear loop of `scenario` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells.
+#[must_use]
+pub fn instability(scenario: &Scenario) -> Option<String> {
+    match analysed(scenario, None).0 {
+        LinearLoop::Unstable(why) => Some(why),
+        LinearLoop::Stable | LinearLoop::NotAnalysed => None,
+    }
+}
+
+fn analysed(scenario: &Scenario, speeds: Option<&Speeds>) -> (LinearLoop, Option<Poles>, Option<String>) {
+    match analyse_stability(scenario, Depth::Verdict, speeds) {
         Ok(Analysis::Done { report, master, without }) => {
             // The position loop of a master has poles of its own, which are not known.
             let poles = master.is_none().then(|| poles(&report));

@@ -3,6 +3,7 @@ use crate::execute::Run;
 use servobench_metrics::{Limit, Name};
 use servobench_motion::Limits;
 use servobench_planner::Generator;
+use servobench_plant::Link;
 use servobench_scenario::{AxisMechanics, Scenario, Step};
 use std::f64::consts::TAU;
 
@@ -37,11 +38,16 @@ impl Run {
     }
 }
 
-/// The mode in which the last body of an axis swings on its coupling, the one before it held.
+/// The mode in which the load of an axis swings on the spring that is nearest to it, what drives it held.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadMode {
-    /// The table of the scenario that the body is in: `axis.load`.
-    pub table: String,
+    /// The table of the scenario that has the spring: `axis.load`, or `axis.table` where the load is bolted to the table.
+    pub table: &'static str,
+    /// Whether the body of that table swings alone. Where another one is bolted to it, `frequency` and `damping_ratio` of the table, which are
+    /// those of its own mass, are not those of the mode.
+    pub is_alone: bool,
+    /// The spring (N/m or N·m/rad) and its damping (N·s/m or N·m·s/rad).
+    pub link: Link,
     /// Natural frequency (Hz).
     pub frequency: f64,
     /// Damping ratio.
@@ -52,10 +58,16 @@ pub struct LoadMode {
 #[must_use]
 pub fn load_mode(scenario: &Scenario) -> Option<LoadMode> {
     let AxisMechanics::Bodies(chain) = &scenario.axis.mechanics else { return None };
-    let (body, link) = (chain.bodies().last()?, chain.links().last()?);
+    let (body, link) = (chain.bodies().last()?, *chain.links().last()?);
+    let has_spring = |table: &str| {
+        let keys = ["stiffness", "frequency"].map(|key| format!("{table}.{key}"));
+        scenario.parameters.iter().any(|one| keys.contains(&one.key))
+    };
+    // From the load inwards: what is bolted on has no spring.
+    let (table, name) = [("axis.load", "load"), ("axis.table", "table")].into_iter().find(|one| has_spring(one.0))?;
     let frequency = (link.stiffness / body.inertia).sqrt() / TAU;
     let damping_ratio = 0.5 * link.damping / (link.stiffness * body.inertia).sqrt();
-    Some(LoadMode { table: format!("axis.{}", body.name), frequency, damping_ratio })
+    Some(LoadMode { table, is_alone: body.name == name, link, frequency, damping_ratio })
 }
 
 /// Velocity, acceleration, jerk and snap that the moves of a scenario are limited to, of each the largest; `None` where none goes from rest to
@@ -87,9 +99,30 @@ mod tests {
         let (name, text) = servobench_scenario::embedded_demo().into_iter().next().unwrap();
         let scenario = servobench_scenario::parse(name, text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
         let mode = load_mode(&scenario).unwrap();
-        assert_eq!(mode.table, "axis.load");
+        assert_eq!((mode.table, mode.is_alone), ("axis.load", true));
         assert!((mode.frequency - 17.5).abs() < 0.01 && (mode.damping_ratio - 0.004).abs() < 1e-4, "{mode:?}");
         let limits = limits_of_set_point(&scenario).unwrap();
         assert!((limits.velocity - 0.5).abs() < 1e-12 && (limits.jerk - 50.0).abs() < 1e-12, "{limits:?}");
+    }
+
+    /// Oracle: √(k/(m₁ + m₂))/2π by hand: the carriage's own mass and that which is bolted to it, on the belt's spring.
+    #[test]
+    fn what_is_bolted_to_a_table_swings_on_the_spring_of_the_table() {
+        let axis = "run.base_rate = \"4 kHz\"\nmotor.kind = \"prescribed\"\naxis.motion = \"linear\"\n";
+        let mode = |bodies: &str| {
+            let text = format!("{axis}{bodies}[[program]]\nwait = \"1 s\"\n");
+            let scenario = servobench_scenario::parse("belt", &text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
+            load_mode(&scenario)
+        };
+        let (table, load) =
+            ("table = { mass = \"3.4 kg\", stiffness = \"614 N/mm\", damping = \"90 N s/m\" }\n", "load = { mass = ");
+        let bolted = mode(&format!("[axis]\n{table}{load}\"10 kg\" }}\n")).unwrap();
+        assert_eq!((bolted.table, bolted.is_alone), ("axis.table", false));
+        assert!((bolted.frequency - (614e3_f64 / 13.4).sqrt() / TAU).abs() < 1e-9, "{bolted:?}");
+        let alone = mode(&format!("[axis]\n{table}")).unwrap();
+        assert!(alone.is_alone && (alone.frequency - (614e3_f64 / 3.4).sqrt() / TAU).abs() < 1e-9, "{alone:?}");
+        let both = mode(&format!("[axis]\n{table}{load}\"10 kg\", frequency = \"20 Hz\" }}\n")).unwrap();
+        assert!(both.table == "axis.load" && both.is_alone && (both.frequency - 20.0).abs() < 1e-9, "{both:?}");
+        assert!(mode(&format!("[axis]\n{load}\"10 kg\" }}\n")).is_none());
     }
 }

@@ -14,7 +14,7 @@ pub(crate) struct AdviseArgs {
     #[command(flatten)]
     pub(crate) with: OverrideArgs,
     /// What a machine may be, as in "axis.load.frequency=16 Hz..19 Hz" or "axis.load.mass=12 kg±10 %"; may be given several times
-    /// [default: the frequency of the load ±10 %, its damping ratio from half to twice].
+    /// [default: the frequency of the load on its spring ±10 %, its damping from half to twice].
     #[arg(long, value_name = "KEY=RANGE")]
     pub(crate) within: Vec<KeyRange>,
     /// Orders of the profile to choose from [default: 2,3,4].

@@ -8,7 +8,8 @@ use crate::exit::Exit;
 use crate::outputs::Outputs;
 use crate::sources;
 use runs::Runs;
-use servobench_advise::{Family, Machines, Question, Range, Stretch, advise as find};
+use servobench_advise::{Family, Machines, Question, Range, Stretch, advise as find, refuse_impossible};
+use servobench_base::Coordinate;
 use servobench_config::Choice as _;
 use servobench_metrics::digits;
 use servobench_motion::Limits;
@@ -32,6 +33,8 @@ pub(crate) enum AdviseMistake {
     NoMove,
     #[error("nothing of this axis is coupled by a spring: say with `--within KEY=RANGE` what its machines may be")]
     NoMode,
+    #[error("with {settings} {why}: no set-point moves such an axis")]
+    Unstable { settings: String, why: String },
     #[error("--choose: `{0}` is no key with values; write it as drive.position.bandwidth=20 Hz,30 Hz")]
     NoChoice(String),
     #[error("--within: with {settings} the scenario is invalid:\n{why}")]
@@ -54,7 +57,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         return Err(AdviseMistake::NoLimits.into());
     }
     let mode = load_mode(scenario);
-    let machines = Machines::new(ranges(args, mode.as_ref())?);
+    let machines = Machines::new(ranges(args, scenario.axis.motion, mode.as_ref())?);
     let frequency = frequency(&machines, scenario.measure.mode, mode.as_ref());
     let question = Question {
         families: families(args, &base, mode.as_ref(), frequency)?,
@@ -70,6 +73,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     let mut outputs = Outputs::default();
     let output = args.output.as_deref().map(|path| outputs.anywhere("-o", path)).transpose()?;
     let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
+    refuse_impossible(&question)?;
     runs.check()?;
     let kinds = if question.families.len() == 1 { "kind" } else { "kinds" };
     say(&format!("looking for a set-point among {} {kinds}\n", question.families.len()));
@@ -97,22 +101,38 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
 }
 
 /// What the machines may be.
-fn ranges(args: &AdviseArgs, mode: Option<&LoadMode>) -> Result<Vec<Range>, CliError> {
+fn ranges(args: &AdviseArgs, motion: Coordinate, mode: Option<&LoadMode>) -> Result<Vec<Range>, CliError> {
     if !args.within.is_empty() {
         let names: Vec<&str> = args.within.iter().map(|range| range.key.as_str()).collect();
         return Ok(args.within.iter().map(|range| with_stretch(range, &names)).collect());
     }
-    let LoadMode { table, frequency, damping_ratio } = mode.ok_or(AdviseMistake::NoMode)?;
+    Ok(default_ranges(mode.ok_or(AdviseMistake::NoMode)?, motion))
+}
+
+/// The spring of the scenario that is nearest to the load, in keys of the table that has it: no machine gets a spring that the scenario has not.
+fn default_ranges(mode: &LoadMode, motion: Coordinate) -> Vec<Range> {
     let range = |key: &str, value: f64, factors: [f64; 2], unit: &str, stretch| Range {
-        key: format!("{table}.{key}"),
+        key: format!("{}.{key}", mode.table),
         ends: factors.map(|factor| factor * value),
         unit: unit.to_owned(),
         stretch,
     };
-    Ok(vec![
-        range("frequency", *frequency, FREQUENCIES, "Hz", Stretch::Frequency),
-        range("damping_ratio", *damping_ratio, DAMPINGS, "", Stretch::None),
-    ])
+    if mode.is_alone {
+        return vec![
+            range("frequency", mode.frequency, FREQUENCIES, "Hz", Stretch::Frequency),
+            range("damping_ratio", mode.damping_ratio, DAMPINGS, "", Stretch::None),
+        ];
+    }
+    let (stiffness, damping) = match motion {
+        Coordinate::Linear => ("N/m", "N s/m"),
+        Coordinate::Rotary => ("Nm/rad", "Nm s/rad"),
+    };
+    // The frequency goes with the root of the stiffness.
+    let stiffnesses = FREQUENCIES.map(|factor| factor * factor);
+    vec![
+        range("stiffness", mode.link.stiffness, stiffnesses, stiffness, Stretch::Root),
+        range("damping", mode.link.damping, DAMPINGS, damping, Stretch::None),
+    ]
 }
 
 /// A mass moves a mode where nothing else says what its frequency is.
@@ -196,4 +216,63 @@ const DIGITS: usize = 4;
 fn without_shaper(base: &Source) -> Vec<String> {
     let has_one = base.scenario.parameters.iter().any(|one| one.key.starts_with("setpoint.shaper"));
     if has_one { vec!["setpoint.shaper={ kind = \"none\" }".to_owned()] } else { Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use servobench_scenario::{AxisMechanics, Override, Scenario, parse, parse_within};
+
+    const HEAD: &str = "run.base_rate = \"4 kHz\"\nmotor.kind = \"prescribed\"\n[[program]]\nwait = \"1 s\"\n[axis]\nmotion = \"linear\"\n";
+
+    /// Springs between the bodies of an axis, and inertias.
+    fn structure(scenario: &Scenario) -> (Vec<f64>, Vec<f64>) {
+        let AxisMechanics::Bodies(chain) = &scenario.axis.mechanics else { panic!("{:?}", scenario.axis.mechanics) };
+        let springs = chain.links().iter().map(|link| link.stiffness).collect();
+        (springs, chain.bodies().iter().map(|body| body.inertia).collect())
+    }
+
+    /// However the spring of a scenario is given and whatever is bolted to it: as many springs, the same inertias, and the mode from −10 to
+    /// +10 % of its own frequency.
+    #[test]
+    fn each_machine_of_a_default_tolerance_has_the_structure_of_the_scenario() {
+        let table = |spring: &str| format!("table = {{ mass = \"3.4 kg\", {spring} }}\n");
+        let load = |spring: &str| format!("load = {{ mass = \"10 kg\"{spring} }}\n");
+        let springs = [
+            "stiffness = \"614 N/mm\", damping_ratio = 0.02",
+            "stiffness = \"614 N/mm\", damping = \"90 N s/m\"",
+            "frequency = \"34 Hz\", damping_ratio = 0.02",
+            "frequency = \"34 Hz\"",
+        ];
+        for spring in springs {
+            let bodies = [
+                table(spring),
+                table(spring) + &load(""),
+                load(&format!(", {spring}")),
+                table("stiffness = \"900 N/mm\"") + &load(&format!(", {spring}")),
+            ];
+            for bodies in bodies {
+                let text = format!("{HEAD}{bodies}");
+                let own = parse("a", &text, None).unwrap_or_else(|error| panic!("{error}\n{text}")).scenario;
+                let mode = load_mode(&own).unwrap();
+                let ranges = default_ranges(&mode, Coordinate::Linear);
+                let (springs, inertias) = structure(&own);
+                let mut ratios = Vec::new();
+                for machine in Machines::new(ranges.clone()).corners() {
+                    let set = |(range, value): (&Range, &f64)| {
+                        let written = servobench_sweep::Value::Number(*value, range.unit.clone()).written();
+                        format!("{}={written}", range.key).parse::<Override>().unwrap()
+                    };
+                    let overrides: Vec<Override> = ranges.iter().zip(&machine).map(set).collect();
+                    let varied = parse_within("a", &text, None, &overrides, None);
+                    let varied = varied.unwrap_or_else(|error| panic!("{error}\n{text}{machine:?}")).scenario;
+                    let (other, masses) = structure(&varied);
+                    assert_eq!((other.len(), &masses), (springs.len(), &inertias), "{bodies}");
+                    ratios.push(load_mode(&varied).unwrap().frequency / mode.frequency);
+                }
+                let ends = ratios.iter().fold([f64::INFINITY, 0.0], |[low, high], one| [low.min(*one), one.max(high)]);
+                assert!((ends[0] - 0.9).abs() < 1e-9 && (ends[1] - 1.1).abs() < 1e-9, "{bodies}: {ends:?}");
+            }
+        }
+    }
 }

@@ -97,18 +97,17 @@ impl DriveProfile {
 
     /// By how much later than the program the drive begins each move (s); empty where it begins with it.
     pub(super) const fn lags(&self) -> &[f64] {
-        &self.lags
+        self.lags.as_slice()
     }
 
     /// Notes the moves as the drive makes them; they reach the axis `delay` (s) later.
     pub(super) fn note(&self, delay: f64, recorder: &mut Recorder) {
         let moves = self.moves.moves(delay);
-        match &self.targets {
-            Some(targets) => targets.made(moves).for_each(|made| recorder.note_move(made)),
-            None => {
-                let lags = self.lags.iter().copied().chain(core::iter::repeat(0.0));
-                moves.zip(lags).for_each(|(made, lag)| recorder.note_move(made.later(lag)));
-            }
+        if let Some(targets) = &self.targets {
+            targets.made(moves).for_each(|made| recorder.note_move(made));
+        } else {
+            let lags = self.lags.iter().copied().chain(core::iter::repeat(0.0));
+            moves.zip(lags).for_each(|(made, lag)| recorder.note_move(made.later(lag)));
         }
     }
 

@@ -12,7 +12,9 @@ use servobench_metrics::{Limit, Name};
 use servobench_plant::EngineName;
 use servobench_scenario::Override;
 use servobench_sim::Program;
-use servobench_suite::{AtATime, Engines, Job, RunError, Source, Usage, Workers, execute, map_in_parallel};
+use servobench_suite::{
+    AtATime, Engines, Job, RunError, Source, Usage, Workers, execute, instability, load_mode, map_in_parallel,
+};
 use servobench_sweep::Value;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -35,6 +37,8 @@ pub(super) struct Runs<'a> {
     workers: Workers,
     at_a_time: AtATime,
     wanted: Vec<Name>,
+    /// Stiffness of the spring whose tolerance was assumed (N/m or N·m/rad).
+    spring: Option<f64>,
     made: usize,
     told: Instant,
     /// What could not be carried out: how many runs, and why the first one.
@@ -62,6 +66,7 @@ impl<'a> Runs<'a> {
             workers: workers::of(&std::env::temp_dir(), args.worker_timeout, allowed)?,
             at_a_time: workers::at_a_time(args.jobs, allowed),
             wanted: vec![Name::MoveTime, Name::MoveAndSettlingTime],
+            spring: load_mode(&base.scenario).filter(|_| args.within.is_empty()).map(|mode| mode.link.stiffness),
             made: 0,
             told: Instant::now(),
             broken: Mutex::default(),
@@ -88,24 +93,46 @@ impl<'a> Runs<'a> {
         self.args.with.overrides.iter().map(ToString::to_string).chain(self.set_point(point)).collect()
     }
 
-    /// Refuses a box whose corners are no valid scenarios, and a scenario that cannot be run on its engine.
+    /// Refuses a box whose corners are no valid scenarios or have an unstable loop, and a scenario that cannot be run on its engine.
     pub(super) fn check(&self) -> Result<(), CliError> {
         let ceiling = &self.question.ceiling;
+        let mut unstable = Vec::new();
         for (index, family) in self.question.families.iter().enumerate() {
             let slow = [ceiling.velocity, ceiling.acceleration, 0.1, 0.1];
             let point = SetPoint::by_times(index, family.order, slow);
+            // Only a choice changes the loop, not an order or a shaper.
+            let is_new = index == 0 || !self.args.choose.is_empty();
+            let mut why_not = None;
             for machine in self.question.machines.corners() {
-                if let Err(why) = self.source(&point, &machine) {
-                    let settings = [self.set_point(&point), self.machine(&machine)].concat().join(", ");
-                    return Err(AdviseMistake::Machine { settings, why: why.join("\n") }.into());
+                let source = self.source(&point, &machine).map_err(|why| AdviseMistake::Machine {
+                    settings: [self.set_point(&point), self.machine(&machine)].concat().join(", "),
+                    why: why.join("\n"),
+                })?;
+                if is_new && why_not.is_none() {
+                    why_not = instability(&source.scenario).map(|why| (self.loop_of(&machine), why));
                 }
             }
+            if is_new {
+                unstable.push(why_not);
+            }
+        }
+        // A choice of gains among which one is stable can be advised.
+        if unstable.iter().all(Option::is_some)
+            && let Some(Some((settings, why))) = unstable.into_iter().next()
+        {
+            return Err(AdviseMistake::Unstable { settings, why }.into());
         }
         let job = self.job(self.base.clone());
         match execute(&job, &self.engines, &self.workers, &mut |_| {}) {
             Ok(_) => Ok(()),
             Err(broken) => Err(CliError::Runs(vec![FailedRun::new(&job, broken.error)])),
         }
+    }
+
+    /// A machine in words, for what is wrong with its loop.
+    fn loop_of(&self, machine: &[f64]) -> String {
+        let settings = self.machine(machine).into_iter().filter(|one| !one.starts_with("measure."));
+        settings.collect::<Vec<_>>().join(", ")
     }
 
     fn job(&self, source: Source) -> Job {
@@ -139,6 +166,12 @@ impl<'a> Runs<'a> {
             settings.push(format!("{}={written}", range.key));
             if range.key.ends_with(".frequency") && self.base.scenario.measure.mode.is_some() {
                 settings.push(format!("measure.mode={written}"));
+            }
+            // A stiffness that nobody gave is that of the scenario, and moves its mode by the root.
+            if let (Some(mode), Some(own)) = (self.base.scenario.measure.mode, &self.spring)
+                && range.key.ends_with(".stiffness")
+            {
+                settings.push(format!("measure.mode={} Hz", Shortest(mode * (value / own).sqrt())));
             }
         }
         settings
