@@ -7,12 +7,28 @@
 //! either way.
 use super::first::State;
 use super::path::Path;
+use super::second::Sides;
 
 /// What a target may be missed by, as a part of what is covered.
 pub(crate) const ROUNDING: f64 = 1e-13;
 
 /// What the straight way may end away from the target, as a part of what is covered, and is still taken.
 pub(crate) const NEGLIGIBLE: f64 = 1e-12;
+
+/// The largest part of a value that may be its rounding: where limits are much larger than what a way uses, they are no measure of it.
+const LARGEST: f64 = 1e-6;
+
+/// What positions are rounded by where a distance is their difference.
+#[inline]
+pub(crate) fn rounding_of(from: f64, to: f64) -> f64 {
+    4.0 * f64::EPSILON * (from.abs() + to.abs())
+}
+
+/// What a derivative near its end is rounded by: it was up to its limits before, on the same polynomial. `size` is its size now.
+#[inline]
+pub(crate) fn rounding_within(limits: Sides, size: f64) -> f64 {
+    (4.0 * f64::EPSILON * limits.above.max(limits.below)).min(LARGEST * size)
+}
 
 /// How often it is aimed nearer, each time by four times as much.
 const AIMS: u32 = 8;

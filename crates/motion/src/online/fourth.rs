@@ -3,7 +3,7 @@
 //! Towards the largest acceleration, and on with it, for a while τ; then the fastest way to the target's velocity
 //! ([`super::third`]). Where that would exceed the velocity limit, the limit is touched for an instant, with the jerk with
 //! which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
-use super::arrival::{NEGLIGIBLE, is_met, meet};
+use super::arrival::{NEGLIGIBLE, is_met, meet, rounding_within};
 use super::first::{State, THIRD, meeting};
 use super::newton::{Bracket, Near};
 use super::path::Path;
@@ -133,29 +133,40 @@ impl State4 {
 /// The way from `from` to `to`, which is at rest or passed at a constant velocity; `None` when this family has none.
 ///
 /// There is room for one more cruise at the end: that of [`cruise`] is where the way back begins, which is not led back first.
-pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4) -> Option<Path<STRETCHES>> {
-    let path = through(from, to, limits)?;
+pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4, rounding: f64) -> Option<Path<STRETCHES>> {
+    let (straight, is_rest) = rest(from.upper(), to.upper(), limits);
+    let (missing, time) = (to.x - from.along(&straight).x, straight.duration());
+    let rounding_v = rounding_within(limits.v, from.v.abs() + to.v.abs());
+    let covered = (to.x - from.x).abs() + to.v.abs() * time;
+    if missing == 0.0 || time > 0.0 && missing.abs() <= (NEGLIGIBLE * covered).max(rounding + rounding_v * time) {
+        let mut path = Path::EMPTY;
+        path.extend(&straight);
+        return Some(path);
+    }
+    let straight = if is_rest { third::fastest(from.upper(), to.upper(), &limits.upper()) } else { straight };
+    let path = through(from, to, limits, &straight)?;
     if to.v == 0.0 || is_met(from, to, from.along(&path), &path) {
         return Some(path);
     }
-    let mut straight = Path::EMPTY;
-    straight.extend(&third::fastest(from.upper(), to.upper(), &limits.upper()));
-    meet([from, to], path, |x| through(from, State4 { x, ..to }, limits), &straight)
+    let mut longer = Path::EMPTY;
+    longer.extend(&straight);
+    meet([from, to], path, |x| through(from, State4 { x, ..to }, limits, &straight), &longer)
+}
+
+/// [`third::rest`] of the velocity and what is above it.
+pub(crate) fn rest(from: State3, to: State3, limits: &Limits4) -> (Path<{ third::STRETCHES }>, bool) {
+    let rounding = rounding_within(limits.v, from.p.abs() + to.p.abs());
+    third::rest(from, to, &limits.upper(), rounding)
 }
 
 /// The same, met but for what its pulses round.
-fn through(from: State4, to: State4, limits: &Limits4) -> Option<Path<STRETCHES>> {
+fn through(from: State4, to: State4, limits: &Limits4, direct: &Path<{ third::STRETCHES }>) -> Option<Path<STRETCHES>> {
     let Limits4 { v, a, j, d } = *limits;
     let upper = limits.upper();
-    let direct = third::fastest(from.upper(), to.upper(), &upper);
-    let missing = to.x - from.along(&direct).x;
+    let missing = to.x - from.along(direct).x;
     let mut path = Path::EMPTY;
-    let is_negligible = || {
-        let covered = (from.v.abs() + to.v.abs()) * direct.duration();
-        to.v != 0.0 && missing.abs() <= NEGLIGIBLE * ((to.x - from.x).abs() + covered)
-    };
-    if missing == 0.0 || is_negligible() {
-        path.extend(&direct);
+    if missing == 0.0 {
+        path.extend(direct);
         return Some(path);
     }
     let sign = if missing > 0.0 { 1.0 } else { -1.0 };

@@ -50,21 +50,29 @@ impl Effort {
 }
 
 impl Goal {
-    fn fastest(&self, from: State4, limits: &Limits4) -> Option<Path<{ fourth::STRETCHES }>> {
+    /// True where an axis that keeps the direction of `from` may get there.
+    fn is_ahead(&self, from: State4) -> bool {
         match self {
-            Self::State(to) => fourth::fastest(from, *to, limits),
+            Self::State(to) => from.v * (to.x - from.x) > 0.0 && from.v * to.v >= 0.0,
+            Self::Velocity(v) => from.v * v >= 0.0,
+        }
+    }
+
+    fn fastest(&self, from: State4, limits: &Limits4, rounding: f64) -> Option<Path<{ fourth::STRETCHES }>> {
+        match self {
+            Self::State(to) => fourth::fastest(from, *to, limits, rounding),
             Self::Velocity(v) => {
                 let to = third::State3 { p: *v, v: 0.0, a: 0.0 };
                 let mut path = Path::EMPTY;
-                path.extend(&third::fastest(from.upper(), to, &limits.upper()));
+                path.extend(&fourth::rest(from.upper(), to, limits).0);
                 Some(path)
             }
         }
     }
 }
 
-/// The way from `from` to `goal`.
-pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) -> Plan {
+/// The way from `from` to `goal`, whose distance is known to `rounding`.
+pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, rounding: f64, effort: Effort) -> Plan {
     let mut back = Path::<STRETCHES>::EMPTY;
     let (excess, side) = Sides::both(limits.j).excess(from.j);
     back.push(-side * limits.d, excess / limits.d);
@@ -77,13 +85,19 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
     };
     // `brake` for a while, then the fastest way.
     let after = |brake: &Path<{ second::STRETCHES }>, time: f64| {
-        let rest = goal.fastest(start.until(brake, time).0, limits)?;
+        let rest = goal.fastest(start.until(brake, time).0, limits, rounding)?;
         let mut path = back;
         path.extend_until(brake, time);
         path.extend(&rest);
         Some(judged(path))
     };
     let keeps_the_limits = |plan: &Plan| plan.fault <= ROUNDING;
+    let turns_round = |plan: &Plan| {
+        let sign = from.v.signum();
+        let mut lowest = f64::INFINITY;
+        from.velocities(&plan.path, |v| lowest = lowest.min(sign * v));
+        goal.is_ahead(from) && lowest < -ROUNDING * limits.v.towards(-sign)
+    };
     let direct = after(&Path::EMPTY, 0.0);
     if let Some(plan) = direct.filter(keeps_the_limits) {
         return plan;
@@ -101,7 +115,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, effort: Effort) 
         let Some(plan) = after(brake, *longest) else { continue };
         if keeps_the_limits(&plan) {
             let shorter = |time: f64| after(brake, time).filter(keeps_the_limits);
-            return least_braking(&plan, *longest, effort, shorter);
+            return least_braking(&plan, *longest, effort, turns_round, shorter);
         }
         if best.is_none_or(|best| plan.fault < best.fault) {
             best = Some(plan);
@@ -149,9 +163,20 @@ fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
 }
 
 /// The plan with the shortest braking below `longest`; `braked` gives one only where it keeps the limits.
-fn least_braking(whole: &Plan, longest: f64, effort: Effort, braked: impl Fn(f64) -> Option<Plan>) -> Plan {
+///
+/// Too much of it may turn an axis round that otherwise keeps its direction, `turns_round`: then it is halved on.
+fn least_braking(
+    whole: &Plan,
+    longest: f64,
+    effort: Effort,
+    turns_round: impl Fn(&Plan) -> bool,
+    braked: impl Fn(f64) -> Option<Plan>,
+) -> Plan {
     let (mut best, mut low, mut high) = (*whole, 0.0, longest);
-    for _ in 0..effort.halvings() {
+    for step in 0..Effort::Refined.halvings() {
+        if step >= effort.halvings() && !turns_round(&best) {
+            break;
+        }
         let time = 0.5 * (low + high);
         match braked(time) {
             Some(plan) => {

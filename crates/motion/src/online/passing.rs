@@ -19,6 +19,7 @@
 //! That is the fastest way at once. Two things may make room for a higher speed, both of them by braking first
 //! ([`super::braking`]): a longer run-up, where the axis is braking already; and, at order 4, what keeps a state next to its velocity
 //! limit from passing it. There the speeds that can be passed need not be an interval. What comes of it is tried by a plan.
+use super::arrival::rounding_of;
 use super::braking::{Braking, least};
 use super::first::State;
 use super::fourth::{Limits4, State4};
@@ -199,17 +200,18 @@ impl Search<'_> {
     fn is_passed(&self, from: &Setpoint, speed: f64) -> bool {
         let &DirectionalLimits { velocity, acceleration, jerk, .. } = self.limits;
         let (distance, v) = (self.x - from.x, self.sign * speed);
+        let rounding = rounding_of(from.x, self.x);
         let mut lowest = f64::INFINITY;
         if self.order == Order::Third {
             let start = State3 { p: 0.0, v: from.v, a: from.a };
             let to = State3 { p: distance, v, a: 0.0 };
             let mut path = Path::EMPTY;
-            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk }, &mut path);
+            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk }, rounding, &mut path);
             start.velocities(&path, |v| lowest = lowest.min(self.sign * v));
         } else {
             let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
             let goal = Goal::State(State4 { x: distance, v, a: 0.0, j: 0.0 });
-            let plan = ladder::plan(start, &goal, &limits4(self.limits), Effort::Fast);
+            let plan = ladder::plan(start, &goal, &limits4(self.limits), rounding, Effort::Fast);
             start.velocities(&plan.path, |v| lowest = lowest.min(self.sign * v));
         }
         lowest >= -watch::ROUNDING * velocity.towards(self.sign)

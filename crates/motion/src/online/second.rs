@@ -1,5 +1,6 @@
 //! The fastest way between two states of a chain of two integrators.
 
+use super::arrival::{NEGLIGIBLE, rounding_within};
 use super::first::{State, THIRD};
 use super::path::Path;
 
@@ -164,6 +165,23 @@ pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Fastest {
         down: (peak - a_1) / limits.j,
         peak,
     }
+}
+
+/// The one rate that leads from `from` to the `a` of `to`, where that meets its `v`, which has the limits `v`, to rounding: the end of a way on which `from` lies,
+/// whose rounding [`way`] would make up for by pulses of the length √ε.
+#[inline]
+pub(crate) fn ramp(from: State2, to: State2, v: Sides, limits: &Limits2) -> Option<Fastest> {
+    let rise = to.a - from.a;
+    let up = rise.abs() / limits.j;
+    let missing = to.v - from.v - 0.5 * up * (from.a + to.a);
+    let size = from.v.abs() + to.v.abs();
+    let is_met = up > 0.0 && missing.abs() <= (NEGLIGIBLE * size).max(rounding_within(v, size));
+    is_met.then(|| Fastest { rate: limits.j.copysign(rise), up, hold: 0.0, down: 0.0, peak: rise.signum() * to.a })
+}
+
+/// The rest of a way from `from` to `to` as it is, where that is met to rounding; the fastest way elsewhere.
+pub(crate) fn rest(from: State2, to: State2, v: Sides, limits: &Limits2) -> Path<STRETCHES> {
+    ramp(from, to, v, limits).unwrap_or_else(|| way(from, to, limits)).path()
 }
 
 /// The fastest way from `from`, with `a` within its limits, to `to`.

@@ -4,7 +4,7 @@
 //! acceleration from there on, covers the more the longer τ is. The τ with which the target's position is met is the
 //! fastest way: one rate, the other, the first again, with holds where acceleration or velocity is at its limit. When the
 //! whole way to the velocity limit is not far enough, a cruise there makes up the rest.
-use super::arrival::{NEGLIGIBLE, is_met, meet};
+use super::arrival::{NEGLIGIBLE, is_met, meet, rounding_within};
 use super::costate;
 use super::first::{State, THIRD, meeting};
 use super::newton::{Bracket, Near};
@@ -104,12 +104,12 @@ pub(crate) struct Fastest {
 }
 
 /// Sets `path` to the fastest way from `from` to `to`, which is passed without acceleration at its velocity, and gives how far it is
-/// beyond the limits.
+/// beyond the limits. The distance between both is known to `rounding`.
 #[inline]
-pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, path: &mut Path<STRETCHES>) -> f64 {
-    find::<false>(from, to, limits, &Near::nothing(), path);
+pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, rounding: f64, path: &mut Path<STRETCHES>) -> f64 {
+    let (_, is_rest) = find::<false, true>(from, to, limits, rounding, &Near::nothing(), path);
     let (end, excess) = from.excess(path, limits.v, limits.a);
-    if is_met(from, to, end, path) {
+    if is_rest || is_met(from, to, end, path) {
         return excess;
     }
     let plan = |p: f64| Some(fastest(from, State3 { p, ..to }, limits));
@@ -121,7 +121,7 @@ pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, path: &mut Pat
 pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits3) -> Path<N> {
     let mut path = Path::EMPTY;
     let start = led_back(from, limits, &mut path);
-    path.extend(&second::fastest(start.upper(), to.upper(), &Limits2 { a: limits.a, j: limits.j }));
+    path.extend(&second::rest(start.upper(), to.upper(), limits.v, &Limits2 { a: limits.a, j: limits.j }));
     path
 }
 
@@ -138,33 +138,61 @@ fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) 
 #[inline]
 pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
     let mut path = Path::EMPTY;
-    find::<false>(from, to, limits, &Near::nothing(), &mut path);
+    find::<false, false>(from, to, limits, 0.0, &Near::nothing(), &mut path);
     path
+}
+
+/// The rest of a way from `from` to `to` as it is, where that is met to rounding, and true; the fastest way elsewhere.
+#[inline]
+pub(crate) fn rest(from: State3, to: State3, limits: &Limits3, rounding: f64) -> (Path<STRETCHES>, bool) {
+    let mut path = Path::EMPTY;
+    let (_, is_rest) = find::<false, true>(from, to, limits, rounding, &Near::nothing(), &mut path);
+    (path, is_rest)
 }
 
 /// The same, where τ is `near` the one of the last way.
 #[inline]
 pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Fastest {
     let mut way = Fastest { path: Path::EMPTY, by_a: 0.0 };
-    way.by_a = find::<true>(from, to, limits, near, &mut way.path);
+    way.by_a = find::<true, false>(from, to, limits, 0.0, near, &mut way.path).0;
     way
 }
 
-/// Adds the fastest way to `path`, which is empty, and gives its [`Fastest::by_a`] if that is wanted.
-fn find<const BY_A: bool>(from: State3, to: State3, limits: &Limits3, near: &Near, path: &mut Path<STRETCHES>) -> f64 {
+/// Adds the fastest way to `path`, which is empty, and gives its [`Fastest::by_a`] if that is wanted; and whether it is the straight
+/// way to what `to` is above its position, which with `REST` is taken where it meets that to rounding.
+///
+/// Where a way is a function of its start, as in the roots of order 4, that would be a step in it.
+fn find<const BY_A: bool, const REST: bool>(
+    from: State3,
+    to: State3,
+    limits: &Limits3,
+    rounding: f64,
+    near: &Near,
+    path: &mut Path<STRETCHES>,
+) -> (f64, bool) {
     let Limits3 { v, a, j } = *limits;
     let upper = Limits2 { a, j };
     let start = led_back(from, limits, path);
     let home = |turn: State3| second::way(turn.upper(), to.upper(), &upper);
-    let direct = home(start);
-    let missing = to.p - (start.p + direct.covered(start.upper(), to.upper()));
-    let is_negligible = || {
-        let covered = (start.v.abs() + to.v.abs()) * direct.duration();
-        to.v != 0.0 && missing.abs() <= NEGLIGIBLE * ((to.p - start.p).abs() + covered)
+    let missing = |straight: &second::Fastest| to.p - (start.p + straight.covered(start.upper(), to.upper()));
+    let is_negligible = |straight: &second::Fastest, missing: f64| {
+        let time = straight.duration();
+        let covered = start.p.abs() + to.p.abs() + to.v.abs() * time;
+        let rounding = rounding + rounding_within(v, start.v.abs() + to.v.abs()) * time;
+        time > 0.0 && missing.abs() <= (NEGLIGIBLE * covered).max(rounding)
     };
-    if missing == 0.0 || is_negligible() {
+    if REST
+        && let Some(ramp) = second::ramp(start.upper(), to.upper(), v, &upper)
+        && is_negligible(&ramp, missing(&ramp))
+    {
+        ramp.add_to(path);
+        return (0.0, true);
+    }
+    let direct = home(start);
+    let missing = missing(&direct);
+    if missing == 0.0 || (REST || to.v != 0.0) && is_negligible(&direct, missing) {
         direct.add_to(path);
-        return 0.0;
+        return (0.0, true);
     }
     let sign = if missing > 0.0 { 1.0 } else { -1.0 };
     let limit = State2 { v: v.at(sign), a: 0.0 };
@@ -193,7 +221,8 @@ fn find<const BY_A: bool>(from: State3, to: State3, limits: &Limits3, near: &Nea
         let away = there.first(time);
         away.add_to(path);
         back.add_to(path);
-        return if BY_A { costate::by_a([away.up, away.hold, away.down], None, &back, to.p) } else { 0.0 };
+        let by_a = if BY_A { costate::by_a([away.up, away.hold, away.down], None, &back, to.p) } else { 0.0 };
+        return (by_a, false);
     }
     let back = second::way(limit, to.upper(), &upper);
     let at_limit = there.end(start).held(State3::CRUISE, limit.v);
@@ -201,5 +230,6 @@ fn find<const BY_A: bool>(from: State3, to: State3, limits: &Limits3, near: &Nea
     there.add_to(path);
     path.hold(State3::CRUISE, limit.v, cruise);
     back.add_to(path);
-    if BY_A { costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p) } else { 0.0 }
+    let by_a = if BY_A { costate::by_a([there.up, there.hold, there.down], Some(cruise), &back, to.p) } else { 0.0 };
+    (by_a, false)
 }

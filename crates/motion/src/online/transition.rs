@@ -1,4 +1,5 @@
 //! A planned transition, and the set-point at any time of it.
+use super::arrival::rounding_of;
 use super::first::State;
 use super::fourth::{Limits4, State4};
 use super::ladder::{self, Goal};
@@ -139,6 +140,12 @@ impl Transition {
         self.way.duration()
     }
 
+    /// True where the velocity never leaves the side of `sign`, but by rounding.
+    #[must_use]
+    pub fn keeps_direction(&self, sign: f64) -> bool {
+        self.way.keeps_direction(sign)
+    }
+
     /// Order of the profile.
     #[must_use]
     pub const fn order(&self) -> Order {
@@ -181,7 +188,10 @@ fn within_time<const N: usize>(path: &Path<N>) -> Result<&Path<N>, PlanError> {
 fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates) -> Result<Transition, PlanError> {
     let mut path = Path::EMPTY;
     match target {
-        Target::Position { x, v } => trapezoid::fastest(from.v, *v, x - from.x, velocity, rates, &mut path),
+        Target::Position { x, v } => {
+            let rounding = rounding_of(from.x, *x);
+            trapezoid::fastest([from.v, *v], x - from.x, rounding, velocity, rates, &mut path);
+        }
         Target::Velocity(v) => rates.ramp(from.v, *v, &mut path),
     }
     // The speed never grows beyond where it begins.
@@ -197,14 +207,15 @@ fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> 
     let excess = match target {
         Target::Position { x, v } => {
             let to = State3 { p: x - from.x, v: *v, a: 0.0 };
-            third::passing(start, to, &Limits3 { v: velocity, a: acceleration, j: jerk }, &mut path)
+            let limits = Limits3 { v: velocity, a: acceleration, j: jerk };
+            third::passing(start, to, &limits, rounding_of(from.x, *x), &mut path)
         }
         Target::Velocity(v) => {
             let (beyond, side) = acceleration.excess(start.a);
             path.push(-side * jerk, beyond / jerk);
             let turn = start.along(&path);
             let limits = Limits2 { a: acceleration, j: jerk };
-            path.extend(&second::fastest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, &limits));
+            path.extend(&second::rest(State2 { v: turn.v, a: turn.a }, State2 { v: *v, a: 0.0 }, velocity, &limits));
             start.excess(&path, velocity, acceleration).1
         }
     };
@@ -220,11 +231,13 @@ fn fourth_order(
     let DirectionalLimits { velocity, acceleration, jerk, snap } = *limits;
     let limits = Limits4 { v: velocity, a: acceleration, j: jerk, d: snap };
     let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };
-    let goal = match target {
-        Target::Position { x, v } => Goal::State(State4 { x: x - from.x, v: *v, a: 0.0, j: 0.0 }),
-        Target::Velocity(v) => Goal::Velocity(*v),
+    let (goal, rounding) = match target {
+        Target::Position { x, v } => {
+            (Goal::State(State4 { x: x - from.x, v: *v, a: 0.0, j: 0.0 }), rounding_of(from.x, *x))
+        }
+        Target::Velocity(v) => (Goal::Velocity(*v), 0.0),
     };
-    let ladder::Plan { path, excess, .. } = ladder::plan(start, &goal, &limits, effort);
+    let ladder::Plan { path, excess, .. } = ladder::plan(start, &goal, &limits, rounding, effort);
     let excess = excess.max(Sides::both(jerk).excess(from.j).0 / jerk);
     Transition::new(Order::Fourth, Setpoint { s: 0.0, ..*from }, &path, target, excess)
 }

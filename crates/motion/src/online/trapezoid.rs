@@ -12,6 +12,7 @@
 //! gives the highest velocity w. The move is in that direction in which the ramp from v₀ straight to v₁ falls short of x₁; who
 //! has to go farther is the later at every velocity below, so that no other way is shorter (Athans & Falb, *Optimal Control*,
 //! §7.2).
+use super::arrival::NEGLIGIBLE;
 use super::path::Path;
 use super::second::Sides;
 
@@ -67,11 +68,27 @@ fn direction(difference: f64) -> f64 {
     if difference >= 0.0 { 1.0 } else { -1.0 }
 }
 
-/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`, behind `path`.
-pub(crate) fn fastest(from: f64, to: f64, distance: f64, limit: Sides, rates: &Rates, path: &mut Path<STRETCHES>) {
-    let missing = distance - rates.covered(from, to);
-    if missing == 0.0 {
+/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`, which is known to `rounding`, behind `path`.
+///
+/// Where the ramp alone covers it to rounding, it is the rest of a way on which the axis is, and taken: the root would make up for a
+/// part of 1e-16 by 1e-8 of the velocity.
+pub(crate) fn fastest(
+    [from, to]: [f64; 2],
+    distance: f64,
+    rounding: f64,
+    limit: Sides,
+    rates: &Rates,
+    path: &mut Path<STRETCHES>,
+) {
+    let towards = direction(to - from);
+    let [start, end] = [rates.square(towards, from), rates.square(towards, to)];
+    let missing = distance - towards * (end - start);
+    let rounding = rounding + 2.0 * f64::EPSILON * (start + end);
+    if (to - from).abs() > 0.0 && missing.abs() <= rounding.max(NEGLIGIBLE * distance.abs()) {
         return rates.ramp(from, to, path);
+    }
+    if missing == 0.0 {
+        return;
     }
     let sign = direction(missing);
     let (up, down) = (rates.growing.towards(sign), rates.falling.towards(-sign));

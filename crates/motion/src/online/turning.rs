@@ -9,6 +9,7 @@
 //!   jerk at zero: [`Request::jerk_at_zero`].
 //!
 //! The smaller one all the way, and a stop before the other way begins, are for who turns round more than once.
+use super::arrival::rounding_within;
 use super::first::State;
 use super::second::Sides;
 use super::third::{self, Limits3, State3};
@@ -175,7 +176,8 @@ impl Request<'_> {
             third::straight(start, rest, &Limits3 { v: velocity, a: sides, j: jerk })
         } else {
             let (start, rest) = (State3 { p: from.v, v: from.a, a: from.j }, State3 { p: 0.0, v: a, a: j });
-            let path = third::fastest(start, rest, &Limits3 { v: sides, a: Sides::both(jerk), j: snap });
+            let limits = Limits3 { v: sides, a: Sides::both(jerk), j: snap };
+            let (path, _) = third::rest(start, rest, &limits, rounding_within(velocity, from.v.abs()));
             let rounding = ROUNDING * (from.v.abs() + a.abs() * path.duration());
             if start.along(&path).p.abs() > rounding {
                 return Ok(None);

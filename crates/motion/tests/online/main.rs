@@ -7,6 +7,7 @@ mod outside;
 mod passing;
 mod ramps;
 mod random;
+mod replan;
 mod request;
 mod rest;
 mod ruckig;
