@@ -125,7 +125,11 @@ impl Axis {
             Activity::Moving(moving) => match moving.run.advance(cycle_time) {
                 Ok(setpoint) => {
                     self.base = setpoint;
-                    if moving.run.is_over() && !moving.is_paused {
+                    let is_over = moving.run.is_over() && !moving.is_paused;
+                    if moving.run.has_passed(setpoint.x) {
+                        self.forget_position();
+                    }
+                    if is_over {
                         self.arrive();
                     }
                 }

@@ -22,12 +22,12 @@ pub(super) fn planned(
 ) -> Result<Run, PlanError> {
     let way = bounds.plan(from, target)?;
     if is_fit_for(&way, axis) {
-        return Ok(Run::new(way, lead, None, axis));
+        return Ok(Run::new(way, lead, None, axis).planned_for(*target, *bounds));
     }
     // What is left of the velocity when the acceleration goes to zero at the jerk of the axis.
     let rest = from.v + from.a * from.a.abs() / (2.0 * axis.jerk);
     let calmed = axis.plan(from, &Target::Velocity(rest.clamp(-axis.velocity, axis.velocity)))?;
-    Ok(Run::new(calmed, lead, Some((*target, *bounds)), axis))
+    Ok(Run::new(calmed, lead, Some((*target, *bounds)), axis).planned_for(*target, *bounds))
 }
 
 /// `from` with no more jerk and acceleration than the velocity that is left on an axis with the bounds `axis` takes up: a table

@@ -268,11 +268,28 @@ impl Axis {
             return Ok(());
         }
         let (run, is_paused) = self.run(&moving.command, &moving.target, &self.base, axis, 0.0, &self.queue)?;
+        let run = if is_paused { run } else { self.without_turning_round(moving, axis, run)? };
         if let Activity::Moving(moving) = &mut self.activity {
             (moving.run, moving.is_paused) = (run, is_paused);
             self.ledger.set(moving.id, Progress::Active);
         }
         Ok(())
+    }
+
+    /// `run`, in place of that of `moving`; or, where it would turn round before a position ahead that it is to pass, because its
+    /// velocity there is out of reach since the override has changed, the way straight to that velocity: it passes the position faster
+    /// or slower than wanted. Next to rest the fastest one may turn round as well: then `moving` goes on as it is, and to that
+    /// velocity afterwards.
+    fn without_turning_round(&self, moving: &Moving, axis: &Bounds, run: Run) -> Result<Run, BlockError> {
+        let Target::Position { x, v } = moving.target else { return Ok(run) };
+        let from = self.base;
+        let (sign, is_ahead) = (v.signum(), (x - from.x) * v > 0.0);
+        if !is_ahead || from.v * sign < 0.0 || run.keeps_direction(sign) || !moving.run.keeps_direction(sign) {
+            return Ok(run);
+        }
+        let (straight, _) = self.run(&moving.command, &Target::Velocity(v), &from, axis, 0.0, &self.queue)?;
+        let way = if straight.keeps_direction(sign) { straight } else { moving.run.then_as(&straight) };
+        Ok(way.passing(x, sign, &run))
     }
 
     /// `command` as it begins at `from`, `lead` seconds ago, with those that wait behind it.
@@ -432,6 +449,12 @@ impl Axis {
             if wanted > 0.0 {
                 return Ok((blended(from, x, [&bounds, axis], wanted, lead).map_err(plan_error)?, false));
             }
+        }
+        if let Activity::Moving(Moving { run, .. }) = &self.activity
+            && lead == 0.0
+            && run.is_for(from, target, bounds, axis)
+        {
+            return Ok((*run, false));
         }
         Ok((planned(from, &target, &bounds, axis, lead).map_err(plan_error)?, false))
     }

@@ -22,13 +22,52 @@ pub(crate) struct Run {
     then: Option<(Target, Bounds)>,
     /// What there is of the axis for the way where it may use more than its command does.
     axis: Bounds,
+    /// The target and the bounds for which it was planned.
+    planned_for: Option<(Target, Bounds)>,
+    /// Position that it passes, and with which sign of the velocity, where that position is not its end.
+    passed: Option<(f64, f64)>,
 }
 
 impl Run {
     /// `way`, begun `lead` seconds before this cycle, on an axis with the bounds `axis`.
     #[expect(clippy::large_types_passed_by_value, reason = "it is moved in, once per command")]
     pub(crate) fn new(way: Transition, lead: f64, then: Option<(Target, Bounds)>, axis: &Bounds) -> Self {
-        Self { piece: way.piece(lead), way, lead, cycles: 0, time: lead, then, axis: *axis }
+        let (piece, axis) = (way.piece(lead), *axis);
+        Self { way, piece, lead, cycles: 0, time: lead, then, axis, planned_for: None, passed: None }
+    }
+
+    /// The same, planned for `target` within `bounds`.
+    pub(crate) fn planned_for(self, target: Target, bounds: Bounds) -> Self {
+        Self { planned_for: Some((target, bounds)), ..self }
+    }
+
+    /// The same for the request of `other`, whose position `x` is passed on the way in the direction of `sign`.
+    pub(crate) fn passing(self, x: f64, sign: f64, other: &Self) -> Self {
+        Self { planned_for: other.planned_for, passed: Some((x, sign)), ..self }
+    }
+
+    /// The same, and from its end on to what `other` is planned for.
+    pub(crate) fn then_as(self, other: &Self) -> Self {
+        Self { then: self.then.or(other.planned_for), ..self }
+    }
+
+    /// True where it leads on from `from` to `target` within `bounds` as it is, on an axis with the bounds `axis`.
+    pub(crate) fn is_for(&self, from: &Setpoint, target: Target, bounds: Bounds, axis: &Bounds) -> bool {
+        let is_same = self.planned_for == Some((target, bounds)) && self.axis == *axis;
+        is_same && self.beyond() < 0.0 && self.way.at(self.time) == *from
+    }
+
+    /// True where it has passed the position that is not its end, at `x`.
+    pub(crate) fn has_passed(&self, x: f64) -> bool {
+        self.passed.is_some_and(|(position, sign)| sign * (x - position) >= 0.0)
+    }
+
+    /// True where the velocity never leaves the side of `sign`.
+    pub(crate) fn keeps_direction(&self, sign: f64) -> bool {
+        let goes_on = |(target, bounds): (Target, Bounds)| {
+            bounds.plan(&self.end(), &target).is_ok_and(|way| way.keeps_direction(sign))
+        };
+        self.way.keeps_direction(sign) && self.then.is_none_or(goes_on)
     }
 
     /// The set-point one cycle later.
@@ -40,7 +79,8 @@ impl Run {
         if let Some((target, bounds)) = self.then
             && self.beyond() >= 0.0
         {
-            *self = Self::new(bounds.plan(&self.end(), &target)?, self.beyond(), None, &self.axis);
+            let next = Self::new(bounds.plan(&self.end(), &target)?, self.beyond(), None, &self.axis);
+            *self = Self { planned_for: self.planned_for, passed: self.passed, ..next };
         }
         Ok(self.now())
     }

@@ -18,5 +18,6 @@ mod modulo;
 mod motions;
 mod overrides;
 mod parameters;
+mod replans;
 mod state_of_motion;
 mod superimposed;
