@@ -64,6 +64,12 @@ impl Piece {
         Self { anchor: self.anchor.at_pace(1.0 / factor), start, length, origin, tolerance, until, ..*self }
     }
 
+    /// The same seen from the time `time` (s) and the position `x` on: those are zero.
+    #[must_use]
+    pub fn seen_from(&self, time: f64, x: f64) -> Self {
+        Self { origin: self.origin - time, base: self.base - x, ..*self }
+    }
+
     /// From `anchor` at `start` (s) for `length` (s), until `until` (s).
     pub(crate) const fn forward(anchor: Setpoint, start: f64, length: f64, until: f64) -> Self {
         Self { anchor, start, length, origin: 0.0, sign: 1.0, base: 0.0, tolerance: 0.0, until }

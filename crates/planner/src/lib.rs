@@ -25,6 +25,7 @@ mod points;
 mod polynomials;
 mod reader;
 mod request;
+mod rest;
 mod slowed;
 mod start;
 mod table;

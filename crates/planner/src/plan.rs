@@ -2,6 +2,7 @@
 use crate::analysis::{self, Binding, Peak, Span};
 use crate::cascade::Sampled;
 use crate::filter::Solved;
+use crate::rest::Rest;
 use crate::slowed::Slowed;
 use servobench_base::{Setpoint, positive};
 use servobench_motion::online::Sides;
@@ -177,6 +178,12 @@ impl Plan {
             self.details.slow(factor);
         }
         Ok(self)
+    }
+
+    /// The rest of it from `start` (s) on, as a plan whose times and positions count from there; of one that nothing filters.
+    #[must_use]
+    pub fn rest(&self, start: f64) -> Self {
+        Self { course: Arc::new(Rest::of(Arc::clone(&self.course), start)), ..self.clone() }
     }
 
     /// The same move behind `filter`.

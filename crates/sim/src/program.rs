@@ -12,9 +12,9 @@ use servobench_motion::PlanError;
 use servobench_motion::online::Effort;
 use servobench_motion::rockwell::Shape;
 use servobench_planner::{
-    CommandCycle, Follow, Generator, Method, Plan, PlanDetails, PointMove, PointTimes, Reader, Request,
+    CommandCycle, Follow, Generator, Method, Plan, PlanDetails, PointMove, PointTimes, Positioning, Reader, Request,
 };
-use servobench_scenario::{Bus, BusMode, Scenario, Step};
+use servobench_scenario::{Bus, BusMode, MoveStep, Scenario, Step};
 use servobench_trace::{Ending, Move};
 
 /// The part of its largest velocity that is rounding at the end of a move.
@@ -27,6 +27,8 @@ struct Planned {
     end: f64,
     from: f64,
     plan: Plan,
+    /// Its request, where its target is a position of the axis and it can be planned anew on its way.
+    request: Option<Request>,
     /// How far the way through its points leads from the move (m or rad), where it is sent as points.
     deviation: Option<f64>,
     /// Whether the next move takes over from it.
@@ -104,13 +106,17 @@ impl Program {
             match step {
                 Step::Wait(length) => end += length,
                 Step::Move(step) => {
+                    let request = begun_anywhere(step).filter(|_| points.is_none());
+                    let kept = step.aborts_after.and_then(|after| moves.last()?.rest_for(request?, after));
                     if let (Some(after), Some(last)) = (step.aborts_after, moves.last_mut()) {
                         (end, state) = last.abort(after, index)?;
                     }
                     let cycle = cycle.map(|cycle| CommandCycle { first: cycle.first - end % cycle.period, ..cycle });
-                    let request = step.request.begun_in(&state, step.positioning);
-                    let plan = request.and_then(|request| Request { commands: cycle, ..request }.plan());
-                    let plan = plan.and_then(|plan| followed(plan, points));
+                    let planned = || {
+                        let begun = step.request.begun_in(&state, step.positioning)?;
+                        followed(Request { commands: cycle, ..begun }.plan()?, points)
+                    };
+                    let plan = kept.map_or_else(planned, |rest| Ok((rest, None)));
                     let (plan, deviation) = plan.map_err(|error| BuildError::Plan { index, error })?;
                     let (start, from, length) = (end, state.x, plan.duration() + step.hold);
                     end += length;
@@ -122,6 +128,7 @@ impl Program {
                         from,
                         ends_at_rest: ends_at_rest(&plan),
                         plan,
+                        request: request.cloned(),
                         deviation,
                         is_aborted: false,
                         kind: kind(&step.request.generator),
@@ -242,6 +249,13 @@ impl Course {
 }
 
 impl Planned {
+    /// The rest of it after `after` (s), where `request` is its own and its target still ahead: a move that is commanded again keeps
+    /// its plan.
+    fn rest_for(&self, request: &Request, after: f64) -> Option<Plan> {
+        let is_same = self.request.as_ref() == Some(request) && after < self.plan.duration();
+        is_same.then(|| self.plan.rest(after))
+    }
+
     /// Ends the move so long after its start; the time then, and the state of motion. `index` is the step that aborts it.
     fn abort(&mut self, after: f64, index: usize) -> Result<(f64, Setpoint), BuildError> {
         let lasts = self.end - self.start;
@@ -297,6 +311,12 @@ impl Planned {
             },
         }
     }
+}
+
+/// The request of `step`, where its target is a position of the axis and it is planned from any state.
+fn begun_anywhere(step: &MoveStep) -> Option<&Request> {
+    let is_absolute = step.positioning == Positioning::Absolute;
+    (is_absolute && matches!(step.request.generator, Generator::Replanning(_))).then_some(&step.request)
 }
 
 /// True where a plan ends at rest: a sum of commanded velocities leaves its rounding.
@@ -364,9 +384,10 @@ fn without_rounding(position: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_motion::online::{DirectionalLimits, Target};
     use servobench_motion::{Limits, Order};
-    use servobench_planner::{PointToPoint, Positioning};
-    use servobench_scenario::MoveStep;
+    use servobench_planner::{PointToPoint, Replanning};
+    use servobench_testkit::Random;
 
     const LAMBRECHTS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
 
@@ -400,6 +421,39 @@ mod tests {
         assert!((cruise.0 - 0.45).abs() < 1e-12 && (cruise.1 - 0.65).abs() < 1e-12, "{cruise:?}");
         assert!(program.durations().all(|duration| (duration - 1.35).abs() < 1e-12));
         assert_eq!(program.durations().count(), 2);
+    }
+
+    /// Before, one that was repeated while it braked turned round behind its target.
+    #[test]
+    fn a_move_repeated_on_its_way_arrives_when_it_would_have() {
+        let mut random = Random::seeded(39);
+        let count = std::env::var("SERVOBENCH_SWEEP").map_or(6, |size| size.parse().unwrap());
+        for _ in 0..count {
+            let [velocity, acceleration, jerk, snap] =
+                [1.0, 5.0, 50.0, 1000.0].map(|value| value * random.decades(-0.3, 0.3));
+            let limits = DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap });
+            let x = random.signed();
+            let end = if random.unit() < 0.3 { 0.0 } else { 0.9 * velocity * random.unit() * x.signum() };
+            let order = random.one_of(&[Order::Second, Order::Third, Order::Fourth]);
+            let (from, target, effort) = (Setpoint::default(), Target::Position { x, v: end }, Effort::Fast);
+            let generator = Generator::Replanning(Replanning { from, target, order, limits, effort });
+            let repeated = |aborts_after: Option<f64>| {
+                let (request, metric_limits) = (Request::new(generator.clone()), Vec::new());
+                let positioning = Positioning::Absolute;
+                Step::Move(MoveStep { request, positioning, hold: 0.0, aborts_after, metric_limits })
+            };
+            let once = Program::plan(&[repeated(None)], None, None).unwrap();
+            let every = once.end() / 301.0;
+            let steps: Vec<_> = (0..301).map(|k| repeated((k > 0).then_some(every))).collect();
+            let mut again = Program::plan(&steps, None, None).unwrap();
+            assert!((again.end() - once.end()).abs() <= 1e-12 * once.end(), "{} {}", again.end(), once.end());
+            let mut once = once;
+            for k in 0..=1000 {
+                let t = once.end() * f64::from(k) / 1000.0;
+                let [one, other] = [once.at(t), again.at(t)];
+                assert!((one.x - other.x).abs() <= 1e-12 && (one.v - other.v).abs() <= 1e-11, "{t}: {one:?} {other:?}");
+            }
+        }
     }
 
     #[test]
