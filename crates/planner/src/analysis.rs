@@ -37,6 +37,9 @@ pub struct Binding {
     pub value: f64,
 }
 
+/// How often a time is halved: to its rounding.
+const HALVINGS: usize = 60;
+
 /// A value this near to its limit, as a part of it, is there.
 const NEAR: f64 = 1e-9;
 
@@ -63,6 +66,28 @@ impl Span {
             _ => [f64::NAN; 2],
         };
         [0.0, length].into_iter().chain(inner.into_iter().filter(move |t| *t > 0.0 && *t < length))
+    }
+}
+
+impl Span {
+    /// The times since its beginning (s) at which the velocity changes its sign: one at most between those at which it is extreme.
+    fn reversals(&self) -> impl Iterator<Item = f64> {
+        let mut ends: Vec<f64> = self.turns(1).collect();
+        ends.sort_by(f64::total_cmp);
+        let v = |t: f64| self.after(t).v;
+        let between = |(mut low, mut high): (f64, f64)| {
+            let first = v(low);
+            if first * v(high) >= 0.0 {
+                return None;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if v(middle) * first > 0.0 { low = middle } else { high = middle }
+            }
+            Some(high)
+        };
+        let parts: Vec<_> = ends.windows(2).filter_map(|ends| between((ends[0], ends[1]))).collect();
+        parts.into_iter()
     }
 }
 
@@ -99,6 +124,18 @@ pub(crate) fn peaks(plan: &Plan) -> [Peak; 4] {
     }
     peaks[plan.order()..].fill(Peak { lowest: f64::NEG_INFINITY, highest: f64::INFINITY });
     peaks
+}
+
+/// The lowest and the highest position.
+pub(crate) fn positions(plan: &Plan) -> Peak {
+    let ends = [plan.start().x, plan.end().x];
+    let mut peak = Peak { lowest: ends[0].min(ends[1]), highest: ends[0].max(ends[1]) };
+    for span in spans(plan) {
+        for x in [0.0, span.length].into_iter().chain(span.reversals()).map(|t| span.after(t).x) {
+            peak = Peak { lowest: peak.lowest.min(x), highest: peak.highest.max(x) };
+        }
+    }
+    peak
 }
 
 pub(crate) fn bindings(plan: &Plan) -> Vec<Binding> {

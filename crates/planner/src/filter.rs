@@ -75,6 +75,12 @@ pub(crate) struct Solved<'a> {
 }
 
 impl Solved<'_> {
+    /// The same with the impulses at whole samples of `sample_time` (s), as the set-points that they shape are.
+    pub(crate) fn sampled(self, sample_time: f64) -> Result<Self, PlanError> {
+        let impulses = self.impulses.map(|impulses| impulses.on_grid(sample_time)).transpose()?;
+        Ok(Self { impulses, ..self })
+    }
+
     /// How much longer a move is behind it (s).
     pub(crate) fn length(&self) -> f64 {
         self.impulses.as_ref().map_or(0.0, Impulses::duration)

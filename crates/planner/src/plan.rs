@@ -280,6 +280,12 @@ impl Plan {
         analysis::peaks(self)
     }
 
+    /// The lowest and the highest position: beyond start and end where the move turns round.
+    #[must_use]
+    pub fn positions(&self) -> Peak {
+        analysis::positions(self)
+    }
+
     /// The largest magnitudes of velocity, acceleration, jerk and snap; infinite above its order. Of a profile that nothing
     /// filters by its closed forms.
     #[must_use]

@@ -130,7 +130,10 @@ impl Request {
     /// [`PlanError`] of the generator or of the shapers; [`PlanError::TooShort`] for a duration below that at the limits;
     /// [`PlanError::Parameter`] for a duration or a filter of a move that starts or ends in motion.
     pub fn plan(&self) -> Result<Plan, PlanError> {
-        let filter = self.filter.solved()?;
+        let mut filter = self.filter.solved()?;
+        if let Generator::PointToPoint(PointToPoint { grid: Some(grid), .. }) = &self.generator {
+            filter = filter.sampled(grid.sample_time)?;
+        }
         let plan = match (&self.generator, &self.commands) {
             (Generator::Table(table), Some(cycle)) if table.is_sent() => table.plan_in(cycle)?,
             (generator, _) => generator.plan()?,
