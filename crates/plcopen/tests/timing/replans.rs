@@ -48,7 +48,7 @@ fn passing(random: &mut Random, limits: &Limits) -> MoveContinuousAbsoluteInputs
     MoveContinuousAbsoluteInputs { execute: true, ..inputs }
 }
 
-/// Repeated by new instances while they brake, one in two turned round.
+/// Repeated by new instances while they brake.
 #[test]
 fn a_move_repeated_on_its_way_passes_its_target_when_it_would_have() {
     let mut random = Random::seeded(10);
@@ -115,7 +115,7 @@ fn a_move_to_rest_repeated_on_its_way_is_done_when_it_would_have_been() {
     }
 }
 
-/// Before, every third of them turned the axis round: its velocity at the target was out of reach.
+/// Its velocity at the target may be out of reach.
 #[test]
 fn an_override_before_a_target_is_passed_never_turns_the_axis_round() {
     let mut random = Random::seeded(12);
