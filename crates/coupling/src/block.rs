@@ -21,6 +21,11 @@ pub trait Block {
         false
     }
 
+    /// True where it exchanges numbers of single precision: a loop that it is in agrees to that.
+    fn is_single_precision(&self) -> bool {
+        false
+    }
+
     /// Whether it is initialised by [`start`](Self::start): until then its outputs are those of its initial equations, which may
     /// be read with one input after the other.
     fn has_initial_equations(&self) -> bool {
@@ -79,6 +84,10 @@ impl<B: Block + ?Sized> Block for Box<B> {
 
     fn is_discrete(&self, output: usize) -> bool {
         (**self).is_discrete(output)
+    }
+
+    fn is_single_precision(&self) -> bool {
+        (**self).is_single_precision()
     }
 
     fn has_initial_equations(&self) -> bool {

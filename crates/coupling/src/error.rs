@@ -48,7 +48,7 @@ pub enum CouplingError<E> {
     },
     /// An iteration did not come to its end.
     #[error(
-        "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; let them be more or accelerated, or take a smaller step than {length} s"
+        "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; let them be more (`iterations`), let the loop agree less well (`tolerance`), or take a smaller step than {length} s"
     )]
     NotConverged {
         /// Blocks or outputs of the loop.

@@ -2,10 +2,14 @@
 //!
 //! The blocks of a loop are evaluated one after the other. Unknown are only the signals that an earlier block (or the block
 //! itself) takes from a later one; all others follow from these in the course of an evaluation.
+use crate::Block;
 use crate::acceleration::Accelerator;
 use crate::network::Wiring;
 use crate::settings::Iteration;
 use crate::signals::Signals;
+
+/// Part of a number of single precision that an evaluation may be off by: eight of its roundings.
+const SINGLE: f64 = 1.0 / (1_u32 << 20) as f64;
 
 /// A loop of blocks.
 pub(crate) struct FixedPoint {
@@ -23,6 +27,12 @@ pub(crate) struct FixedPoint {
     weights: Vec<f64>,
     /// What the discrete ones were at the start of the evaluation.
     before: Vec<f64>,
+    /// Part of the greatest value of a signal, where the loop agreed, that counts as rounding; 0 for double precision.
+    rounding: f64,
+    greatest: Vec<f64>,
+    /// Where the last evaluation began, and whether the discrete ones agreed in it.
+    from: Vec<f64>,
+    discrete_agree: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -39,10 +49,10 @@ pub(crate) struct Disagreement {
 }
 
 impl FixedPoint {
-    /// A loop of `blocks` in which the outputs `unknowns` are looked for.
-    pub(crate) fn new(
+    /// A loop of `blocks`, some of `all`, in which the outputs `unknowns` are looked for.
+    pub(crate) fn new<B: Block>(
         wiring: &Wiring,
-        blocks: Vec<usize>,
+        (all, blocks): (&[B], Vec<usize>),
         unknowns: &[usize],
         iteration: Iteration,
         cycle: String,
@@ -50,7 +60,12 @@ impl FixedPoint {
         let unknowns = unknowns.iter().map(|output| Unknown { block: wiring.block_of(*output), output: *output });
         let (discrete, unknowns): (Vec<_>, Vec<_>) = unknowns.partition(|unknown| wiring.discrete[unknown.output]);
         let zeros = vec![0.0; unknowns.len()];
+        let is_single = blocks.iter().any(|block| all[*block].is_single_precision());
         Self {
+            rounding: if is_single { SINGLE } else { 0.0 },
+            greatest: zeros.clone(),
+            from: zeros.clone(),
+            discrete_agree: true,
             blocks,
             cycle,
             iteration,
@@ -86,10 +101,12 @@ impl FixedPoint {
             (change != 0.0).then_some(Disagreement { output: unknown.output, change, allowed: 0.0 })
         };
         let mut worst = self.discrete.iter().zip(&self.before).find_map(changed);
+        self.discrete_agree = worst.is_none();
         let mut most = 1.0;
         for (signal, unknown) in self.unknowns.iter().enumerate() {
             let magnitude = self.x[signal].abs().max(signals.magnitude(unknown.block, unknown.output));
-            let allowed = self.iteration.absolute + self.iteration.relative * magnitude;
+            let allowed = self.iteration.absolute
+                + (self.iteration.relative * magnitude).max(self.rounding * magnitude.max(self.greatest[signal]));
             let change = signals.newest(unknown.output) - self.x[signal];
             self.r[signal] = change;
             self.weights[signal] = 1.0 / allowed;
@@ -98,14 +115,33 @@ impl FixedPoint {
                 worst = Some(Disagreement { output: unknown.output, change, allowed });
             }
         }
+        if worst.is_none() {
+            self.note_greatest();
+        }
         worst
     }
 
-    /// Leads the signals to where the next evaluation should start.
-    pub(crate) fn correct(&mut self, signals: &mut Signals) {
+    fn note_greatest(&mut self) {
+        for (greatest, x) in self.greatest.iter_mut().zip(&self.x) {
+            *greatest = greatest.max(x.abs());
+        }
+    }
+
+    /// Leads the signals to where the next evaluation should start. True where that is where the last one started, to the rounding of
+    /// single precision: signals that a loop amplifies never agree better.
+    pub(crate) fn correct(&mut self, signals: &mut Signals) -> bool {
+        self.from.copy_from_slice(&self.x);
         self.accelerator.advance(&mut self.x, &self.r, &self.weights);
         for (x, unknown) in self.x.iter().zip(&self.unknowns) {
             signals.replace(unknown.output, *x);
         }
+        let stays =
+            |((x, from), greatest): ((&f64, &f64), &f64)| (x - from).abs() <= self.rounding * x.abs().max(*greatest);
+        let agrees =
+            self.rounding > 0.0 && self.discrete_agree && self.x.iter().zip(&self.from).zip(&self.greatest).all(stays);
+        if agrees {
+            self.note_greatest();
+        }
+        agrees
     }
 }

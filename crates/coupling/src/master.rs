@@ -2,6 +2,7 @@
 use crate::cycles::{components, is_cycle};
 use crate::delay::Delay;
 use crate::error::CouplingError;
+use crate::estimate::{EstimatedError, Estimates};
 use crate::network::{Network, NetworkError, Port, Wiring};
 use crate::polynomial::Order;
 use crate::schedule::{Schedule, Turn, successors};
@@ -42,6 +43,7 @@ pub struct Master<B> {
     /// By block: whether it came back early in its last step.
     pub(crate) is_interrupted: Vec<bool>,
     watches: Vec<Watched>,
+    pub(crate) estimates: Estimates,
     pub(crate) inputs: Vec<Input>,
     pub(crate) present: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
@@ -88,10 +90,12 @@ impl<B: Block> Master<B> {
         let plan = Plan::new(&wiring, &blocks, settings.algebraic)?;
         let clock = Clock { rate: settings.base_rate, ticks: u64::from(settings.step.ticks()), now: 0 };
         let length = clock.time(1);
+        let delays = schedule.delays(&wiring, settings);
         let most = |ports: fn(&crate::network::Shape) -> usize| wiring.shapes.iter().map(ports).max().unwrap_or(0);
         let mut master = Self {
             signals: Signals::new(&wiring, settings.order, length),
-            delays: schedule.delays(&wiring, settings),
+            estimates: Estimates::new(&wiring, &delays, settings.order),
+            delays,
             reached: vec![0; blocks.len()],
             fresh: vec![false; blocks.len()],
             is_interrupted: vec![false; blocks.len()],
@@ -230,6 +234,7 @@ impl<B: Block> Master<B> {
                 });
             }
         }
+        self.estimates.judge(now, &self.reached, &self.wiring.wires, |output| self.signals.newest(output));
         for block in 0..self.blocks.len() {
             if self.reached[block] == now && std::mem::take(&mut self.is_interrupted[block]) {
                 self.signals.restart(block);
@@ -263,6 +268,13 @@ impl<B: Block> Master<B> {
     #[must_use]
     pub fn delays(&self) -> &[Delay] {
         &self.delays
+    }
+
+    /// Error of the inputs within a step, estimated from the exchanges so far, of the connection where it is largest; `None` where no
+    /// continuous signal was exchanged often enough.
+    #[must_use]
+    pub fn estimated_error(&self) -> Option<EstimatedError> {
+        self.estimates.largest()
     }
 
     /// A block.

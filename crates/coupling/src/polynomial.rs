@@ -15,9 +15,9 @@ use crate::Input;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Order {
     /// The newest value is held.
-    #[default]
     Constant,
     /// A straight line through the two newest values.
+    #[default]
     Linear,
     /// A parabola through the three newest values.
     Quadratic,

@@ -124,7 +124,7 @@ fn loops<B: Block>(wiring: &Wiring, blocks: &[B], iteration: Iteration) -> Resul
         unknowns.sort_unstable();
         unknowns.dedup();
         let cycle = cycle();
-        turns.push(Turn::Loop(Box::new(FixedPoint::new(wiring, component, &unknowns, iteration, cycle))));
+        turns.push(Turn::Loop(Box::new(FixedPoint::new(wiring, (blocks, component), &unknowns, iteration, cycle))));
     }
     Ok(turns)
 }

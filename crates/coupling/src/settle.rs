@@ -70,7 +70,7 @@ impl Plan {
             if in_loop {
                 let cycle = wiring.cycle_of_outputs(&shortest_way_round(&component, &through.successors));
                 let Some(iteration) = solve else { return Err(NetworkError::AlgebraicLoop { cycle }) };
-                loops.push((level, through.fixed_point(wiring, &component, iteration, cycle)));
+                loops.push((level, through.fixed_point((wiring, blocks), &component, iteration, cycle)));
             }
         }
         Ok(Self { readings: readings(wiring, &levels, loops), follows: through.by_block(wiring) })
@@ -128,7 +128,13 @@ impl Feedthrough {
     }
 
     /// The loop of the outputs `component`: its blocks ascending, unknown what goes to the same block or an earlier one.
-    fn fixed_point(&self, wiring: &Wiring, component: &[usize], iteration: Iteration, cycle: String) -> FixedPoint {
+    fn fixed_point<B: Block>(
+        &self,
+        (wiring, all): (&Wiring, &[B]),
+        component: &[usize],
+        iteration: Iteration,
+        cycle: String,
+    ) -> FixedPoint {
         let mut blocks: Vec<usize> = component.iter().map(|output| wiring.block_of(*output)).collect();
         blocks.dedup();
         let goes_back = |output: &usize| {
@@ -136,7 +142,7 @@ impl Feedthrough {
             next.into_iter().any(|next| wiring.block_of(*output) >= wiring.block_of(*next))
         };
         let unknowns: Vec<usize> = component.iter().copied().filter(goes_back).collect();
-        FixedPoint::new(wiring, blocks, &unknowns, iteration, cycle)
+        FixedPoint::new(wiring, (all, blocks), &unknowns, iteration, cycle)
     }
 
     fn by_block(&self, wiring: &Wiring) -> Vec<bool> {

@@ -2,7 +2,7 @@
 use crate::error::CouplingError;
 use crate::fixed_point::{Disagreement, FixedPoint};
 use crate::master::{Advance, Master};
-use crate::polynomial::later;
+use crate::polynomial::{later, value};
 use crate::{Block, StepEnd};
 
 /// Part of a step that is left out at its end: the rounding of a time in seconds.
@@ -21,6 +21,9 @@ impl<B: Block> Master<B> {
         }
         // The length is made of ticks and so the same in each step, which a difference of times is not.
         let whole = self.clock.time(u64::from(shape.every));
+        for (number, input) in (shape.first_input..).zip(inputs.iter()) {
+            self.estimates.note_end(number, value(input, whole));
+        }
         let (start, end) = (self.clock.time(now), self.clock.time(until));
         let (mut time, mut length, mut parts) = (start, whole, 0);
         loop {
@@ -136,7 +139,9 @@ impl<B: Block> Master<B> {
             if evaluation == fixed_point.iteration.most {
                 return Err(self.not_converged(fixed_point, &disagreement, now + 1));
             }
-            fixed_point.correct(&mut self.signals);
+            if fixed_point.correct(&mut self.signals) {
+                return Ok(None);
+            }
         }
         Ok(None)
     }
@@ -163,7 +168,9 @@ impl<B: Block> Master<B> {
             if evaluation == fixed_point.iteration.most {
                 return Err(self.not_converged(fixed_point, &disagreement, now));
             }
-            fixed_point.correct(&mut self.signals);
+            if fixed_point.correct(&mut self.signals) {
+                break;
+            }
         }
         Ok(())
     }

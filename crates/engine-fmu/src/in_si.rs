@@ -1,6 +1,8 @@
 //! A slave whose numbers are SI numbers.
 use crate::ports::Ports;
-use servobench_fmi::{Capabilities, LogLine, Severity, Slave, SlaveError, StepEnd};
+use servobench_fmi::{
+    Capabilities, DataType, DeclaredNumber, FmuMistake, LogLine, Severity, Slave, SlaveError, StepEnd,
+};
 
 /// A slave that was wired with ports, whose numbers are in SI units here and in its own there.
 pub struct InSi {
@@ -11,6 +13,7 @@ pub struct InSi {
     present: Vec<f64>,
     /// What is said of it before it speaks itself.
     notes: Vec<LogLine>,
+    doubts: Vec<FmuMistake>,
 }
 
 impl InSi {
@@ -18,20 +21,32 @@ impl InSi {
     #[must_use]
     pub fn new(slave: Box<dyn Slave>, ports: Ports) -> Self {
         let inputs = ports.inputs.len();
-        Self { slave, ports, moving: vec![[0.0; 3]; inputs], present: vec![0.0; inputs], notes: Vec::new() }
+        Self {
+            slave,
+            ports,
+            moving: vec![[0.0; 3]; inputs],
+            present: vec![0.0; inputs],
+            notes: Vec::new(),
+            doubts: Vec::new(),
+        }
     }
 
     /// The same with warnings at the beginning of its log.
     #[must_use]
     pub fn with_warnings(self, warnings: &[String]) -> Self {
-        let note = |message: &String| LogLine {
-            time: 0.0,
-            severity: Severity::Warning,
-            category: String::new(),
-            message: message.clone(),
-        };
-        Self { notes: warnings.iter().map(note).collect(), ..self }
+        Self { notes: warnings.iter().cloned().map(warning).collect(), ..self }
     }
+
+    /// The same with what is doubtful in its request, which its log has, too.
+    #[must_use]
+    pub fn with_doubts(mut self, doubts: Vec<FmuMistake>) -> Self {
+        self.notes.extend(doubts.iter().map(|doubt| warning(doubt.to_string())));
+        Self { doubts, ..self }
+    }
+}
+
+fn warning(message: String) -> LogLine {
+    LogLine { time: 0.0, severity: Severity::Warning, category: String::new(), message }
 }
 
 /// `inputs` in the units of the FMU.
@@ -53,6 +68,23 @@ impl Slave for InSi {
 
     fn is_discrete(&self, output: usize) -> bool {
         self.slave.is_discrete(output)
+    }
+
+    fn declared_input(&self, input: usize) -> Option<&DeclaredNumber> {
+        self.ports.inputs.get(input).map(|wire| &wire.declared)
+    }
+
+    fn declared_output(&self, output: usize) -> Option<&DeclaredNumber> {
+        self.ports.outputs.get(output).map(|wire| &wire.declared)
+    }
+
+    fn is_single_precision(&self) -> bool {
+        let mut wires = self.ports.inputs.iter().chain(&self.ports.outputs);
+        wires.any(|wire| wire.declared.data_type == DataType::Float32)
+    }
+
+    fn doubts(&self) -> &[FmuMistake] {
+        &self.doubts
     }
 
     fn is_initialising(&self) -> bool {

@@ -50,29 +50,30 @@ pub(crate) fn open(
         ..Setup::default()
     };
     mistakes.extend(misfits(&mut setup, &fmu));
-    mistakes.extend(step_mistake(request.step, it));
     mistakes.extend(event_mode_mistake(file, it));
     mistakes.extend(isolation_mistake(file, code));
     let Some(ports) = ports.filter(|_| mistakes.is_empty()) else { return Err(mistakes) };
+    let doubts = step_doubt(request.step, it).into_iter().collect();
     if code == Code::None {
         fmu.library().map_err(|error| of_file(&error))?;
         let described = Described::new(it, &setup);
-        return Ok(Box::new(InSi::new(Box::new(described), ports).with_warnings(fmu.remarks())));
+        let slave = InSi::new(Box::new(described), ports).with_warnings(fmu.remarks());
+        return Ok(Box::new(slave.with_doubts(doubts)));
     }
     let place = place(file.isolation, host).map_err(|error| of_file(&error))?;
     let slave = load(&fmu, &setup, &place).map_err(|error| {
         let at = if error.is_of_the_run() { FmuEntry::Conduct } else { FmuEntry::File };
         vec![FmuMistake { at, ..FmuMistake::of_file(&error) }]
     })?;
-    Ok(Box::new(InSi::new(slave, ports).with_warnings(fmu.remarks())))
+    Ok(Box::new(InSi::new(slave, ports).with_warnings(fmu.remarks()).with_doubts(doubts)))
 }
 
 /// Part of an internal step that a step may be longer or shorter than a whole number of them: times are rounded.
 const ROUNDING: f64 = 1e-6;
 
-/// FMI 3.0.1, §4.4.1: steps are whole numbers of the internal steps of the FMU, if these are of one length. Between them it would be
-/// somewhere else than it is asked to be.
-fn step_mistake(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
+/// FMI 3.0.2, §4.3.1, as a note: steps should be whole numbers of the internal steps of the FMU, if these are of one length. Between them
+/// it may be somewhere else than it is asked to be.
+fn step_doubt(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
     let internal =
         it.co_simulation.fixed_internal_step_size.filter(|internal| internal.is_finite() && *internal > 0.0)?;
     let count = step / internal;
@@ -80,7 +81,8 @@ fn step_mistake(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
         return None;
     }
     let message = format!(
-        "the FMU steps by {internal} s inside (`fixedInternalStepSize`), and {step} s is no whole number of that"
+        "the FMU steps by {internal} s inside (`fixedInternalStepSize`), and {step} s is not a whole number of that: between two of its \
+         steps it may stand still"
     );
     let help = format!("give it a `step` that is a multiple of {internal} s");
     Some(FmuMistake { at: FmuEntry::Step, message, help })

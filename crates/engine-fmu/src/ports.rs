@@ -1,8 +1,8 @@
 //! What is exchanged with an FMU: its variables, and how their numbers become SI numbers.
 use crate::like::like;
 use servobench_fmi::{
-    BaseUnit, Causality, Choice, DataType, Exponents, FmuEntry, FmuMistake, ModelDescription, Port, SiPort, SiUnit,
-    Variability, Variable,
+    BaseUnit, Causality, Choice, DataType, DeclaredNumber, DeclaredUnit, Exponents, FmuEntry, FmuMistake,
+    ModelDescription, Port, SiPort, SiUnit, Variability, Variable,
 };
 
 /// Names of SI units that tools write without defining them, with the exponents of kilogram, metre, second and ampere.
@@ -32,6 +32,7 @@ pub(crate) struct Wire {
     /// `None` for what counts in SI units.
     unit: Option<BaseUnit>,
     is_relative: bool,
+    pub(crate) declared: DeclaredNumber,
 }
 
 impl Wire {
@@ -135,7 +136,8 @@ fn find(it: &ModelDescription, wanted: &SiPort, side: &Side) -> Result<Wire, Wha
     }
     let unit = unit(it, variable, wanted.unit.as_ref())?;
     let port = Port { variable: variable.name.clone(), element };
-    Ok(Wire { port, unit, is_relative: variable.is_relative })
+    let declared = DeclaredNumber { data_type: variable.data_type, unit: declared_unit(it, variable) };
+    Ok(Wire { port, unit, is_relative: variable.is_relative, declared })
 }
 
 /// As the standard calls it.
@@ -197,6 +199,19 @@ fn unit(it: &ModelDescription, variable: &Variable, wanted: Option<&SiUnit>) -> 
         }
         _ => Ok(base),
     }
+}
+
+/// The unit of a variable, which is one that is defined or a name of an SI unit.
+fn declared_unit(it: &ModelDescription, variable: &Variable) -> Option<DeclaredUnit> {
+    let unit = it.unit(variable)?;
+    let exponents = match unit.base {
+        Some(base) => base.exponents,
+        None => {
+            let (_, [kg, m, s, a]) = UNDEFINED.iter().find(|(names, _)| names.contains(&unit.name.as_str()))?;
+            Exponents { kg: *kg, m: *m, s: *s, a: *a, ..Exponents::default() }
+        }
+    };
+    (!unit.name.is_empty()).then(|| DeclaredUnit { name: unit.name.clone(), exponents })
 }
 
 /// Exponents of kilogram, metre, second and ampere, if it has no others but the radian's.

@@ -29,7 +29,10 @@ pub use feedthrough::Feedthrough;
 pub use library::calls::note_calls;
 pub use loaded::Loaded;
 pub use log::send_log_lines_to;
-pub use request::{Bounds, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort, SiUnit};
+pub use request::{
+    Bounds, DeclaredNumber, DeclaredUnit, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort,
+    SiUnit,
+};
 pub use servobench_base::Severity;
 pub use servobench_config::Choice;
 pub use setup::{Setup, Value};

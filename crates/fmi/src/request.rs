@@ -1,4 +1,5 @@
 //! What a simulation asks of an FMU: which file, how it is started, where it runs, which numbers are exchanged, and what does not fit.
+use crate::description::{DataType, Exponents};
 use crate::setup::Value;
 use servobench_config::choices;
 use std::fmt::{self, Display, Formatter};
@@ -83,6 +84,33 @@ pub struct SiUnit {
     pub name: String,
     /// Exponents of kilogram, metre, second and ampere. The radian, which some count and some do not, is one.
     pub exponents: [i32; 4],
+}
+
+/// A number that an FMU exchanges, as its model description declares it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeclaredNumber {
+    /// Its type.
+    pub data_type: DataType,
+    /// Its unit, if it has one.
+    pub unit: Option<DeclaredUnit>,
+}
+
+/// A unit of an FMU.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeclaredUnit {
+    /// Its name in the description.
+    pub name: String,
+    /// What it is made of.
+    pub exponents: Exponents,
+}
+
+impl DeclaredUnit {
+    /// True where both measure the same. The radian, which some count and some do not, is one.
+    #[must_use]
+    pub fn measures_the_same_as(&self, other: &Self) -> bool {
+        let without_radian = |exponents| Exponents { rad: 0, ..exponents };
+        without_radian(self.exponents) == without_radian(other.exponents)
+    }
 }
 
 /// What of a request does not fit the file.

@@ -1,5 +1,6 @@
 //! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
 use crate::bits;
+use crate::request::{DeclaredNumber, FmuMistake};
 use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
 pub use servobench_base::StepEnd;
@@ -78,6 +79,26 @@ pub trait Slave: Send {
     /// not continuous. Between two of its values it has the older one.
     fn is_discrete(&self, _output: usize) -> bool {
         false
+    }
+
+    /// Input number `input` of those that were wired, as the model description declares it; `None` where that is not known.
+    fn declared_input(&self, _input: usize) -> Option<&DeclaredNumber> {
+        None
+    }
+
+    /// Output number `output` of those that were wired, likewise.
+    fn declared_output(&self, _output: usize) -> Option<&DeclaredNumber> {
+        None
+    }
+
+    /// True where a number that is exchanged has single precision.
+    fn is_single_precision(&self) -> bool {
+        false
+    }
+
+    /// What is doubtful in the request by which it was opened.
+    fn doubts(&self) -> &[FmuMistake] {
+        &[]
     }
 
     /// Whether it is in its initialisation, which [`start`](Self::start) ends. Until then it is only read.

@@ -149,6 +149,9 @@ pub enum Absence {
     /// The scenario makes nothing wrong on its bus.
     #[error("no fault of the bus is ordered")]
     NoBusFault,
+    /// No FMU beside the axis exchanges a continuous signal.
+    #[error("no continuous signal is exchanged with an FMU, or too few times")]
+    NotCoupled,
     /// The mode dies before it has shown enough periods.
     #[error("the mode is damped so strongly that {periods:.1} of its periods are visible; this takes {needed}")]
     Damped {
@@ -179,7 +182,7 @@ impl Absence {
                 channel.presence(),
                 Presence::WithInverter | Presence::WithLink | Presence::WithEndStops | Presence::WithThermalModel
             ),
-            Self::NoPoints | Self::NoBus | Self::NoBusFault => true,
+            Self::NoPoints | Self::NoBus | Self::NoBusFault | Self::NotCoupled => true,
             _ => false,
         }
     }

@@ -9,6 +9,7 @@
 mod absence;
 mod basis;
 mod compliance;
+mod coupling;
 mod display_unit;
 mod effort;
 mod extremes;
@@ -33,6 +34,7 @@ mod verdict;
 mod vibration;
 
 pub use absence::Absence;
+pub use coupling::COUPLING_ERROR_WARNED;
 pub use display_unit::{DisplayUnit, DisplayUnits, digits};
 pub use incident::{Incident, note_incidents};
 pub use measure::{MEASURED_FROM, Question, measure, measure_only};

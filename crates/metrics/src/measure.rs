@@ -3,7 +3,7 @@ use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::name::Name;
 use crate::span::{Checked, Phase, phases};
 use crate::vibration::{Residual, Search};
-use crate::{basis, compliance, effort, incident, rounding, settling, tracking};
+use crate::{basis, compliance, coupling, effort, incident, rounding, settling, tracking};
 use servobench_base::Rate;
 use servobench_signals::Signal;
 use servobench_trace::{Ending, Recording};
@@ -130,6 +130,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
     compliance::note(&mut run, &phases);
     effort::note(&mut run, &checked, &all);
     incident::note(&mut run, &checked);
+    coupling::note(&mut run, recording);
     let mut metrics = Metrics { run, moves };
     rounding::clear(&mut metrics, recording);
     basis::withhold(&mut metrics, recording, question);

@@ -112,6 +112,7 @@ names! {
     BufferErrors "buffer_errors" Run RATIO "0" "errors that the trajectory buffer of the drive latches",
     InternalLimitTime "internal_limit_time" Run TIME "0 s" "time in which a limit of the drive is active (bit 11)",
     BusFaultCycles "bus_fault_cycles" Run RATIO "20" "frames and task cycles that a fault of the scenario concerns",
+    CouplingError "coupling_error" Run RATIO "0.01" "estimated error of what is exchanged with FMUs within a step",
 }
 
 /// What a metric is of, and with it what a run must have so that it can be measured.
@@ -139,7 +140,7 @@ impl Name {
             || matches!(self.scope(), Scope::AfterMove)
     }
 
-    /// True where it is made of the rows of a recording; others are made of the plan.
+    /// True where it is made of the rows of a recording; others are made of the plan, or by the master of a coupling.
     #[must_use]
     pub const fn is_of_rows(self) -> bool {
         !matches!(
@@ -149,6 +150,7 @@ impl Name {
                 | Self::SetpointAccelerationRatio
                 | Self::SetpointJerkRatio
                 | Self::SetpointSnapRatio
+                | Self::CouplingError
         )
     }
 

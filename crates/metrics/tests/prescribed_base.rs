@@ -130,6 +130,7 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
         calls: vec![],
         limit_reversals: vec![],
         log: vec![],
+        coupling: None,
     }
 }
 

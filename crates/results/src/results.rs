@@ -298,6 +298,7 @@ mod tests {
                 times: 1,
                 text: "stiff".into(),
             }],
+            coupling: None,
         }
     }
 

@@ -6,9 +6,10 @@ pub(crate) mod plant;
 
 use crate::axis::Axis;
 use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Shaft, Source, State};
-use crate::coupled::{self, ConnectionDelay, Coupled, FmuOpener, NoFmus};
+use crate::coupled::{self, ConnectionDelay, Coupled, FmuDoubt, FmuOpener, NoFmus};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length, check_ticks};
+use crate::loose_sensors::LooseSensors;
 use crate::machine::Machine;
 use crate::network::Network;
 use crate::program::Program;
@@ -85,6 +86,15 @@ impl Bench {
         }
     }
 
+    /// What is doubtful about the FMUs beside the axis.
+    #[must_use]
+    pub fn fmu_doubts(&self) -> &[FmuDoubt] {
+        match &self.closed_loop {
+            Loop::Alone(_) => &[],
+            Loop::Coupled(coupled) => coupled.doubts(),
+        }
+    }
+
     /// The same with somebody who opens the FMUs of `scenario`.
     ///
     /// # Errors
@@ -114,6 +124,7 @@ impl Bench {
             }
         };
 
+        let sensors = if is_replaced { loose_sensors(scenario)? } else { None };
         let equipment = equipment(scenario, bodies.len() == 3);
         let rates = writer_rates(scenario);
         let all = Selection::all(&equipment, &rates);
@@ -158,6 +169,7 @@ impl Bench {
                 begun: None,
                 upcoming: None,
                 control,
+                sensors,
                 power,
                 motor_before,
                 shaft: Shaft { effort: 0.0, position: motor.position },
@@ -245,7 +257,6 @@ pub fn most_channels(scenario: &Scenario) -> usize {
 fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let effort_unit = scenario.axis.motor_motion.effort_unit();
     let is_replaced = coupled::replaces_the_drive(scenario);
-    let gives = |signal| scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal);
     let of = |effects: &Effects| MotorEffects { iron_loss: effects.iron.is_some(), thermal_model: effects.warms_up() };
     let effects = match &scenario.actuator {
         Actuator::Pmsm { effects, .. } => of(effects),
@@ -276,11 +287,11 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         },
         bus: scenario.bus.is_some(),
         effects,
-        erring: if is_replaced { Erring::default() } else { erring(&scenario.actuator) },
+        erring: if is_replaced { erring_alone(scenario) } else { erring(&scenario.actuator) },
         amplifier: if is_replaced { None } else { amplifier },
         motor: match amplifier {
-            _ if gives(LoopSignal::Effort) => Motor::Effort,
-            _ if gives(LoopSignal::VoltageQ) => Motor::Currents,
+            _ if gives(scenario, LoopSignal::Effort) => Motor::Effort,
+            _ if gives(scenario, LoopSignal::VoltageQ) => Motor::Currents,
             Some(Amplifier::Current) => Motor::Currents,
             Some(Amplifier::Ideal { .. }) => Motor::Effort,
             None if is_idle => Motor::Effort,
@@ -303,6 +314,41 @@ fn erring(actuator: &Actuator) -> Erring {
             if drive.current_sensor.is_some() || motor.is_some() || wiring.swapped.is_some()),
         velocity: drive.params.blocks.measurement.is_some(),
     }
+}
+
+/// Which sensors err where no firmware reads them: those that are not ideal.
+fn erring_alone(scenario: &Scenario) -> Erring {
+    let is_ideal = |encoder: Encoder| encoder == Encoder::default();
+    let Some(drive) = scenario.actuator.drive() else { return Erring::default() };
+    Erring {
+        encoders: [
+            scenario.actuator.encoder().is_some_and(|encoder| !is_ideal(encoder)),
+            matches!(drive.position_feedback, Feedback::Load(encoder) if !is_ideal(encoder)),
+        ],
+        current: drive.current_sensor.is_some() && gives(scenario, LoopSignal::VoltageQ),
+        velocity: false,
+    }
+}
+
+/// The sensors of an axis without firmware; `None` where they are ideal.
+fn loose_sensors(scenario: &Scenario) -> Result<Option<LooseSensors>, BuildError> {
+    let erring = erring_alone(scenario);
+    if erring == Erring::default() {
+        return Ok(None);
+    }
+    let h = scenario.base_rate.period();
+    let load = scenario.actuator.drive().and_then(|drive| match drive.position_feedback {
+        Feedback::Load(encoder) => Some(encoder),
+        Feedback::Motor => None,
+    });
+    let motor = EncoderInput::new(scenario.actuator.encoder().unwrap_or_default(), 0, h)?;
+    let load = load.map(|encoder| EncoderInput::new(encoder, 1, h)).transpose()?;
+    Ok(Some(LooseSensors::new(motor, load, erring.current)))
+}
+
+/// Whether an FMU gives `signal`.
+fn gives(scenario: &Scenario, signal: LoopSignal) -> bool {
+    scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal)
 }
 
 /// Whether the scenario or an FMU disturbs a body.

@@ -2,6 +2,7 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
+use crate::loose_sensors::LooseSensors;
 use crate::network::{Measurement, Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
@@ -47,6 +48,8 @@ pub(crate) struct State {
     /// The program's set-point of the tick that comes, if somebody has asked for it.
     pub(crate) upcoming: Option<Setpoint>,
     pub(crate) control: Option<Control>,
+    /// The sensors, where an FMU replaces the drive.
+    pub(crate) sensors: Option<LooseSensors>,
     pub(crate) power: PowerStage,
     /// Where the motor was at the last tick.
     pub(crate) motor_before: f64,
@@ -89,7 +92,7 @@ pub(crate) struct EncoderInput {
 
 impl EncoderInput {
     #[inline(always)]
-    fn read(&mut self, body: BodyState) -> Reading {
+    pub(crate) fn read(&mut self, body: BodyState) -> Reading {
         let reading = self.encoder.read(body);
         match &mut self.unwrap {
             None => reading,
@@ -194,6 +197,9 @@ impl ClosedLoop {
         let upcoming = self.state.upcoming.take();
         let (direction, load) = (self.direction, self.as_mounted(now.load));
         let Some(control) = &mut self.state.control else {
+            if let Some(sensors) = &mut self.state.sensors {
+                sensors.read([motor, load], (self.transmission, direction), &mut self.state.power, now);
+            }
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
             }
@@ -305,6 +311,15 @@ impl ClosedLoop {
                 };
             }
             Source::Network(network, _) => now.ask(network.request(self.base_rate.time(Tick(k)))),
+        }
+    }
+
+    /// Reads the sensors of an FMU in place of the drive, at the bodies that `now` has of the tick that comes.
+    pub(crate) fn look_at_sensors(&mut self, now: &mut Instant) {
+        let [motor, load] = [self.as_mounted(self.mechanics.bodies()[0]), self.as_mounted(now.load)];
+        let State { sensors, power, .. } = &mut self.state;
+        if let Some(sensors) = sensors {
+            sensors.look_ahead([motor, load], (self.transmission, self.direction), power, now);
         }
     }
 

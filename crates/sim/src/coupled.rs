@@ -5,20 +5,23 @@
 //! for efforts, which are held over it, and its value at the tick for everything else. At the last tick of a run nothing is asked
 //! for any more: its row has what acted before.
 mod block;
+mod fit;
 mod wiring;
 
-pub(crate) use wiring::replaces_the_drive;
+pub use wiring::replaces_the_drive;
 
 use crate::axis::Axis;
 use crate::error::{BuildError, UnusableFmu};
 use crate::machine::{LOG_EVERY, Machine};
 use crate::run::{Failure, Outcome, Reason};
 use block::{AttachedFmu, AxisBlock, Part, PartError};
+use fit::Misfits;
 use servobench_base::Tick;
-use servobench_coupling::{Advance, CouplingError, InputPort, Master, Member, Network};
-use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Slave};
+use servobench_coupling::{Advance, CouplingError, EstimatedError, InputPort, Master, Member, Network};
+use servobench_fmi::{FmuEntry, FmuMistake, FmuRequest, Severity, Slave};
 use servobench_scenario::Scenario;
 use servobench_signals::{Equipment, Rates};
+use servobench_trace::CouplingEstimate;
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use wiring::Wiring;
@@ -49,6 +52,16 @@ pub(crate) struct Coupled {
     /// Of the FMUs.
     names: Vec<String>,
     delays: Vec<ConnectionDelay>,
+    doubts: Vec<FmuDoubt>,
+}
+
+/// Something doubtful about an FMU beside the axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FmuDoubt {
+    /// Position among the scenario's FMUs.
+    pub index: usize,
+    /// What is doubtful, and where.
+    pub doubt: FmuMistake,
 }
 
 /// A connection and how late it is.
@@ -73,7 +86,7 @@ impl Coupled {
     /// [`BuildError`] names the FMU or the connection.
     pub(crate) fn new(
         scenario: &Scenario,
-        machine: Machine<[Axis; 1]>,
+        mut machine: Machine<[Axis; 1]>,
         ticks: u64,
         (equipment, rates): (&Equipment, &Rates),
         fmu_opener: &dyn FmuOpener,
@@ -102,7 +115,22 @@ impl Coupled {
         if !unusable.is_empty() {
             return Err(refused(unusable));
         }
-        let names = members.iter().map(|member| member.name.clone()).collect();
+        let Misfits { mistakes, doubts: between } = Misfits::of(scenario, &members, &wiring.connections);
+        if !mistakes.is_empty() {
+            let name = |index: usize| scenario.fmus[index].name.clone();
+            let misfit = |(index, mistake)| UnusableFmu { index, name: name(index), mistakes: vec![mistake] };
+            return Err(BuildError::Fmus(mistakes.into_iter().map(misfit).collect()));
+        }
+        let names: Vec<String> = members.iter().map(|member| member.name.clone()).collect();
+        let [logged] = &mut machine.axes;
+        for (index, doubt) in &between {
+            logged.note_log_line(0.0, &format!("FMU {}", names[*index]), (Severity::Warning, 0.0), &doubt.to_string());
+        }
+        let own = members.iter().enumerate().flat_map(|(index, member)| {
+            let doubts: &[FmuMistake] = if let Part::Fmu(fmu) = &member.block { fmu.slave.doubts() } else { &[] };
+            doubts.iter().map(move |doubt| (index, doubt.clone()))
+        });
+        let doubts = own.chain(between).map(|(index, doubt)| FmuDoubt { index, doubt }).collect();
         let axis = AxisBlock::new(machine, ticks, wiring.takes.clone(), wiring.gives.clone());
         members.push(Member {
             name: "axis".into(),
@@ -118,7 +146,7 @@ impl Coupled {
         let network = Network { members, connections: wiring.connections.clone() };
         let master = Master::new(network, &scenario.coupling).map_err(not_begun)?;
         let delays = master.delays().iter().map(|delay| wiring.described(delay)).collect();
-        Ok(Self { master, names, delays })
+        Ok(Self { master, names, delays, doubts })
     }
 
     /// Runs to the end.
@@ -181,11 +209,21 @@ impl Coupled {
             }
         }
         self.note_logs();
+        let coupling = self.estimate();
         let mut machine = self.alone();
         if failure.is_none() {
             machine.observe();
         }
-        Outcome::of(machine, failure)
+        let mut outcome = Outcome::of(machine, failure);
+        outcome.recording.coupling = coupling;
+        outcome
+    }
+
+    /// Error of the exchange so far, and the connection where it is largest.
+    fn estimate(&self) -> Option<CouplingEstimate> {
+        let EstimatedError { connection, error } = self.master.estimated_error()?;
+        let ConnectionDelay { from, to, .. } = &self.delays[connection];
+        Some(CouplingEstimate { error, connection: format!("{from} -> {to}") })
     }
 
     /// The axis without its FMUs.
@@ -196,6 +234,11 @@ impl Coupled {
         });
         let Some(machine) = machine else { unreachable!("the axis is a block of every coupling") };
         machine
+    }
+
+    /// What is doubtful about the FMUs.
+    pub(crate) fn doubts(&self) -> &[FmuDoubt] {
+        &self.doubts
     }
 
     /// Every connection with how late it is.

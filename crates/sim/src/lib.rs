@@ -13,6 +13,7 @@ mod error;
 mod external;
 mod joint_watch;
 mod limit_watch;
+mod loose_sensors;
 mod machine;
 mod multi_axis;
 mod network;
@@ -25,7 +26,7 @@ mod stepper;
 mod thinning;
 
 pub use bench::{Bench, RECORDING_LIMIT, most_channels};
-pub use coupled::{ConnectionDelay, FmuOpener, NoFmus};
+pub use coupled::{ConnectionDelay, FmuDoubt, FmuOpener, NoFmus, replaces_the_drive};
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};
 pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};

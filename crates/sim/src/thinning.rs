@@ -76,6 +76,7 @@ mod tests {
             calls: vec![],
             limit_reversals: vec![],
             log: vec![],
+            coupling: None,
         }
     }
 

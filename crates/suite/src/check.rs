@@ -5,12 +5,13 @@ use crate::engines::Engines;
 use crate::error::{RunError, is_of_the_run};
 use crate::job::Job;
 use crate::panicked::caught;
+use crate::preview::Doubt;
 use crate::worker::{WorkerError, Workers};
 use serde::{Deserialize, Serialize};
 use servobench_fmi::{FmuEntry, FmuMistake};
 use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
-use servobench_sim::{Bench, BuildError, ConnectionDelay, FmuOpener, UnusableFmu};
+use servobench_sim::{Bench, BuildError, ConnectionDelay, FmuDoubt, FmuOpener, UnusableFmu};
 
 /// Something that keeps a scenario from being built.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,17 +66,33 @@ fn beside(job: &Job, engines: &Engines) -> Result<Vec<Objection>, RunError> {
     Ok(found)
 }
 
-/// How late what axis and FMUs exchange is, of a job without objections; nothing where no FMU is beside the axis.
+/// What axis and FMUs exchange.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exchange {
+    /// How late each connection is.
+    pub delays: Vec<ConnectionDelay>,
+    /// What is doubtful.
+    pub doubts: Vec<Doubt>,
+}
+
+/// The exchange of axis and FMUs of a job without objections; nothing where no FMU is beside the axis.
 ///
 /// # Errors
 /// [`RunError`] when it cannot be built after all.
-pub fn delays(job: &Job, engines: &Engines) -> Result<Vec<ConnectionDelay>, RunError> {
+pub fn exchange(job: &Job, engines: &Engines) -> Result<Exchange, RunError> {
     let engine = engines.get(job.engine)?;
     // What is exchanged when does not depend on the engine: one that needs a process of its own is not asked.
     if job.scenario.fmus.is_empty() || job.runs_in_worker() {
-        return Ok(Vec::new());
+        return Ok(Exchange::default());
     }
-    caught(|| Ok(Bench::with_fmus(&job.scenario, engine, engines.fmu_opener)?.delays().to_vec()))?
+    caught(|| {
+        let bench = Bench::with_fmus(&job.scenario, engine, engines.fmu_opener)?;
+        let doubt = |FmuDoubt { index, doubt }: &FmuDoubt| {
+            let Objection { key, message, help, .. } = Objection::to_fmu(doubt, &format!("fmu.{index}"));
+            Doubt { key, line: None, message, help }
+        };
+        Ok(Exchange { delays: bench.delays().to_vec(), doubts: bench.fmu_doubts().iter().map(doubt).collect() })
+    })?
 }
 
 /// The objections of `engine`, asked in this process.

@@ -17,7 +17,7 @@ mod time_limit;
 mod usage;
 pub mod worker;
 
-pub use check::{Objection, check, delays};
+pub use check::{Exchange, Objection, check, exchange};
 pub use compare::{
     CompareError, EqualError, EqualQuantity, Equalized, Measuring, NotReached, Slowed, comparable, equal_length,
     equal_metric, limits_agree, only_setpoints_differ, reseeded, setpoints_have_closed_form, to_duration, to_equal,

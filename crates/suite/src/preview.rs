@@ -9,6 +9,7 @@
 //! can tell.
 
 mod cost;
+mod coupling;
 mod demand;
 mod doubt;
 mod integration;
@@ -112,6 +113,7 @@ fn previewed(jobs: &[Job], depth: Depth) -> Result<Option<Preview>, BuildError> 
     doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));
     doubts.extend(engines.iter().filter_map(|engine| engine.doubt(program.run)));
+    doubts.extend(coupling::doubt(scenario, modes.as_ref()));
     doubts.extend(tables::doubts(scenario));
     doubts.extend(mjcf::doubts(scenario, &names));
     Ok(Some(Preview {

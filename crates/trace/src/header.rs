@@ -8,7 +8,7 @@
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
 use crate::log::LogEntry;
-use crate::recording::{About, Call, Event, LimitReversals, Move, Recording, Signal};
+use crate::recording::{About, Call, CouplingEstimate, Event, LimitReversals, Move, Recording, Signal};
 use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
@@ -50,13 +50,17 @@ pub(crate) struct Header {
     /// Left out where the log is empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<LogEntry>,
+    /// Left out where nothing is coupled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    coupling: Option<CouplingEstimate>,
 }
 
 impl Header {
     /// Header of `recording`.
     pub(crate) fn of(recording: &Recording) -> Self {
         let instants = recording.len();
-        let Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log } = recording;
+        let Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log, coupling } =
+            recording;
         let About { scenario, engine, axis_unit, bodies, overrides } = about.clone();
         Self {
             scenario,
@@ -73,6 +77,7 @@ impl Header {
             calls: calls.clone(),
             limit_reversals: limit_reversals.clone(),
             log: log.clone(),
+            coupling: coupling.clone(),
         }
     }
 
@@ -84,9 +89,9 @@ impl Header {
     /// The recording without its values.
     pub(crate) fn into_recording(self) -> Recording {
         let Self { scenario, engine, axis_unit, bodies, overrides, .. } = self;
-        let Self { rate, channels, moves, events, signals, calls, limit_reversals, log, .. } = self;
+        let Self { rate, channels, moves, events, signals, calls, limit_reversals, log, coupling, .. } = self;
         let channels = channels.into_iter().map(|spec| Channel { spec, values: Values::default() }).collect();
         let about = About { scenario, engine, axis_unit, bodies, overrides };
-        Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
+        Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log, coupling }
     }
 }

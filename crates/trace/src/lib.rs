@@ -27,7 +27,9 @@ pub use envelope::envelope;
 pub use error::TraceError;
 pub use log::LogEntry;
 pub use recorder::{BLOCK, Column, Mark, Recorder, Row, SignalId};
-pub use recording::{About, BoundLimit, Call, CallFate, Event, IncidentMark, LimitReversals, Move, Recording, Signal};
+pub use recording::{
+    About, BoundLimit, Call, CallFate, CouplingEstimate, Event, IncidentMark, LimitReversals, Move, Recording, Signal,
+};
 pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;
 pub use table::{Cells, Table, TableColumn};

@@ -120,6 +120,17 @@ pub enum CallFate {
     },
 }
 
+/// Error of the coupling with FMUs, estimated by the master from what was exchanged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CouplingEstimate {
+    /// Error of an input within a step, as a part of what its signal does.
+    #[serde(with = "number")]
+    pub error: f64,
+    /// The connection where it is largest, as `from -> to`.
+    pub connection: String,
+}
+
 /// How a limited quantity went from one of its limits to the other one and back: the mark of a loop that oscillates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -255,6 +266,8 @@ pub struct Recording {
     pub limit_reversals: Vec<LimitReversals>,
     /// What the parts of the run said of themselves, in order of time.
     pub log: Vec<LogEntry>,
+    /// Error of the coupling with FMUs; `None` where no continuous signal is exchanged with one.
+    pub coupling: Option<CouplingEstimate>,
 }
 
 impl Recording {
@@ -271,6 +284,7 @@ impl Recording {
             calls: Vec::new(),
             limit_reversals: Vec::new(),
             log: Vec::new(),
+            coupling: None,
         }
     }
 

@@ -2,8 +2,8 @@
 use proptest::prelude::*;
 use servobench_base::{Rate, Severity};
 use servobench_trace::{
-    About, Call, CallFate, Channel, ChannelSpec, Ending, Event, LimitReversals, LogEntry, Move, Recording, Signal,
-    TraceError,
+    About, Call, CallFate, Channel, ChannelSpec, CouplingEstimate, Ending, Event, LimitReversals, LogEntry, Move,
+    Recording, Signal, TraceError,
 };
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
@@ -105,18 +105,21 @@ fn any_recording() -> impl Strategy<Value = Recording> {
     let log = prop::collection::vec(log_entry(), 0..3);
     let calls = prop::collection::vec(call(), 0..3);
     let limit_reversals = prop::collection::vec(limit_reversals(), 0..3);
-    let all = (about, rate(), channels(), moves, events, signals, (calls, limit_reversals), log);
-    all.prop_map(|(about, rate, channels, moves, events, signals, (calls, limit_reversals), log)| {
+    let coupling = prop::option::of(
+        (number(), any::<String>()).prop_map(|(error, connection)| CouplingEstimate { error, connection }),
+    );
+    let all = (about, rate(), channels(), moves, events, signals, (calls, limit_reversals, coupling), log);
+    all.prop_map(|(about, rate, channels, moves, events, signals, (calls, limit_reversals, coupling), log)| {
         let (scenario, engine, axis_unit, bodies) = about;
         let overrides = bodies.iter().rev().cloned().collect();
         let about = About { scenario, engine, axis_unit, bodies, overrides };
-        Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log }
+        Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log, coupling }
     })
 }
 
 fn said(recording: &Recording) -> String {
-    let Recording { moves, events, signals, calls, limit_reversals, log, .. } = recording;
-    format!("{moves:?}{events:?}{signals:?}{calls:?}{limit_reversals:?}{log:?}")
+    let Recording { moves, events, signals, calls, limit_reversals, log, coupling, .. } = recording;
+    format!("{moves:?}{events:?}{signals:?}{calls:?}{limit_reversals:?}{log:?}{coupling:?}")
 }
 
 /// Equality bit for bit: `==` alone takes -0 for 0.
@@ -162,6 +165,7 @@ fn small(instants: u32) -> Recording {
         calls: vec![],
         limit_reversals: vec![],
         log: vec![],
+        coupling: None,
     }
 }
 

@@ -17,7 +17,7 @@ use servobench_results::printable;
 use servobench_scenario::{Diagnostic, Loaded};
 use servobench_sim::ConnectionDelay;
 use servobench_suite::{
-    Doubt, Engines, Job, Preview, RunError, Source, Workers, check as objections, delays, jobs, preview,
+    Doubt, Engines, Job, Preview, RunError, Source, Workers, check as objections, exchange, jobs, preview,
 };
 use std::fmt;
 use std::path::PathBuf;
@@ -109,6 +109,8 @@ struct Asked {
     failed: Vec<RunError>,
     /// How late what axis and FMUs exchange is.
     late: String,
+    /// What is doubtful in what they exchange.
+    exchange_doubts: Vec<Doubt>,
     /// What can be said of it without running it, when there is no mistake.
     preview: Option<Preview>,
     /// What is doubtful in it.
@@ -133,8 +135,11 @@ impl Asked {
                 }
             };
             if found.is_empty() && asked.late.is_empty() {
-                match delays(job, engines) {
-                    Ok(delays) => asked.late = listed(&loaded.scenario.name, &delays),
+                match exchange(job, engines) {
+                    Ok(exchange) => {
+                        asked.late = listed(&loaded.scenario.name, &exchange.delays);
+                        asked.exchange_doubts = exchange.doubts;
+                    }
                     Err(error) => asked.failed.push(error),
                 }
             }
@@ -162,7 +167,8 @@ impl Asked {
             Ok(preview) => self.preview = preview,
             Err(error) => self.failed.push(error.into()),
         }
-        let found = self.preview.iter().flat_map(|preview| &preview.doubts).cloned();
+        let exchanged = std::mem::take(&mut self.exchange_doubts);
+        let found = self.preview.iter().flat_map(|preview| &preview.doubts).cloned().chain(exchanged);
         self.doubts = found
             .map(|Doubt { key, line, message, help }| match line {
                 Some(line) => loaded.mistake_in_mjcf(line, message, &help),

@@ -1,6 +1,7 @@
 //! The master with blocks of which all is known.
 mod delays;
 mod discrete;
+mod estimate;
 mod events;
 mod linear;
 mod loops;
@@ -9,5 +10,6 @@ mod orders;
 mod oscillator;
 mod properties;
 mod servo;
+mod single;
 mod stability;
 mod start;

@@ -4,6 +4,7 @@ use super::{
     Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, effort, execution, fault, following,
     harm, rings, stable, standing, stopping, velocity,
 };
+use crate::coupling;
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
 
@@ -56,7 +57,8 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     let is_met =
         requirements.iter().any(|(name, result)| *name == Requirement::Stable && result.standing == Standing::Met);
     let not_analysed = rules.not_analysed.iter().filter(|_| is_met);
-    let warnings = not_analysed.map(|why| format!("{}: {why}", Requirement::Stable)).collect();
+    let not_analysed = not_analysed.map(|why| format!("{}: {why}", Requirement::Stable));
+    let warnings = not_analysed.chain(coupling::warning(recording)).collect();
     Verdict { requirements, expected, warnings, ..Verdict::default() }
 }
 

@@ -20,6 +20,7 @@ pub(crate) fn empty() -> Recording {
         calls: vec![],
         limit_reversals: vec![],
         log: vec![],
+        coupling: None,
     }
 }
 

@@ -49,11 +49,12 @@ table! {
         step: f64 = positive(Plain(&TIME), "0.5 ms"),
         /// Who steps when; default: "gauss-seidel" in the order of the file, the axis last.
         method: MethodKind = OneOf,
-        /// Order with which inputs go on within a step; default: 0: they are held.
+        /// Order with which inputs go on within a step: 0 holds them; default: 1.
         extrapolation: u32 = 0..=2,
-        /// With "iterated": how well inputs and outputs agree, relative to their size; default: 1e-9.
+        /// How well inputs and outputs agree in algebraic loops, and in the steps of "iterated", relative to their size; default: 1e-9, and
+        /// for numbers of single precision what these can resolve.
         tolerance: f64 = positive(Plain(&RATIO), "1e-9"),
-        /// With "iterated": how often a step may be repeated; default: 50.
+        /// How many evaluations an algebraic loop may take, and a step of "iterated"; default: 50.
         iterations: u32 = 1..=1000,
     }
 }

@@ -1,5 +1,5 @@
 //! `[coupling]`: how FMUs and the axis exchange what they give.
-use super::{refuse, whole};
+use super::whole;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::File;
@@ -39,12 +39,10 @@ pub(super) fn resolve(file: &File, base_rate: Option<Rate>, report: &mut Report)
         Slot::Given(at) => whole::ticks("step", *at, base_rate, report),
     };
     let kind = given.method.optional().ok()?.copied().unwrap_or_default();
-    if kind != MethodKind::Iterated {
-        let keys = [("tolerance", given.tolerance.span()), ("iterations", given.iterations.span())];
-        refuse(&keys, "is for the method \"iterated\"", "leave it out, or iterate", report);
-    }
-    let degree = given.extrapolation.optional().ok()?.copied().unwrap_or_default();
-    let order = Order::ALL.into_iter().find(|order| u32::from(order.degree()) == degree)?;
+    let order = match given.extrapolation.optional().ok()? {
+        None => Order::default(),
+        Some(degree) => Order::ALL.into_iter().find(|order| u32::from(order.degree()) == *degree)?,
+    };
     let iteration = Iteration {
         relative: given.tolerance.optional().ok()?.copied().unwrap_or(held.relative),
         most: given.iterations.optional().ok()?.copied().unwrap_or(held.most),

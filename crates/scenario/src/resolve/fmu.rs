@@ -1,5 +1,6 @@
 //! `[axis.fmu]` and `[[fmu]]`: which files, what they are connected to, and how often.
 mod mechanics;
+mod sensors;
 
 pub(super) use mechanics::{Mechanics, mechanics};
 
@@ -292,6 +293,7 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
     }
     if let Some(span) = d.or(q).or(effort) {
         controller(file, d.is_some(), span, known.actuator, report);
+        sensors::check(file, all, d.is_some(), report);
     }
 }
 

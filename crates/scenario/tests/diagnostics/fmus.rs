@@ -99,7 +99,7 @@ fn files_names_and_signals_are_there() {
 }
 
 #[test]
-fn steps_fit_and_keys_belong_to_their_methods() {
+fn steps_fit_and_keys_belong_together() {
     check(&[
         (
             "[coupling]\nstep = \"1 ms\"\n",
@@ -110,10 +110,8 @@ fn steps_fit_and_keys_belong_to_their_methods() {
             &format!("{LOAD}step = \"3 ms\"\n[coupling]\nstep = \"2 ms\"\n"),
             &["5:8: `step` is 48 base ticks, no whole number of steps of `[coupling]`, 32"],
         ),
-        (
-            &format!("{LOAD}[coupling]\niterations = 3\n"),
-            &["6:14: `iterations` is for the method \"iterated\"; leave it out, or iterate"],
-        ),
+        // For algebraic loops, which every method may have.
+        (&format!("{LOAD}[coupling]\niterations = 3\ntolerance = 1e-5\n"), &[]),
         (
             "[[fmu]]\nfile = \"a.fmu\"\nexcites = true\ninputs = { x = \"load.position\" }\n",
             &["3:11: `excites` is for an FMU that gives an effort; connect an output to `disturbance.motor` or \
@@ -158,5 +156,45 @@ fn mechanics_need_their_engine_and_their_outputs() {
             "[axis.fmu]\nfile = \"a.fmu\"\noutputs = { x = \"shaft.position\" }\n",
             &["1:1: no input is given `effort.motor`; write inputs = { variable = \"effort.motor\" }"],
         ),
+    ]);
+}
+
+/// With an FMU in place of the drive nothing but an FMU reads a sensor.
+#[test]
+fn sensors_that_nothing_reads_are_mistakes() {
+    let of = |inputs: &str, outputs: &str| {
+        format!("[[fmu]]\nfile = \"a.fmu\"\ninputs = {{ {inputs} }}\noutputs = {{ {outputs} }}\n")
+    };
+    let (effort, voltage) = ("e = \"effort.motor\"", "d = \"voltage.d\", q = \"voltage.q\"");
+    let encoder = "[motor.encoder]\nstep = \"0.01 deg\"\nnoise = \"0.0001 deg\"\n";
+    let idle = "is not used: an FMU replaces the drive, and none is given `measured.motor.position`; connect an input to \
+                `measured.motor.position`, or leave it out";
+    check(&[
+        (
+            &format!("{encoder}{}", of("x = \"motor.position\"", effort)),
+            &[&format!("2:8: `step` {idle}"), &format!("3:9: `noise` {idle}")],
+        ),
+        (&format!("{encoder}{}", of("x = \"measured.motor.position\"", effort)), &[]),
+        (&format!("{encoder}{LOAD}"), &[]),
+        (
+            &format!("[motor.encoder]\ncommutation_offset = \"3 deg\"\n{}", of("x = \"motor.position\"", voltage)),
+            &[
+                "2:22: `commutation_offset` is not used: the voltage of an FMU in place of the drive is in the frame of the rotor \
+               itself; leave it out",
+            ],
+        ),
+        (
+            &format!("[drive.current.sensor]\noffset_a = \"0.1 A\"\n{}", of("x = \"motor.position\"", voltage)),
+            &[
+                "2:12: `offset_a` is not used: no FMU is given the measured current; connect an input to `measured.current.d` or \
+               `measured.current.q`, or leave it out",
+            ],
+        ),
+        (
+            &format!("[drive.current.sensor]\noffset_a = \"0.1 A\"\n{}", of("x = \"measured.current.q\"", effort)),
+            &["2:12: `offset_a` is not used: no FMU is given the measured current; leave it out: an FMU that gives \
+               `effort.motor` stands for the motor, too"],
+        ),
+        (&format!("[drive.current.sensor]\noffset_a = \"0.1 A\"\n{}", of("x = \"measured.current.q\"", voltage)), &[]),
     ]);
 }

@@ -95,11 +95,12 @@ impl AxisBlock {
         Ok(())
     }
 
-    /// Brings the bodies and the set-point of the tick that comes next to what is given.
+    /// Brings the bodies, what sensors without firmware say of them, and the set-point of the tick that comes next to what is given.
     fn look_ahead(&mut self) {
         let next = self.machine.next();
         let [axis] = &mut self.machine.axes;
         axis.sample();
+        axis.closed_loop.look_at_sensors(&mut axis.now);
         if let Some(setpoint) = axis.closed_loop.look_ahead(next.0) {
             axis.now.setpoint = setpoint;
         }
@@ -159,6 +160,13 @@ impl Block for Part {
         match self {
             Self::Axis(_) => false,
             Self::Fmu(fmu) => fmu.slave.is_discrete(output),
+        }
+    }
+
+    fn is_single_precision(&self) -> bool {
+        match self {
+            Self::Axis(_) => false,
+            Self::Fmu(fmu) => fmu.slave.is_single_precision(),
         }
     }
 

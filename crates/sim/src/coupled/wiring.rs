@@ -110,8 +110,9 @@ fn last_step(ticks: u64, (coupling, every): (u32, u32)) -> [u64; 2] {
     [last - every, last]
 }
 
-/// Whether an FMU stands for the drive.
-pub(crate) fn replaces_the_drive(scenario: &Scenario) -> bool {
+/// Whether an FMU stands for the drive, whose firmware does not run then.
+#[must_use]
+pub fn replaces_the_drive(scenario: &Scenario) -> bool {
     scenario.fmus.iter().any(|fmu| fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal)))
 }
 

@@ -2,6 +2,7 @@
 use servobench_base::Dq;
 use servobench_drive::current::Tuning;
 use servobench_scenario::{BusMode, Scenario};
+use servobench_sim::replaces_the_drive;
 
 /// A loop of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,9 +24,9 @@ pub struct Delay {
     pub length: f64,
 }
 
-/// The loops of `scenario`, the fastest first; none without a drive.
+/// The loops of `scenario`, the fastest first; none without a drive, and with an FMU in its place.
 pub(super) fn loops(scenario: &Scenario) -> Vec<LoopBandwidth> {
-    let Some(drive) = scenario.actuator.drive() else { return Vec::new() };
+    let Some(drive) = scenario.actuator.drive().filter(|_| !replaces_the_drive(scenario)) else { return Vec::new() };
     let mut loops = Vec::new();
     let params = &drive.params;
     if let (Some((current, rate)), Some(tuning)) = (params.current_loop(), drive.current_tuning) {
@@ -64,7 +65,8 @@ pub(super) fn delays(scenario: &Scenario) -> Vec<Delay> {
         note("motion task", f64::from(bus.motion_every) * cycle);
         note("bus", f64::from(bus.delay) * cycle);
     }
-    let Some(drive) = scenario.actuator.drive().map(|drive| &drive.params) else { return delays };
+    let drive = scenario.actuator.drive().filter(|_| !replaces_the_drive(scenario));
+    let Some(drive) = drive.map(|drive| &drive.params) else { return delays };
     // Half a period on average until a task takes up what is new.
     note("position task", drive.position_rate().period() / 2.0);
     note("velocity task", drive.velocity_rate().period() / 2.0);

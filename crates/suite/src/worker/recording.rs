@@ -8,7 +8,8 @@
 //! It is not the format of recordings that stay: nothing is compressed or sealed, so that passing one on costs what copying it does.
 use servobench_base::Rate;
 use servobench_trace::{
-    About, Call, Channel, ChannelSpec, Event, GrowingValues, LimitReversals, LogEntry, Move, Recording, Signal, Values,
+    About, Call, Channel, ChannelSpec, CouplingEstimate, Event, GrowingValues, LimitReversals, LogEntry, Move,
+    Recording, Signal, Values,
 };
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -21,7 +22,8 @@ const LONGEST_HEADER: u64 = 1 << 32;
 /// What it is of: scenario, engine, unit of the axis, bodies, overrides.
 type AboutParts = (String, String, String, Vec<String>, Vec<String>);
 /// What happened.
-type Happened = (Vec<Move>, Vec<Event>, Vec<Signal>, Vec<Call>, Vec<LimitReversals>, Vec<LogEntry>);
+type Happened =
+    (Vec<Move>, Vec<Event>, Vec<Signal>, Vec<Call>, Vec<LimitReversals>, Vec<LogEntry>, Option<CouplingEstimate>);
 /// All but the values, with the number of instants.
 type Header = (AboutParts, Rate, usize, Vec<ChannelSpec>, Happened);
 
@@ -29,10 +31,10 @@ type Header = (AboutParts, Rate, usize, Vec<ChannelSpec>, Happened);
 pub(super) fn write(recording: &Recording, file: &mut File) -> io::Result<()> {
     file.set_len(0)?;
     file.rewind()?;
-    let Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log } = recording;
+    let Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log, coupling } = recording;
     let About { scenario, engine, axis_unit, bodies, overrides } = about;
     let specs: Vec<&ChannelSpec> = channels.iter().map(|channel| &channel.spec).collect();
-    let happened = (moves, events, signals, calls, limit_reversals, log);
+    let happened = (moves, events, signals, calls, limit_reversals, log, coupling);
     let header = ((scenario, engine, axis_unit, bodies, overrides), rate, recording.len(), specs, happened);
     let header = serde_json::to_vec(&header)?;
     let mut out = BufWriter::with_capacity(1 << 18, file);
@@ -66,7 +68,7 @@ pub(super) fn read(file: &mut File) -> io::Result<Recording> {
     (&mut file).take(size).read_to_end(&mut header)?;
     let header: Header = serde_json::from_slice(&header)?;
     let ((scenario, engine, axis_unit, bodies, overrides), rate, instants, specs, happened) = header;
-    let (moves, events, signals, calls, limit_reversals, log) = happened;
+    let (moves, events, signals, calls, limit_reversals, log, coupling) = happened;
     let values = (specs.len() as u64).checked_mul(instants as u64).and_then(|values| values.checked_mul(8));
     if values.and_then(|values| values.checked_add(size + 8)) != Some(length) {
         return Err(too_long());
@@ -74,7 +76,7 @@ pub(super) fn read(file: &mut File) -> io::Result<Recording> {
     let channels = specs.into_iter().map(|spec| Ok(Channel { spec, values: values_of(&mut file, instants)? }));
     let channels = channels.collect::<io::Result<_>>()?;
     let about = About { scenario, engine, axis_unit, bodies, overrides };
-    Ok(Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log })
+    Ok(Recording { about, rate, channels, moves, events, signals, calls, limit_reversals, log, coupling })
 }
 
 fn values_of(file: &mut impl Read, count: usize) -> io::Result<Values> {

@@ -12,8 +12,8 @@ use servobench_base::{Rate, Severity};
 use servobench_fuzz::{Splice, check, fuzz};
 use servobench_testkit::CountingAllocator;
 use servobench_trace::{
-    About, Call, CallFate, Channel, ChannelSpec, Ending, Event, LimitReversals, LogEntry, Move, Recording, Signal,
-    TraceError,
+    About, Call, CallFate, Channel, ChannelSpec, CouplingEstimate, Ending, Event, LimitReversals, LogEntry, Move,
+    Recording, Signal, TraceError,
 };
 use std::fs;
 use std::path::Path;
@@ -67,6 +67,7 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
             times: 12,
             text: "stiff".into(),
         }],
+        coupling: Some(CouplingEstimate { error: 0.0103, connection: "load.F -> disturbance.load".into() }),
     };
     recording.write_parquet(path).unwrap();
     let bytes = fs::read(path).unwrap();

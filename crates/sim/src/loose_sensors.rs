@@ -1,0 +1,59 @@
+//! The sensors of an axis whose drive an FMU replaces: they are read for the FMU.
+use crate::closed_loop::EncoderInput;
+use servobench_plant::{BodyState, PowerStage};
+use servobench_signals::Instant;
+
+/// Encoders and current sensors that no firmware reads.
+#[derive(Clone)]
+pub(crate) struct LooseSensors {
+    pub(crate) motor_encoder: EncoderInput,
+    pub(crate) load_encoder: Option<EncoderInput>,
+    /// Whether the currents are measured: by voltage control of a synchronous motor.
+    pub(crate) has_current: bool,
+    /// Whether the tick that comes has been read already.
+    is_read: bool,
+}
+
+impl LooseSensors {
+    pub(crate) const fn new(
+        motor_encoder: EncoderInput,
+        load_encoder: Option<EncoderInput>,
+        has_current: bool,
+    ) -> Self {
+        Self { motor_encoder, load_encoder, has_current, is_read: false }
+    }
+
+    /// Reads the tick that comes, if that has not been done: what the sensors say comes to `now`. `motor` (its own coordinate) and `load` are
+    /// as mounted, `transmission` and `direction` those of the loop.
+    pub(crate) fn look_ahead(
+        &mut self,
+        [motor, load]: [BodyState; 2],
+        (transmission, direction): (f64, f64),
+        power: &mut PowerStage,
+        now: &mut Instant,
+    ) {
+        if std::mem::replace(&mut self.is_read, true) {
+            return;
+        }
+        now.measured_position[0] = direction * transmission * self.motor_encoder.read(motor).position;
+        if let Some(encoder) = &mut self.load_encoder {
+            now.measured_position[1] = direction * encoder.read(load).position;
+        }
+        if self.has_current {
+            let current = power.measured_current(motor);
+            now.measured_current = current.to_dq(power.rotation().rotation());
+        }
+    }
+
+    /// The same at the tick itself, after which the next one comes.
+    pub(crate) fn read(
+        &mut self,
+        bodies: [BodyState; 2],
+        ratios: (f64, f64),
+        power: &mut PowerStage,
+        now: &mut Instant,
+    ) {
+        self.look_ahead(bodies, ratios, power, now);
+        self.is_read = false;
+    }
+}

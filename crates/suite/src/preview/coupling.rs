@@ -1,0 +1,27 @@
+//! Error of the coupling with FMUs as the slowest mode of the axis lets it be expected.
+use super::{Doubt, Modes};
+use servobench_metrics::{COUPLING_ERROR_WARNED, Quantity};
+use servobench_scenario::{Fmu, InputSource, Scenario};
+use std::f64::consts::TAU;
+
+/// A doubt where an FMU pushes an axis that it follows, and the exchange is too coarse for the slowest mode with the motor held. Modes of the
+/// FMU itself, and how much of a faster mode there is, only a run can tell: it has the metric `coupling_error`.
+pub(super) fn doubt(scenario: &Scenario, modes: Option<&Modes>) -> Option<Doubt> {
+    let omega = modes?.held.first()?.omega;
+    let coupled = scenario.fmus.iter().filter(|fmu| fmu.efforts().next().is_some() && follows_the_axis(fmu));
+    let length = f64::from(coupled.map(|fmu| fmu.every).max()?) * scenario.base_rate.period();
+    let error = scenario.coupling.error_of_a_mode(omega * length);
+    (error > COUPLING_ERROR_WARNED).then(|| {
+        let (frequency, exchanges) = (Quantity::new(omega / TAU, "Hz"), TAU / (omega * length));
+        let message = format!(
+            "the mode of {frequency} has {exchanges:.1} exchanges with FMUs to a period: what they exchange is off by about {:.1} %",
+            100.0 * error
+        );
+        Doubt::new("coupling.step", message, "take a smaller step, or another `method` or `extrapolation`")
+    })
+}
+
+/// True where it takes how the axis moves.
+fn follows_the_axis(fmu: &Fmu) -> bool {
+    fmu.inputs.iter().any(|(_, source)| !matches!(source, InputSource::Time | InputSource::Fmu { .. }))
+}
