@@ -75,6 +75,7 @@ impl Schedule {
             let ticks = steps * u64::from(Divider::ticks(settings.step));
             // What lies partly ahead is a line at least.
             let order = match (is_held, ahead) {
+                _ if wire.is_discrete => Order::Constant,
                 (true, _) => Order::Constant,
                 (_, true) => settings.order.max(Order::Linear),
                 (_, false) => settings.order,

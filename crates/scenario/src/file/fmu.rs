@@ -51,8 +51,8 @@ table! {
         method: MethodKind = OneOf,
         /// Order with which inputs go on within a step: 0 holds them; default: 1.
         extrapolation: u32 = 0..=2,
-        /// How well inputs and outputs agree in algebraic loops, and in the steps of "iterated", relative to their size; default: 1e-9, and
-        /// for numbers of single precision what these can resolve.
+        /// How well inputs and outputs agree in algebraic loops, and in the steps of "iterated", relative to their size; numbers of single
+        /// precision agree as far as they resolve it; default: 1e-9.
         tolerance: f64 = positive(Plain(&RATIO), "1e-9"),
         /// How many evaluations an algebraic loop may take, and a step of "iterated"; default: 50.
         iterations: u32 = 1..=1000,
