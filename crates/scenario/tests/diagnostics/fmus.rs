@@ -170,9 +170,11 @@ fn sensors_that_nothing_reads_are_mistakes() {
     let idle = "is not used: an FMU replaces the drive, and none is given `measured.motor.position`; connect an input to \
                 `measured.motor.position`, or leave it out";
     check(&[
+        (&format!("{encoder}{}", of("x = \"motor.position\"", effort)), &[&format!("3:9: `noise` {idle}")]),
+        // A resolution alone is a warning.
         (
-            &format!("{encoder}{}", of("x = \"motor.position\"", effort)),
-            &[&format!("2:8: `step` {idle}"), &format!("3:9: `noise` {idle}")],
+            &format!("[motor.encoder]\nstep = \"0.01 deg\"\n{}", of("x = \"motor.position\"", effort)),
+            &[&format!("2:8: `step` {idle}")],
         ),
         (&format!("{encoder}{}", of("x = \"measured.motor.position\"", effort)), &[]),
         (&format!("{encoder}{LOAD}"), &[]),
