@@ -204,12 +204,11 @@ fn unit(it: &ModelDescription, variable: &Variable, wanted: Option<&SiUnit>) -> 
 /// The unit of a variable, which is one that is defined or a name of an SI unit.
 fn declared_unit(it: &ModelDescription, variable: &Variable) -> Option<DeclaredUnit> {
     let unit = it.unit(variable)?;
-    let exponents = match unit.base {
-        Some(base) => base.exponents,
-        None => {
-            let (_, [kg, m, s, a]) = UNDEFINED.iter().find(|(names, _)| names.contains(&unit.name.as_str()))?;
-            Exponents { kg: *kg, m: *m, s: *s, a: *a, ..Exponents::default() }
-        }
+    let exponents = if let Some(base) = unit.base {
+        base.exponents
+    } else {
+        let (_, [kg, m, s, a]) = UNDEFINED.iter().find(|(names, _)| names.contains(&unit.name.as_str()))?;
+        Exponents { kg: *kg, m: *m, s: *s, a: *a, ..Exponents::default() }
     };
     (!unit.name.is_empty()).then(|| DeclaredUnit { name: unit.name.clone(), exponents })
 }

@@ -101,6 +101,28 @@ impl EncoderInput {
     }
 }
 
+/// References, currents and active limits of the loops come to `now`, in the `direction` of the axis; `cuts_velocity`: the drive does, the
+/// master does.
+#[inline(always)]
+fn show(params: &drive::Params, state: &drive::State, direction: f64, cuts_velocity: [bool; 2], now: &mut Instant) {
+    let held = state.held();
+    now.velocity_reference = direction * held.velocity_reference;
+    now.effort_reference = held.effort.effort;
+    now.current_reference = held.current_reference;
+    now.voltage_reference = held.current.computed;
+    now.measured_current = held.current.current;
+    if params.blocks.measurement.is_some() {
+        now.measured_velocity = direction * state.velocity(params);
+    }
+    now.binds = PerLimit {
+        voltage: held.current.saturated,
+        current: held.effort.cut == Some(Cut::Available),
+        effort: held.effort.cut == Some(Cut::Effort),
+        speed: held.speed_is_cut | cuts_velocity[0],
+        master: cuts_velocity[1],
+    };
+}
+
 /// Position and its derivatives.
 #[inline(always)]
 const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
@@ -280,22 +302,7 @@ impl ClosedLoop {
                 command
             }
         };
-        let held = state.held();
-        now.velocity_reference = direction * held.velocity_reference;
-        now.effort_reference = held.effort.effort;
-        now.current_reference = held.current_reference;
-        now.voltage_reference = held.current.computed;
-        now.measured_current = held.current.current;
-        if params.blocks.measurement.is_some() {
-            now.measured_velocity = direction * state.velocity(params);
-        }
-        now.binds = PerLimit {
-            voltage: held.current.saturated,
-            current: held.effort.cut == Some(Cut::Available),
-            effort: held.effort.cut == Some(Cut::Effort),
-            speed: held.speed_is_cut | cuts_velocity[0],
-            master: cuts_velocity[1],
-        };
+        show(params, state, direction, cuts_velocity, now);
         command
     }
 

@@ -268,7 +268,8 @@ impl Axis {
             return Ok(());
         }
         let (run, is_paused) = self.run(&moving.command, &moving.target, &self.base, axis, 0.0, &self.queue)?;
-        let run = if is_paused { run } else { self.without_turning_round(moving, axis, run)? };
+        let other = if is_paused { None } else { self.without_turning_round(moving, axis, &run)? };
+        let run = other.unwrap_or(run);
         if let Activity::Moving(moving) = &mut self.activity {
             (moving.run, moving.is_paused) = (run, is_paused);
             self.ledger.set(moving.id, Progress::Active);
@@ -276,20 +277,20 @@ impl Axis {
         Ok(())
     }
 
-    /// `run`, in place of that of `moving`; or, where it would turn round before a position ahead that it is to pass, because its
-    /// velocity there is out of reach since the override has changed, the way straight to that velocity: it passes the position faster
+    /// Another way than `run` for `moving`, where that would turn round before a position ahead that it is to pass, because its
+    /// velocity there is out of reach since the override has changed: the way straight to that velocity, which passes the position faster
     /// or slower than wanted. Next to rest the fastest one may turn round as well: then `moving` goes on as it is, and to that
     /// velocity afterwards.
-    fn without_turning_round(&self, moving: &Moving, axis: &Bounds, run: Run) -> Result<Run, BlockError> {
-        let Target::Position { x, v } = moving.target else { return Ok(run) };
+    fn without_turning_round(&self, moving: &Moving, axis: &Bounds, run: &Run) -> Result<Option<Run>, BlockError> {
+        let Target::Position { x, v } = moving.target else { return Ok(None) };
         let from = self.base;
         let (sign, is_ahead) = (v.signum(), (x - from.x) * v > 0.0);
         if !is_ahead || from.v * sign < 0.0 || run.keeps_direction(sign) || !moving.run.keeps_direction(sign) {
-            return Ok(run);
+            return Ok(None);
         }
         let (straight, _) = self.run(&moving.command, &Target::Velocity(v), &from, axis, 0.0, &self.queue)?;
         let way = if straight.keeps_direction(sign) { straight } else { moving.run.then_as(&straight) };
-        Ok(way.passing(x, sign, &run))
+        Ok(Some(way.passing(x, sign, run)))
     }
 
     /// `command` as it begins at `from`, `lead` seconds ago, with those that wait behind it.
