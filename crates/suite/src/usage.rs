@@ -108,7 +108,7 @@ mod tests {
     /// Oracle: √(k/(m₁ + m₂))/2π by hand: the carriage's own mass and that which is bolted to it, on the belt's spring.
     #[test]
     fn what_is_bolted_to_a_table_swings_on_the_spring_of_the_table() {
-        let axis = "run.base_rate = \"4 kHz\"\nmotor.kind = \"prescribed\"\naxis.motion = \"linear\"\n";
+        let axis = "run.base_rate = \"4 kHz\"\nmotor.kind = \"prescribed\"\n[axis]\nmotion = \"linear\"\n";
         let mode = |bodies: &str| {
             let text = format!("{axis}{bodies}[[program]]\nwait = \"1 s\"\n");
             let scenario = servobench_scenario::parse("belt", &text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
@@ -116,13 +116,13 @@ mod tests {
         };
         let (table, load) =
             ("table = { mass = \"3.4 kg\", stiffness = \"614 N/mm\", damping = \"90 N s/m\" }\n", "load = { mass = ");
-        let bolted = mode(&format!("[axis]\n{table}{load}\"10 kg\" }}\n")).unwrap();
+        let bolted = mode(&format!("{table}{load}\"10 kg\" }}\n")).unwrap();
         assert_eq!((bolted.table, bolted.is_alone), ("axis.table", false));
         assert!((bolted.frequency - (614e3_f64 / 13.4).sqrt() / TAU).abs() < 1e-9, "{bolted:?}");
-        let alone = mode(&format!("[axis]\n{table}")).unwrap();
+        let alone = mode(table).unwrap();
         assert!(alone.is_alone && (alone.frequency - (614e3_f64 / 3.4).sqrt() / TAU).abs() < 1e-9, "{alone:?}");
-        let both = mode(&format!("[axis]\n{table}{load}\"10 kg\", frequency = \"20 Hz\" }}\n")).unwrap();
+        let both = mode(&format!("{table}{load}\"10 kg\", frequency = \"20 Hz\" }}\n")).unwrap();
         assert!(both.table == "axis.load" && both.is_alone && (both.frequency - 20.0).abs() < 1e-9, "{both:?}");
-        assert!(mode(&format!("[axis]\n{load}\"10 kg\" }}\n")).is_none());
+        assert!(mode(&format!("{load}\"10 kg\" }}\n")).is_none());
     }
 }
