@@ -594,6 +594,24 @@ fn a_table_is_followed_or_refused_whatever_the_delay() {
     assert!(followed > 3 * refused, "{followed} followed, {refused} refused");
 }
 
+/// A master that is held up, or hears nothing of the drive for a while, sends no more than there is room for: the answers that it has are
+/// old, but each tells how many points had arrived with the room that was left.
+#[test]
+fn old_answers_do_not_fill_the_buffer() {
+    let file = sine(60);
+    for delay in [1, 2, 4] {
+        for (kind, by) in [("task-late", "by = \"3 ms\""), ("drive-silent", ""), ("late", "by = \"3 ms\"")] {
+            for start in ["20 ms", "40 ms", "61 ms"] {
+                let fault = format!("[[bus.fault]]\nkind = \"{kind}\"\nstart = \"{start}\"\ncycles = 15\n{by}\n");
+                let recording = streamed(&file, &format!("delay = {delay}\n{fault}"));
+                // Two cycles of a late task in one of the bus lose a point, which is another fault.
+                let overflows = buffer(&recording).iter().any(|states| states.contains("Overflow"));
+                assert!(!overflows, "{kind} at {start} behind {delay} cycles");
+            }
+        }
+    }
+}
+
 /// A drive whose gear ratio (6091h), encoder resolution (608Fh) or feed (6092h) is wrong by two goes half as far or twice, and reads what it
 /// was told: target (607Ah) and actual position (6064h) are in one unit. Oracle: 100 mm, by the ratio of right and wrong.
 #[test]

@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-9;
 /// How long the master's commands are under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// From one cycle of the task to the next, and of the bus (s).
+    /// From one cycle of the motion task to the next (s).
     pub task: f64,
     /// From one cycle of the bus to the next (s).
     pub bus: f64,
@@ -39,36 +39,6 @@ impl Timing {
     /// The first cycle of the task from `t` on (s).
     fn first_cycle(&self, t: f64) -> f64 {
         libm::ceil((t - ROUNDING) / self.task) * self.task
-    }
-}
-
-/// In which of the last cycles a point was sent, of which the drive has not answered yet.
-#[derive(Debug, Clone, Copy)]
-struct UnderWay {
-    /// The last cycle is the lowest bit.
-    sent: u64,
-    /// Those of the cycles of which no answer knows.
-    mask: u64,
-}
-
-impl UnderWay {
-    fn new(timing: &Timing) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 63")]
-        let cycles = libm::ceil(timing.answer() / timing.task - ROUNDING).clamp(0.0, 63.0) as u32;
-        Self { sent: 0, mask: u64::MAX >> (63 - cycles) }
-    }
-
-    const fn begin_cycle(&mut self) {
-        self.sent <<= 1;
-    }
-
-    const fn send(&mut self) {
-        self.sent |= 1;
-    }
-
-    /// Whether a buffer that was said to have so much room has it for one more point.
-    const fn has_room(&self, free: usize) -> bool {
-        free > (self.sent & self.mask).count_ones() as usize
     }
 }
 
@@ -90,7 +60,8 @@ pub struct Stream {
     due: f64,
     stage: Stage,
     message: Option<Message>,
-    under_way: UnderWay,
+    /// In which of the last 64 cycles a point was sent; the last one is the lowest bit.
+    recent: u64,
     timing: Timing,
 }
 
@@ -116,7 +87,6 @@ impl Stream {
     pub fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>, timing: Timing) -> Self {
         let is_serial = matches!(encoding.transfer(), PointTransfer::Serial);
         let stage = if is_serial { Stage::Setting } else { Stage::Filling };
-        let under_way = UnderWay::new(&timing);
         Self {
             encoding,
             tables,
@@ -128,7 +98,7 @@ impl Stream {
             due: 0.0,
             stage,
             message: None,
-            under_way,
+            recent: 0,
             timing,
         }
     }
@@ -202,33 +172,29 @@ impl Stream {
             (None, Some(before)) => due + f64::from(points[before].time) * 1e-6,
             (None, None) => due,
         };
-        let mut under_way = UnderWay::new(timing);
-        let mut sent: Vec<f64> = Vec::with_capacity(points.len());
-        // By the last answer, and when the drive takes the next one.
-        let (mut arrived, mut taken, mut due) = (0, 0, f64::INFINITY);
-        let (mut now, mut begun) = (0.0, None);
-        while sent.len() < points.len() {
-            let known = now - timing.answer() + ROUNDING;
-            while sent.get(arrived).is_some_and(|sent| *sent <= known) {
-                arrived += 1;
-            }
+        // Cycles in which they are sent; how many have been taken by the last answer, and when the next one is.
+        let mut sent: Vec<u32> = Vec::with_capacity(points.len());
+        let (mut taken, mut due, mut begun) = (0, f64::INFINITY, None);
+        let time_of = |cycle: u32| f64::from(cycle) * timing.task;
+        for cycle in 0.. {
+            let known = time_of(cycle) - timing.answer() + ROUNDING;
             while taken < sent.len() && due <= known {
                 (due, taken) = (after(taken, due), taken + 1);
             }
-            under_way.begin_cycle();
-            let waiting = arrived.saturating_sub(taken);
-            if under_way.has_room(CAPACITY.saturating_sub(waiting)) {
-                under_way.send();
-                sent.push(now);
+            if sent.len() - taken < CAPACITY {
+                sent.push(cycle);
             }
             if begun.is_none() && sent.len() >= AHEAD.min(points.len()) {
-                (begun, due) = (Some(now), now);
+                due = time_of(cycle);
+                begun = Some(due);
             }
-            now += timing.task;
+            if sent.len() == points.len() {
+                break;
+            }
         }
         let mut due = begun?;
-        sent.iter().enumerate().find_map(|(index, sent)| {
-            let is_late = *sent > due + ROUNDING;
+        sent.iter().enumerate().find_map(|(index, cycle)| {
+            let is_late = time_of(*cycle) > due + ROUNDING;
             due = after(index, due);
             is_late.then_some(index)
         })
@@ -241,7 +207,7 @@ impl Stream {
 
     /// The command of a cycle at `now` (s) to a drive that has answered `drive`.
     pub fn cycle(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
-        self.under_way.begin_cycle();
+        self.recent <<= 1;
         let point = match self.tables.get(self.table) {
             Some((start, points)) if *start <= now => {
                 let length = points.len();
@@ -320,8 +286,7 @@ impl Stream {
     /// Points of this table that have left the buffer, by the answer of the drive. Where some were lost on their way, they have
     /// to come first.
     fn passed(&mut self, drive: &ProfileFeedback) -> usize {
-        let [low, high, ..] = drive.buffer_status.to_le_bytes();
-        let number = u16::from_le_bytes([low, high]);
+        let number = told_number(drive);
         self.arrived += i64::from(number.wrapping_sub(self.seen).cast_signed());
         self.seen = number;
         let waiting = CAPACITY - usize::from(drive.buffer_free).min(CAPACITY);
@@ -330,13 +295,16 @@ impl Stream {
 
     /// The next point, when it is time for it and the buffer has room.
     fn next(&mut self, now: f64, drive: &ProfileFeedback) -> Option<TrajectoryPoint> {
+        let number = self.number;
         let (_, points) = self.tables.get(self.table)?;
         let point = match (points.get(self.sent), self.encoding.constant_time()) {
             (Some(point), _) => *point,
             (None, Some(_)) => *points.last()?,
             (None, None) => return None,
         };
-        if !self.under_way.has_room(drive.buffer_free.into()) {
+        // What the drive has not told of is under way; or lost, where that is long ago.
+        let under_way = u32::from(number.wrapping_sub(told_number(drive))).min(self.recent.count_ones());
+        if u32::from(drive.buffer_free) <= under_way {
             return None;
         }
         if let Some(period) = self.encoding.adapted_time() {
@@ -345,10 +313,9 @@ impl Stream {
             }
             self.due += f64::from(period) * 1e-6;
         }
-        let number = self.number;
         self.number = number.wrapping_add(1);
         self.sent += 1;
-        self.under_way.send();
+        self.recent |= 1;
         match self.encoding.sent(point, number)? {
             SentPoint::MoveSegment(bytes) => Some(TrajectoryPoint::MoveSegment(bytes)),
             SentPoint::DataRecord(data) => Some(TrajectoryPoint::DataRecord(data)),
@@ -362,4 +329,10 @@ impl Stream {
     fn is_serial(&self) -> bool {
         self.encoding.transfer() == PointTransfer::Serial
     }
+}
+
+/// Points that have arrived at the drive by its answer, as it numbers them (2012h).
+const fn told_number(drive: &ProfileFeedback) -> u16 {
+    let [low, high, ..] = drive.buffer_status.to_le_bytes();
+    u16::from_le_bytes([low, high])
 }
