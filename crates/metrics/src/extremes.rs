@@ -32,6 +32,12 @@ pub(crate) fn range_of(values: &[f64]) -> (f64, f64) {
     rest.iter().fold(all.unwrap_or((f64::INFINITY, f64::NEG_INFINITY)), |range, x| within(range, *x))
 }
 
+/// How far apart the smallest and the largest of `values` are; 0 where there are none.
+pub(crate) fn span_of(values: &[f64]) -> f64 {
+    let (low, high) = range_of(values);
+    (high - low).max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

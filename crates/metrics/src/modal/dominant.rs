@@ -5,7 +5,7 @@ use super::order::Order;
 use super::series::Series;
 use super::swings::Swings;
 use super::{BAND, Mode, PERIODS, Signal, noise};
-use crate::extremes::range_of;
+use crate::extremes::span_of;
 use core::f64::consts::PI;
 
 /// Stronger damping is settling, not vibration; stronger growth ends in an error, not in a recording.
@@ -145,15 +145,11 @@ fn comes_to_a_stop(signal: &Signal<'_>, found: Oscillation, unseen: f64) -> bool
     let means: Vec<f64> = signal.values.chunks_exact(rows).map(mean).collect();
     let noise = 2.0 * noise::DEVIATIONS * noise::deviation(signal.values) / (rows as f64).sqrt();
     let quiet = signal.resolution.max(noise);
-    let range = |values: &[f64]| {
-        let (low, high) = range_of(values);
-        high - low
-    };
     means.windows(2 * (MEANS + 1)).any(|means| {
         let (before, after) = means.split_at(MEANS + 1);
         let (moves, rests) = if found.decay < 0.0 { (after, before) } else { (before, after) };
-        let moves = range(moves);
-        moves > unseen.max(STOPPED * quiet) && range(rests) <= quiet.max(STILL * moves)
+        let moves = span_of(moves);
+        moves > unseen.max(STOPPED * quiet) && span_of(rests) <= quiet.max(STILL * moves)
     })
 }
 
@@ -171,10 +167,9 @@ fn stands_still(signal: &Signal<'_>, found: Oscillation, envelope: impl Fn(f64) 
     let time = |k: usize| signal.start + k as f64 * signal.step;
     let loud = LOUD * envelope(time(0)).max(envelope(time(signal.values.len())));
     signal.values.chunks_exact(quarter).enumerate().any(|(k, values)| {
-        let (low, high) = range_of(values);
         let least = envelope(time(k * quarter)).min(envelope(time((k + 1) * quarter)));
         // Within the resolution it is not seen to move; two values stand still by chance.
-        quarter > 2 && least > loud.max(INCREMENTS * signal.resolution) && high - low < STILL * least
+        quarter > 2 && least > loud.max(INCREMENTS * signal.resolution) && span_of(values) < STILL * least
     })
 }
 

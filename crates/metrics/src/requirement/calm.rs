@@ -4,7 +4,7 @@ use super::Rules;
 use super::excitation::disturbed;
 use super::phases::{between_turning_points, request_phases};
 use super::task::OF_FARTHEST;
-use crate::extremes::range_of;
+use crate::extremes::span_of;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
 use servobench_trace::Recording;
@@ -65,8 +65,7 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
 
 /// How far the last way of a motion leads in `rows`, at the ends of which it stands. A turn so small that an interpolation makes it is none.
 fn last_way(positions: &[f64], rows: Range<usize>) -> f64 {
-    let (low, high) = range_of(&positions[rows.clone()]);
-    let ways = between_turning_points(positions, &rows, OF_FARTHEST * (high - low));
+    let ways = between_turning_points(positions, &rows, OF_FARTHEST * span_of(&positions[rows.clone()]));
     ways.last().map_or(0.0, |way| (positions[rows.end - 1] - positions[way.start]).abs())
 }
 

@@ -3,7 +3,7 @@ use super::phases::{RequestPhase, between_turning_points};
 use super::rules::Driven;
 use super::stretch::Rows;
 use super::task::{ROUNDING, TIME_CONSTANTS, Task};
-use crate::extremes::{most_of, range_of};
+use crate::extremes::{most_of, span_of};
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
@@ -108,10 +108,7 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase, moved_to: 
 /// A load rings where it swings farther than its motor, or where the swings of both die out, or are small beside the way of the stop; a
 /// motor that goes on to swing has not stopped.
 fn last_cycles(task: &Task<'_>, rows: &Rows<'_>, after: &Range<usize>, planned: usize) -> Option<Range<usize>> {
-    let size = |values: &[f64], rows: Range<usize>| {
-        let (low, high) = range_of(&values[rows]);
-        high - low
-    };
+    let size = |values: &[f64], rows: Range<usize>| span_of(&values[rows]);
     let middle = usize::midpoint(after.start, after.end);
     let least = (RESOLUTIONS * task.rules.resolution()).max(OF_SWING * size(rows.load, middle..after.end));
     let turns = between_turning_points(rows.load, after, least);

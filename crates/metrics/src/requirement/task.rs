@@ -5,7 +5,7 @@
 use super::phases::{RequestPhase, between_turning_points, request_phases};
 use super::stretch::{Rows, Stretch, measure};
 use super::{Expected, Rules, arrival_window};
-use crate::extremes::{most_of, range_of};
+use crate::extremes::{most_of, span_of};
 use crate::quantity::Quantity;
 use servobench_base::RequestKind;
 use servobench_signals::{PerLimit, Signal};
@@ -124,7 +124,7 @@ impl<'a> Task<'a> {
         let Some(rows) = self.rows else { return 0.0 };
         let touches = |phase: &&RequestPhase| phase.rows.end == way.start || phase.rows.start == way.end;
         let held = self.phases.iter().filter(|phase| phase.kind == RequestKind::Velocity).filter(touches);
-        held.map(|phase| span(&rows.request[phase.rows.clone()])).sum()
+        held.map(|phase| span_of(&rows.request[phase.rows.clone()])).sum()
     }
 
     /// A position of the axis in words.
@@ -186,7 +186,7 @@ impl<'a> Task<'a> {
                         way = way.map(|way| way.start..phase.rows.end);
                     } else if let Some(way) = way.take() {
                         let from = left.take().unwrap_or(way.start);
-                        let distance = span(&rows.request[from..way.end]);
+                        let distance = span_of(&rows.request[from..way.end]);
                         Self::ways(rows, way, least_way, std::mem::take(&mut is_interrupted), &mut pieces);
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
@@ -216,7 +216,7 @@ impl<'a> Task<'a> {
     /// How far the request goes at least where it turns.
     fn least_way(&self, rows: &Rows<'_>) -> f64 {
         let follows = self.phases.iter().filter(|phase| phase.kind == RequestKind::Follow);
-        let farthest = follows.map(|phase| span(&rows.request[phase.rows.clone()])).fold(0.0, f64::max);
+        let farthest = follows.map(|phase| span_of(&rows.request[phase.rows.clone()])).fold(0.0, f64::max);
         (TURNS * self.rules.resolution()).max(OF_FARTHEST * farthest)
     }
 
@@ -225,7 +225,7 @@ impl<'a> Task<'a> {
         let request = &rows.request[all.clone()];
         let rounding = ROUNDING * request[0].abs().max(request[request.len() - 1].abs());
         let least = least.max(rounding);
-        if span(request) > least {
+        if span_of(request) > least {
             let ways = between_turning_points(rows.request, &all, least);
             let ways = ways.into_iter().skip(usize::from(is_interrupted));
             let ways = ways.filter(|way| !way.is_empty() && !jumps(rows, &all, way, least));
@@ -245,7 +245,7 @@ impl<'a> Task<'a> {
         // is seen; it goes no farther than before.
         let goes_on = match turns[..] {
             [.., before, last] => {
-                let (swing, rest_of_it) = (span(&rows.load[before..last]), span(&rows.load[last..rest.end]));
+                let (swing, rest_of_it) = (span_of(&rows.load[before..last]), span_of(&rows.load[last..rest.end]));
                 last >= middle && 2 * (rest.end - last) <= 3 * (last - before) && rest_of_it <= GROWS * swing
             }
             _ => false,
@@ -255,7 +255,7 @@ impl<'a> Task<'a> {
         {
             // Where they die out the last ones: those before still come nearer.
             let half: Vec<usize> = turns.iter().rev().step_by(2).copied().take_while(|turn| *turn >= middle).collect();
-            let sizes = || half.windows(2).map(|cycle| span(&rows.load[cycle[1]..cycle[0]]));
+            let sizes = || half.windows(2).map(|cycle| span_of(&rows.load[cycle[1]..cycle[0]]));
             let dies_out = sizes().next_back() > sizes().next().map(|size| DIES_OUT * size);
             let cycles = if dies_out { half.get(CYCLES).or(half.last()) } else { half.last() };
             let from = cycles.copied().filter(|from| *from < last).unwrap_or(one);
@@ -278,12 +278,6 @@ fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) ->
 /// True where a motion was broken off by a silence of the task.
 fn is_silence(before: &[RequestPhase]) -> bool {
     matches!(before, [moved, silent] if moved.kind == RequestKind::Follow && silent.kind == RequestKind::Nothing)
-}
-
-/// From the lowest of `values` to the highest.
-fn span(values: &[f64]) -> f64 {
-    let (low, high) = range_of(values);
-    (high - low).max(0.0)
 }
 
 /// Times of `phase` in which the requested velocity is constant: their second halves.
