@@ -1,7 +1,7 @@
 //! The error of the coupling, estimated from what is exchanged anyway.
 //!
 //! Within a step a block has the polynomial p as input where the signal is y. At the end of the step the defect d = p − y is known.
-//! What counts for the block is the mean of p − y over the step, to leading order
+//! The block feels the mean of p − y over the step, to leading order
 //!
 //! ```text
 //! extrapolated, order 0, 1, 2    d/2, 5·d/12, 3·d/8      the error grows as σ, σ(σ+1), σ(σ+1)(σ+2) over the step, σ = 0 … 1
@@ -91,7 +91,7 @@ enum Between {
     Parabola,
 }
 
-/// What is known of a window.
+/// The exchanges of a window so far.
 struct Window {
     exchanges: usize,
     first: f64,

@@ -139,10 +139,10 @@ impl Finding {
 const FORGOTTEN: f64 = 0.5;
 /// The least gain that adds up, as a part of the speed that is found.
 const LEAST: f64 = 0.25;
-/// What is gained is at least so much of what is lost.
+/// The least share of the speed that is lost, which is gained.
 const OF_LOST: f64 = 0.5;
 
-/// How the speed goes while the current brakes, from turn to turn.
+/// Course of the speed while the current brakes, from turn to turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Braked {
     /// Where it turned last, and the farthest that it came from there.
@@ -188,7 +188,7 @@ impl Swings {
         }
     }
 
-    /// Whether `speed` was gained in swings, with the gain of `now`.
+    /// True where `speed` was gained in swings, with the gain of `now`.
     fn has_gained(&self, speed: f64, now: f64) -> bool {
         self.gained + now >= speed && self.gained + now >= OF_LOST * self.lost
     }

@@ -1,21 +1,21 @@
 //! The program of moves as a set-point over time.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod described;
 mod fine;
 
 use crate::error::{BuildError, check_length};
+use described::kind;
 use fine::Fine;
 use servobench_base::{RequestKind, Setpoint};
 use servobench_cia402::interpolated::SubMode;
 use servobench_cia402::units::Object;
 use servobench_metrics::DisplayUnit;
 use servobench_motion::PlanError;
-use servobench_motion::online::Effort;
-use servobench_motion::rockwell::Shape;
 use servobench_planner::{
-    CommandCycle, Follow, Generator, Method, Plan, PlanDetails, PointMove, PointTimes, Positioning, Reader, Request,
+    CommandCycle, Generator, Plan, PlanDetails, PointMove, PointTimes, Positioning, Reader, Request,
 };
 use servobench_scenario::{Bus, BusMode, MoveStep, Scenario, Step};
-use servobench_trace::{Ending, Move};
+use servobench_trace::Move;
 
 /// The part of its largest velocity that is rounding at the end of a move.
 const ROUNDING: f64 = 1e-9;
@@ -267,50 +267,6 @@ impl Planned {
         state.x += self.from;
         Ok((self.end, state))
     }
-
-    /// What a recording says of it, `delay` (s) later at its end than it is planned.
-    fn describe(&self, unit: &DisplayUnit, delay: f64) -> Move {
-        let (plan, order) = (&self.plan, self.plan.order());
-        let length = self.end - self.start;
-        // The difference of start and end is rounded: it alone says nothing.
-        let is_aborted = self.is_aborted && length < plan.duration();
-        let (from, to) = (self.from, self.from + plan.at(length.max(plan.duration())).x);
-        let (cruise_start, cruise) = match plan.end().v {
-            // A velocity that is held.
-            v if v != 0.0 && length > plan.duration() => (plan.duration(), length - plan.duration()),
-            _ => plan.cruise(),
-        };
-        let cruise = (cruise_start.min(length), cruise.min(length - cruise_start).max(0.0));
-        let (mut peaks, mut limits) = (plan.largest(), [None; 4]);
-        for (k, (sides, both)) in plan.limits().iter().zip(plan.peaks()).enumerate() {
-            let uses_more_below = -both.lowest * sides.above > both.highest * sides.below;
-            let limit = if uses_more_below { sides.below } else { sides.above };
-            limits[k] = limit.is_finite().then_some(limit);
-            if sides.below.to_bits() != sides.above.to_bits() {
-                peaks[k] = if uses_more_below { -both.lowest } else { both.highest };
-            }
-        }
-        let (kind, aborted) = (self.kind, if is_aborted { ", aborted" } else { "" });
-        Move {
-            label: format!(
-                "move from {} to {}, order {order}{kind}{aborted}",
-                unit.text(without_rounding(from)),
-                unit.text(without_rounding(to))
-            ),
-            start: self.start,
-            end: self.end + delay,
-            from,
-            to,
-            peaks,
-            limits,
-            cruise: (self.start + cruise.0 + delay, cruise.1),
-            ending: match is_aborted {
-                true => Ending::Aborted,
-                false if self.ends_at_rest => Ending::AtRest,
-                false => Ending::InMotion,
-            },
-        }
-    }
 }
 
 /// The request of `step`, where its target is a position of the axis and it is planned from any state.
@@ -353,39 +309,13 @@ fn followed(plan: Plan, points: Option<PointTimes>) -> Result<(Plan, Option<f64>
     }
 }
 
-/// What a label says of a move besides its order.
-const fn kind(generator: &Generator) -> &'static str {
-    match generator {
-        Generator::PointToPoint(asked) => match asked.method {
-            Method::Published => "",
-            Method::Optimal => " optimal",
-        },
-        Generator::Replanning(asked) => match asked.effort {
-            Effort::Fast => " online",
-            Effort::Refined => " online, refined",
-        },
-        Generator::Rockwell(asked) => match asked.operands.shape {
-            Shape::Trapezoid => " Rockwell trapezoid",
-            Shape::SCurve { .. } => " Rockwell S-curve",
-        },
-        Generator::Table(asked) => match asked.follow {
-            Follow::Segments => " table",
-            Follow::Plateaus { .. } => " position profile, plateaus",
-            Follow::Steps { .. } => " position profile, spline",
-        },
-    }
-}
-
-/// A position (m or rad) to a picounit: a sum of targets shows its rounding otherwise.
-fn without_rounding(position: f64) -> f64 {
-    libm::round(position * 1e12) / 1e12
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use servobench_motion::online::Effort;
     use servobench_motion::online::{DirectionalLimits, Target};
     use servobench_motion::{Limits, Order};
+    use servobench_planner::Method;
     use servobench_planner::{PointToPoint, Replanning};
     use servobench_testkit::Random;
 

@@ -109,7 +109,7 @@ struct Asked {
     failed: Vec<RunError>,
     /// How late what axis and FMUs exchange is.
     late: String,
-    /// What is doubtful in what they exchange.
+    /// Doubts about what they exchange.
     exchange_doubts: Vec<Doubt>,
     /// What can be said of it without running it, when there is no mistake.
     preview: Option<Preview>,

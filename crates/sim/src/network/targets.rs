@@ -18,12 +18,13 @@ pub(super) struct Targets {
 }
 
 /// The way to a target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Way {
     /// When the program begins it, and when the drive does (s); from where.
     planned: f64,
     start: f64,
     from: f64,
+    label: String,
     profile: Profile,
     /// Highest velocity, acceleration and jerk of it, `None` where there is no bound.
     limits: [Option<f64>; 3],
@@ -36,9 +37,9 @@ impl Targets {
     /// [`BuildError::Plan`] of a way that `drive` cannot plan.
     pub(super) fn of(program: &Program, drive: &device::Params, period: f64) -> Result<Self, BuildError> {
         let told = |start: f64| (start / period - ROUNDING).ceil() * period;
-        let (order, jerk) = match drive.profile.ramp {
-            Ramp::Linear => (Order::Second, f64::INFINITY),
-            Ramp::JerkLimited(jerk) => (Order::Third, jerk),
+        let (order, name, jerk) = match drive.profile.ramp {
+            Ramp::Linear => (Order::Second, "2", f64::INFINITY),
+            Ramp::JerkLimited(jerk) => (Order::Third, "3", jerk),
         };
         let way = |(index, (planned, from, plan)): (usize, (f64, f64, &servobench_planner::Plan))| {
             let [velocity, acceleration, ..] = plan.limits().map(|sides| sides.above);
@@ -47,7 +48,8 @@ impl Targets {
             let profile =
                 Profile::plan(order, plan.end().x, &limits).map_err(|error| BuildError::Plan { index, error })?;
             let limits = [velocity, acceleration, jerk].map(|limit| limit.is_finite().then_some(limit));
-            Ok::<_, BuildError>(Way { planned, start: told(planned), from, profile, limits })
+            let label = program.label([from, from + plan.end().x], name);
+            Ok::<_, BuildError>(Way { planned, start: told(planned), from, label, profile, limits })
         };
         Ok(Self { ways: program.plans().enumerate().map(way).collect::<Result<_, _>>()? })
     }
@@ -61,10 +63,11 @@ impl Targets {
     /// The moves of the program as the drive makes them.
     pub(super) fn made(&self, moves: impl Iterator<Item = Move>) -> impl Iterator<Item = Move> {
         moves.zip(&self.ways).map(|(made, way)| {
-            let Way { planned, start, profile, limits: [velocity, acceleration, jerk], .. } = way;
+            let Way { planned, start, label, profile, limits: [velocity, acceleration, jerk], .. } = way;
             let (made, duration) = (made.later(start - planned), profile.duration());
             let peaks = profile.peaks();
             Move {
+                label: label.clone(),
                 end: made.start + duration,
                 cruise: (made.start + 0.5 * (duration - profile.cruise()), profile.cruise()),
                 peaks: [peaks.velocity, peaks.acceleration, peaks.jerk, peaks.snap],
@@ -96,7 +99,16 @@ mod tests {
         let limits = Limits { velocity: 0.5, acceleration: 1.0, jerk: f64::INFINITY, snap: f64::INFINITY };
         let way = |distance: f64| {
             let profile = Profile::plan(Order::Second, distance, &limits).unwrap();
-            Targets { ways: vec![Way { planned: 0.9, start: 1.0, from: 0.2, profile, limits: [None; 3] }] }
+            Targets {
+                ways: vec![Way {
+                    planned: 0.9,
+                    start: 1.0,
+                    from: 0.2,
+                    label: String::new(),
+                    profile,
+                    limits: [None; 3],
+                }],
+            }
         };
         let x = |targets: &Targets, t: f64| match targets.at(t) {
             Request::Follow(setpoint) => (setpoint.x, setpoint.v),
