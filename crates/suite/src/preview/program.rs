@@ -81,6 +81,7 @@ impl PlannedProgram {
             doubts.extend(step.metric_limits.iter().filter_map(|limit| missed(limit, length(made), "the move", key)));
         }
         doubts.extend(self.window_doubt(scenario));
+        doubts.extend(self.profile_doubt(scenario));
         let key = |metric: &str| format!("limits.{metric}");
         match self.longest() {
             Some(longest) => {
@@ -114,6 +115,19 @@ impl PlannedProgram {
 }
 
 impl PlannedProgram {
+    /// A profile that the drive does not make, since it is told targets and has its own ramps.
+    fn profile_doubt(&self, scenario: &Scenario) -> Option<Doubt> {
+        let is_told = scenario.bus.as_ref().is_some_and(|bus| bus.mode == BusMode::ProfilePosition);
+        (is_told && self.moves.iter().any(|made| made.peaks[2].is_finite())).then(|| {
+            Doubt::new(
+                "bus.mode",
+                "in \"pp\" the drive makes its own profile to each target, with the ramps of 6086h: times and peaks of the program are not \
+                 those of the run",
+                "write `order = 2`, or read the times off a run",
+            )
+        })
+    }
+
     /// A window in which the load of the smallest move is before it moves.
     fn window_doubt(&self, scenario: &Scenario) -> Option<Doubt> {
         let window = scenario.measure.window?;
@@ -189,6 +203,24 @@ mod tests {
             servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
         let found = preview(&jobs(vec![Source { scenario, text: text.to_owned() }], &[])).unwrap().unwrap().doubts;
         found.into_iter().map(|Doubt { key, message, .. }| (key, message)).collect()
+    }
+
+    /// A drive that is told targets makes trapezoids of velocity, whatever the jerk of the program.
+    #[test]
+    fn the_profile_of_a_program_in_profile_position_is_not_the_drives() {
+        let text = |mode: &str, order: &str| {
+            format!(
+                "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"ball-screw\"\n[motor]\nmodel = \"wittenstein-premo-1f\"\n\
+                 [drive]\nmodel = \"servo-16khz\"\ndc_link = \"320 V\"\nmax_torque = \"6.09 Nm\"\n\
+                 [bus]\ncycle = \"1 ms\"\nmode = \"{mode}\"\nunits = {{ drive = 1000, axis = \"1 mm\" }}\n[setpoint]\n{order}\nvelocity = \"0.4 m/s\"\n\
+                 acceleration = \"4 m/s2\"\n[[program]]\nmove_to = \"100 mm\"\n[[program]]\nwait = \"0.3 s\"\n"
+            )
+        };
+        let (second, third) = ("order = 2", "order = 3\njerk = \"90 m/s3\"");
+        for (mode, order, is_told) in [("pp", third, true), ("pp", second, false), ("csp", third, false)] {
+            let said = doubts(&text(mode, order)).iter().any(|(key, _)| key == "bus.mode");
+            assert_eq!(said, is_told, "{mode}, {order}");
+        }
     }
 
     #[test]
