@@ -101,6 +101,33 @@ fn a_transition_starts_in_motion_and_keeps_limits_by_direction() {
     assert!(said.contains("+velocity") && said.contains("-velocity"), "{said}");
 }
 
+/// From 0.9 m/s the brake is there after 0.1 s, at 0.8 m/s, and turns the axis round 0.8²/(2·2) m farther.
+#[test]
+fn a_way_beyond_its_target_says_so() {
+    let limits = "--order 3 --velocity 1m/s --acceleration 2m/s2 --jerk 20m/s3";
+    let turn = 0.9 * 0.1 - 20.0 * 0.001 / 6.0 + 0.16;
+    for (sign, from) in [(1.0_f64, 0.0_f64), (-1.0, 0.0), (1.0, -0.2), (-1.0, 0.3)] {
+        let (speed, distance) = (sign * 0.9, sign * 0.1);
+        let line = format!("{limits} --start-position {from}m --start-velocity={speed}m/s --distance={distance}m");
+        let said = plan(&line);
+        let beyond = "goes 0.146667 m beyond its target and comes back";
+        assert!(said.replace('\n', " ").contains(beyond), "{said}");
+        let plan_json = json_of(&line);
+        let [lowest, highest] = [0, 1].map(|i| number(&plan_json["extremes"]["position"][i]));
+        let expected = [from.min(from + sign * turn), from.max(from + sign * turn)];
+        assert!((lowest - expected[0]).abs() < 1e-9 && (highest - expected[1]).abs() < 1e-9, "{plan_json}");
+    }
+    // What is reached from one side is not passed, nor is a target that the move leaves behind at a velocity.
+    for line in [
+        "--start-velocity 0.9m/s --distance 0.3m",
+        "--start-velocity=-0.1m/s --distance 0.3m",
+        "--start-velocity 0.9m/s --distance 0.1m --end-velocity 0.85m/s",
+    ] {
+        let said = plan(&format!("{limits} {line}"));
+        assert!(!said.contains("beyond its target"), "{said}");
+    }
+}
+
 /// Jerk and snap bound the way to a velocity: with pulses of snap of D = J/S = 50 ms and a jerk held for T it gains
 /// J·(D + T)·(2·D + T), here 0.5 m/s.
 #[test]

@@ -8,6 +8,7 @@ use servobench_config::Choice as _;
 use servobench_motion::Profile;
 use servobench_motion::sampled::Shortest;
 use servobench_planner::{PlanDetails, Sending};
+use std::iter;
 
 /// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
 const MOST: usize = 100_000;
@@ -149,6 +150,13 @@ struct State {
 }
 
 impl PlannedMove {
+    /// Lowest and highest position, and those of its derivatives up to the order.
+    fn extremes(&self) -> IndexMap<String, [f64; 2]> {
+        let peaks = iter::once(self.plan.positions()).chain(self.plan.peaks());
+        let named = NAMES[..=self.plan.order()].iter().zip(peaks);
+        named.map(|(name, peak)| ((*name).to_owned(), [peak.lowest, peak.highest])).collect()
+    }
+
     /// The plan as JSON, in SI.
     ///
     /// # Errors
@@ -182,7 +190,7 @@ impl PlannedMove {
             dwells: self.dwells().map(|(name, _, value)| (name.to_owned(), value)).collect(),
             effective: effective.into_iter().collect(),
             peaks: names().zip(self.plan.largest()).collect(),
-            extremes: names().zip(self.plan.peaks().map(|peak| [peak.lowest, peak.highest])).collect(),
+            extremes: self.extremes(),
             limits: names().zip(limits).filter(|(_, limit)| limit.iter().any(Option::is_some)).collect(),
             samples: self.sampled(),
             excess: match self.plan.details() {
@@ -299,6 +307,10 @@ mod tests {
             "acceleration": 5.0
           },
           "extremes": {
+            "position": [
+              0.0,
+              1.0
+            ],
             "velocity": [
               0.0,
               1.0

@@ -129,6 +129,21 @@ impl PlannedMove {
         notes
     }
 
+    /// How far beyond its target a move leads that passes it and comes back, if it does.
+    fn beyond_target(&self, target: &Target) -> Option<String> {
+        let (Target::Position { x, .. }, start, reached) = (target, self.plan.start().x, self.plan.positions()) else {
+            return None;
+        };
+        // Before the start it may turn round, too: that is not beyond its target.
+        let beyond = if *x >= start { reached.highest - x } else { x - reached.lowest };
+        (beyond > HIT.max(EXCESS * (x - start).abs())).then(|| {
+            format!(
+                "goes {} beyond its target and comes back: from its initial state there is no way without turning round",
+                self.show(0, beyond)
+            )
+        })
+    }
+
     /// What is particular to the generator.
     fn of_generator(&self) -> Vec<String> {
         match (&self.request.generator, self.plan.details()) {
@@ -149,6 +164,7 @@ impl PlannedMove {
                         100.0 * excess
                     ));
                 }
+                told.extend(self.beyond_target(&asked.target));
                 told
             }
             (_, PlanDetails::Rockwell { acceleration, deceleration }) => vec![format!(
