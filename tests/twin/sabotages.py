@@ -201,6 +201,21 @@ def commutation(random: Random, twin: Twin) -> Change | None:
     return Change(replace(twin.axis, commutation=angle), note=f"commutation off by {angle:.4g} degrees")
 
 
+def commutation_off(random: Random, twin: Twin) -> Change | None:
+    """Anywhere round the turn, not near zero alone."""
+    if twin.axis.pmsm is None:
+        return None
+    angle = random.sign() * random.uniform(10, 180)
+    return Change(replace(twin.axis, commutation=angle), note=f"commutation off by {angle:.4g} degrees")
+
+
+def cable_swapped(random: Random, twin: Twin) -> Change | None:
+    if twin.axis.pmsm is None:
+        return None
+    legs = random.choice(("ab", "bc", "ca"))
+    return Change(with_extra(twin.axis, {"motor.connection": {"swapped": legs}}), note=f"legs {legs} swapped")
+
+
 def with_extra(axis: Axis, extras: dict[str, Any]) -> Axis:
     assert axis.pmsm is not None
     return replace(axis, pmsm=replace(axis.pmsm, extras=axis.pmsm.extras | extras))
@@ -399,8 +414,11 @@ SABOTAGES: dict[str, Callable[[Random, Twin], Change | None]] = {
     "switch wrong": switch_wrong,
 }
 
+CABLES: dict[str, Callable[[Random, Twin], Change | None]] = {"cable swapped": cable_swapped, "commutation off": commutation_off}
+"""Mistakes of commissioning, for a drill of their own."""
+
 PARTS: dict[str, Callable[[Axis], bool]] = {
-    **dict.fromkeys(("current gain", "commutation", "phase lost", "link sag", "dead time", "cooling weak"), lambda axis: axis.pmsm is not None),
+    **dict.fromkeys((*CABLES, "current gain", "commutation", "phase lost", "link sag", "dead time", "cooling weak"), lambda axis: axis.pmsm is not None),
     **dict.fromkeys(("load stuck", "load uncoupled", "coupling soft"), lambda axis: axis.load is not None),
     "fmu unstable": lambda axis: axis.load is not None and not axis.from_load,
     "gear ratio": lambda axis: axis.lead is not None,

@@ -14,7 +14,7 @@ import mjcf
 from linear import has_margins
 from machine import LEAST_TORQUE, Axis, Pmsm, draw_axis, estimate, increment_of, with_motor
 from oracle import Settling, Tolerance
-from sabotages import PARTS, SABOTAGES, SHAKEN, Change, Twin, possible
+from sabotages import CABLES, PARTS, SABOTAGES, SHAKEN, Change, Twin, possible, with_extra
 from bus_task import BUS, unit_of
 from task import DIRECT, Task, draw_pace, feedforward
 
@@ -86,6 +86,13 @@ class Drawn:
     """Those that the program has; rapier stands in for others."""
     is_coarse: bool = False
     """Whether encoders are anything from 256 lines to 2^24 counts, and windows as narrow as they allow."""
+    is_smooth: bool = False
+    """Whether axes have next to no friction, and nothing pulls at them."""
+
+    @property
+    def is_supervised(self) -> bool:
+        """Whether drives watch their motors, where they can tell over a bus what they find."""
+        return self.is_coarse or self.is_smooth
 
 
 def draw_family(seed: str, drawn: Drawn) -> Family:
@@ -97,7 +104,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
     names = possible(program, drawn.sabotages)
     wanted = [names[(turn * drawn.pairs + number) % len(names)] for number in range(drawn.pairs)] if names else []
     while True:
-        axis, task, window, is_mjcf = draw_machine(random, program, wanted, is_coarse=drawn.is_coarse)
+        axis, task, window, is_mjcf = draw_machine(random, program, wanted, drawn)
         # Its encoder and its motor came last, and belong to its loop.
         if has_margins(axis):
             break
@@ -109,6 +116,8 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         # The drive takes the next target when it has reached the one before.
         unit = unit_of(task.span) * (1.0 if axis.linear_axis else pi / 180)
         axis = replace(axis, objects={"6067h": max(10, round((window or 1e-3 * task.span) / unit))})
+    if drawn.is_supervised and task.is_bus and axis.pmsm is not None:
+        axis = supervised(axis, task)
     duration = round(task.length + random.uniform(0.02, 0.3), 4)
     tables = task.tables | ({"measure": {"window": quantity(window, axis.unit)}} if window else {})
     engine = random.choice(FOREIGN if is_mjcf else ENGINES)
@@ -127,7 +136,7 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
         if not names:
             break
         name = wanted[number] if number < len(wanted) else of_pair.choice(names)
-        change = SABOTAGES[name](of_pair, twin)
+        change = (SABOTAGES | CABLES)[name](of_pair, twin)
         if change is not None and not (is_mjcf and name in NOT_BY_MJCF):
             family.pairs.append(Pair(f"{seed}.{number}", name, change, draw_judge(of_pair, twin, drawn.lifts)))
         number += 1
@@ -137,9 +146,11 @@ def draw_family(seed: str, drawn: Drawn) -> Family:
 TRIES = 60
 
 
-def draw_machine(random: Random, program: str, wanted: list[str], *, is_coarse: bool) -> tuple[Axis, Task, float | None, bool]:
+def draw_machine(random: Random, program: str, wanted: list[str], drawn: Drawn) -> tuple[Axis, Task, float | None, bool]:
     """An axis with its task and window; whether its bodies are a file of their own."""
     axis = draw_stable(random, wanted, program)
+    if drawn.is_smooth:
+        axis = smooth(axis)
     is_mjcf = mjcf.can_be(axis) and not set(wanted) & set(NOT_BY_MJCF) and random.random() < 0.5
     if not is_mjcf and fmu.can_be(axis) and not set(wanted) & set(NOT_BY_FMU) and ("fmu unstable" in wanted or random.random() < 0.2):
         axis = with_fmu(random, axis)
@@ -147,8 +158,29 @@ def draw_machine(random: Random, program: str, wanted: list[str], *, is_coarse: 
     forward = feedforward(random) if program in (*DIRECT, "pp", "ip") else {}
     pace = draw_pace(random, axis, follows=bool(forward))
     task = PROGRAMS[program](random, axis, pace)
-    axis, window = with_task(random, axis, task, forward, is_coarse=is_coarse)
+    axis, window = with_task(random, axis, task, forward, drawn)
     return axis, task, window, is_mjcf
+
+
+def smooth(axis: Axis) -> Axis:
+    """The axis with a hundredth of its friction."""
+    load = axis.load and replace(axis.load, viscous=0.01 * axis.load.viscous)
+    return replace(axis, motor=replace(axis.motor, viscous=0.01 * axis.motor.viscous), load=load)
+
+
+def supervised(axis: Axis, task: Task) -> Axis:
+    """The axis with a drive that watches its motor, by what an engineer knows of it: top speed and largest current."""
+    top, most = task.velocity / axis.r, axis.limit / axis.pmsm.believed
+    table: Tree = {
+        "overspeed": quantity(2 * top, "rad/s"),
+        "overcurrent": quantity(2 * most, "Apk"),
+        "commutation": {"speed": quantity(0.2 * top, "rad/s"), "current": quantity(0.25 * most, "Apk")},
+        "stall": {"speed": quantity(0.01 * top, "rad/s"), "time": "0.1 s"},
+        "phase_loss": {"current": quantity(0.1 * most, "Apk"), "time": "20 ms"},
+    }
+    if "motor.thermal" in axis.pmsm.extras:
+        table["winding_temperature"] = quantity(HOTTEST, "degC")
+    return with_extra(axis, {"drive.supervision": table})
 
 
 def with_fmu(random: Random, axis: Axis) -> Axis:
@@ -200,14 +232,15 @@ def draw_judge(random: Random, twin: Twin, lifts: list[str]) -> Judge | None:
     return None
 
 
-def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coarse: bool) -> tuple[Axis, float | None]:
+def with_task(random: Random, axis: Axis, task: Task, forward: Tree, drawn: Drawn) -> tuple[Axis, float | None]:
     """The axis with everything that depends on its task: gravity, friction, encoder, motor; and the window."""
     bare = axis.total * task.acceleration / axis.r
     motor = axis.motor
     # A torque is not held against them.
-    if task.name != "torque" and random.random() < 0.4:
+    is_free = task.name == "torque" or drawn.is_smooth
+    if not is_free and random.random() < 0.4:
         motor = replace(motor, coulomb=bare * random.decades(-2, -0.5))
-    if task.name != "torque" and (random.random() < 0.4 or task.name.startswith("hold")):
+    if not is_free and (random.random() < 0.4 or task.name.startswith("hold")):
         bias = bare * random.decades(-1, -0.2)
         if task.is_bus:
             # Without power it would sag, and the link would lead it back: friction holds it.
@@ -215,14 +248,14 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         motor = replace(motor, bias=random.sign() * bias)
     axis = replace(axis, motor=motor, feedforward=forward, objects=task.objects, switches=task.switches)
     increment = None if random.random() < 0.3 else task.span * random.decades(-6.5, -4)
-    if is_coarse:
+    if drawn.is_coarse:
         # Counts of a revolution; of a linear motor of 20 mm.
         turn = (2 * pi if axis.rotary_motor else 0.02) * axis.r
         increment = turn * 10 ** random.uniform(-7.2, max(-7.1, min(-3.1, log10(coarsest(axis, task) / turn))))
     noise = increment is not None and random.random() < 0.2
     if increment is not None:
         axis = replace(axis, increment=increment_of(axis, increment / axis.r), noise=increment * random.uniform(0.2, 2) / axis.r if noise else 0.0)
-    if not is_coarse and axis.increment is not None:
+    if not drawn.is_coarse and axis.increment is not None:
         # What the edges and the noise make of the effort stays below a tenth of what there is.
         edge = axis.velocity_gain * (axis.increment + 2 * axis.noise) * axis.base / axis.velocity_every
         finer = min(1.0, 0.1 * axis.effort(task.velocity, task.acceleration) / edge)
@@ -236,7 +269,7 @@ def with_task(random: Random, axis: Axis, task: Task, forward: Tree, *, is_coars
         effort = random.sign() * axis.effort(task.velocity, task.acceleration) * random.uniform(0.3, 0.7)
         step = {"on": "motor", "start": quantity(round(random.uniform(0.5, 0.6) * task.length, 4), "s"), "duration": "1000 s"}
         task.tables["disturbance"] = [step | {"torque" if axis.rotary_motor else "force": quantity(effort, axis.effort_unit)}]
-    if is_coarse:
+    if drawn.is_coarse:
         return axis, max(10 * axis.grain, 10 * unit_of(task.span), task.span * random.decades(-4.5, -2))
     window = None if random.random() < 0.25 else max(20 * axis.grain, task.span * random.decades(-4, -2))
     return axis, window

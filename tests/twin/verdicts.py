@@ -24,11 +24,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "outside"))
 import numpy
 
 import fmu
-from bus_task import ENABLED
+from bus_task import BUS, ENABLED
 from linear import is_stable
 from machine import Axis
 from oracle import Harm, Judgement, Run, cycles, deviations, goes_on, harms, judgement, silence, stops_late, swept
-from sabotages import SABOTAGES
+from sabotages import CABLES, SABOTAGES
 from task import Phase, Task
 from twins import ENGINES, HOTTEST, PROGRAMS, Drawn, Family, Pair, draw_family, write, write_longer
 
@@ -76,6 +76,8 @@ class Tally:
     kinds: Counter[str] = field(default_factory=Counter)
     checks: list[Check] = field(default_factory=list)
     by_swing: Counter[str] = field(default_factory=Counter)
+    noticed: Counter[str] = field(default_factory=Counter)
+    """Wrong cables, by what found them."""
     alone: Counter[str] = field(default_factory=Counter)
     """Bad pairs that are red by one requirement alone: without it each would be a false green."""
 
@@ -233,6 +235,8 @@ def judge_family(folder: Path, family: Family, results: dict[str, dict[str, Any]
         if judged.word == "bad" and len(broken(outcome)) == 1:
             tally.alone.update(broken(outcome))
         cell[judged.word] += 1
+        if pair.sabotage in CABLES:
+            tally.noticed[noticed(outcome)] += 1
         kind = wrong(judged, outcome, pair)
         if tally.is_traced:
             by_phase = [f"{phase.kind} {d:.3g}" for phase, d in zip(phases, found)]
@@ -366,6 +370,14 @@ def ended_calls(outcome: dict[str, Any]) -> set[str]:
     return {name for name, _, fate in outcome["calls"] if fate != "executed"}
 
 
+def noticed(outcome: dict[str, Any]) -> str:
+    """By which fault of the drive a mistake was noticed, or by which requirement; or nothing was."""
+    faults = [value for _, value in outcome["signals"].get("drive.fault", []) if value != "none"]
+    if faults:
+        return faults[0]
+    return "nothing: green" if outcome["passed"] else "the verdict alone"
+
+
 def has_fault(outcome: dict[str, Any]) -> bool:
     """Whether drive or link have come to a fault, which is a harm."""
     return any(value != "none" for name in ("drive.fault", "link.fault") for _, value in outcome["signals"].get(name, []))
@@ -390,6 +402,8 @@ def report(tally: Tally) -> None:
     few = {cell: pairs for cell, pairs in few.items() if pairs < FEWEST_OF_CELL}
     if tally.families >= MANY:
         print(f"\n{len(tally.cells)} cells of program and sabotage, {len(few)} with fewer than {FEWEST_OF_CELL} pairs: {few}")
+    if tally.noticed:
+        print(f"\nfound by: {dict(tally.noticed.most_common())}")
     print(f"\nred by a swing, rightly: {dict(tally.by_swing)}")
     print(f"{tally.families} healthy machines, {tally.discarded.total()} discarded {dict(tally.discarded)}; {dict(tally.kinds)}")
 
@@ -401,6 +415,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--pairs", type=int, default=400)
     parser.add_argument("--each", type=int, default=5, help="pairs of a healthy machine")
     parser.add_argument("--healthy", type=int, help="so many healthy axes alone")
+    parser.add_argument("--cables", type=int, help="so many wrong cables and commutations of supervised axes with little friction")
     parser.add_argument("--proof", type=int, help="so many pairs, among them some for each requirement that pass without it")
     parser.add_argument("--seed", default="1")
     parser.add_argument("--only", help="a family, by its seed: its pairs are shown, its files are kept")
@@ -417,12 +432,13 @@ def sweep(given: argparse.Namespace, pairs: int, room: Path) -> Tally:
     count = given.healthy or -(-pairs // given.each)
     names = [given.only] if given.only else [f"{given.seed}-{number}" for number in range(count)]
     drawn = Drawn(
-        programs=given.programs,
-        sabotages=given.sabotages,
+        programs=list(BUS) if given.cables else given.programs,
+        sabotages=list(CABLES) if given.cables else given.sabotages,
         pairs=0 if given.healthy else given.each,
-        lifts=[] if given.proof else requirements(given.program),
+        lifts=[] if given.proof or given.cables else requirements(given.program),
         engines=ENGINES if given.mujoco else tuple(name for name in ENGINES if name != "mujoco"),
         is_coarse=bool(given.healthy),
+        is_smooth=bool(given.cables),
     )
     fmu.build(room)
     for first in range(0, len(names), CHUNK):
@@ -462,7 +478,7 @@ def main() -> int:
     room = given.keep or Path(tempfile.mkdtemp(prefix="servobench-twins-"))
     room.mkdir(parents=True, exist_ok=True)
     print(f"seed {given.seed}")
-    tally = sweep(given, given.proof or given.pairs, room)
+    tally = sweep(given, given.proof or given.cables or given.pairs, room)
     for kind in ("not run", "healthy is red", "false green", "false red"):
         for line in [line for line in tally.lines if line.startswith(kind + ":")][: given.lines]:
             print(line)

@@ -417,7 +417,7 @@ fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &S
         current::step(p, &mut x.current, input, h)
     };
     if let Some(supervision) = &blocks.supervision {
-        watch::currents(supervision, x, &input, h);
+        watch::currents(supervision, p, x, &input, h);
     }
 }
 

@@ -6,7 +6,7 @@
 //! | under-voltage | it is below `undervoltage` | 3220h |
 //! | over-current | the measured current of a leg is above `overcurrent` | 2310h |
 //! | over-temperature | the measured winding is warmer than `winding_temperature` | 4310h |
-//! | lost phase | a leg has had less than half of `current` for `time` while it was to have `current` or more | 3321h |
+//! | lost phase | a leg has had less than half of `current` for `time` while it could have had `current` or more | 3321h |
 //! | stall | the loops ask for more than their limit while the motor is slower than `speed`, for `time` | 7121h |
 //! | commutation | against a torque-producing current of `current` or more the motor has gained `speed`, at once or in swings | 7122h |
 //! | over-speed | the motor is faster than `overspeed` | 7310h |
@@ -17,8 +17,9 @@
 //!   and more add up, forgotten with 0.5 s, as long as they are at least half of what is lost meanwhile. A load on a spring drives a
 //!   healthy motor that brakes, too, but by less than it loses.
 //! - **Stall.** A motor whose commutation is off by 90° has no torque either; by its sensors a drive cannot tell it from a blocked one.
-//! - **Lost phase.** The time counts while the reference of the leg is there, and begins again as soon as half of `current` flows. A healthy
-//!   leg follows its reference with the lag of the current loop. At a standstill where the leg is to have no current nothing can be seen.
+//! - **Lost phase.** The time counts while the reference of the leg is there, behind a lag of first order with the bandwidth of the current
+//!   loop, and begins again as soon as half of `current` flows. What a coarse encoder makes of the reference from cycle to cycle no healthy
+//!   leg follows. At a standstill where the leg is to have no current nothing can be seen.
 //!
 //! The rules are ours (assumed): the profile has codes for what is found and none for how. Codes: IEC 61800-7-201, error codes of the
 //! emergency message.
@@ -203,7 +204,9 @@ pub struct State {
     swings: Swings,
     /// Cycles in which the motor stood at the limit.
     stalled: u32,
-    /// Cycles in which a leg had no current that it was to have.
+    /// Current that a healthy motor has of its reference (A, peak).
+    followed: AlphaBeta,
+    /// Cycles in which a leg had no current that it could have had.
     without_current: [u32; 3],
 }
 
@@ -256,6 +259,8 @@ pub struct Currents {
     pub q: f64,
     /// Reference of the current, in the stator frame (A, peak).
     pub reference: AlphaBeta,
+    /// Bandwidth of the current loop (rad/s).
+    pub bandwidth: f64,
     /// Measured current in the stator frame (A, peak).
     pub measured: AlphaBeta,
 }
@@ -294,7 +299,10 @@ pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
         x.found = x.found.or(Some(Finding::OverCurrent));
     }
     if let Some(phases) = p.phases {
-        let (asked, measured) = (legs(u.reference), legs(u.measured));
+        let step = u.bandwidth * h / (1.0 + u.bandwidth * h);
+        x.followed.alpha += step * (u.reference.alpha - x.followed.alpha);
+        x.followed.beta += step * (u.reference.beta - x.followed.beta);
+        let (asked, measured) = (legs(x.followed), legs(u.measured));
         for (leg, cycles) in x.without_current.iter_mut().enumerate() {
             if measured[leg].abs() >= 0.5 * phases.current {
                 *cycles = 0;
@@ -326,6 +334,7 @@ mod tests {
 
     const NONE: Motion = Motion { velocity: 0.0, dc_link: 320.0, winding: 20.0, is_cut: false };
     const H: f64 = 1.0 / 8e3;
+    const FAST: f64 = 1e4;
 
     fn of_motion(p: &Params, u: Motion) -> Option<Finding> {
         let mut x = State::default();
@@ -363,7 +372,7 @@ mod tests {
             (0.0, -23.2, Some(Finding::OverCurrent)),
         ] {
             let (mut x, measured) = (State::default(), AlphaBeta { alpha, beta });
-            let u = Currents { velocity: 0.0, q: 0.0, reference: AlphaBeta::default(), measured };
+            let u = Currents { velocity: 0.0, q: 0.0, reference: AlphaBeta::default(), bandwidth: FAST, measured };
             watch_currents(&p, &mut x, &u, H);
             assert_eq!(x.found, found, "{alpha} A, {beta} A");
         }
@@ -394,8 +403,13 @@ mod tests {
         let p = Params { commutation: Some(Commutation { speed: 20.0, current: 4.0 }), ..Params::default() };
         let mut x = State::default();
         for (at, (velocity, q)) in way.enumerate() {
-            let u =
-                Currents { velocity, q, reference: AlphaBeta::default(), measured: AlphaBeta { alpha: q, beta: 0.0 } };
+            let u = Currents {
+                velocity,
+                q,
+                reference: AlphaBeta::default(),
+                bandwidth: FAST,
+                measured: AlphaBeta { alpha: q, beta: 0.0 },
+            };
             watch_currents(&p, &mut x, &u, H);
             if x.found.is_some() {
                 return Some(at);
@@ -442,7 +456,7 @@ mod tests {
             let (sin, cos) = (TAU * (turn * f64::from(*k) + 0.01)).sin_cos();
             let reference = AlphaBeta { alpha: length * cos, beta: length * sin };
             let measured = made(reference);
-            watch_currents(&p, &mut x, &Currents { velocity: 0.0, q: length, reference, measured }, H);
+            watch_currents(&p, &mut x, &Currents { velocity: 0.0, q: length, reference, bandwidth: FAST, measured }, H);
             x.found == Some(Finding::LostPhase)
         })
     }
@@ -466,6 +480,24 @@ mod tests {
         assert_eq!(phases(5.0, 0.0, without_a), Some(79), "at rest, where it is to have some");
         let without_c = |AlphaBeta { alpha, .. }| AlphaBeta { alpha, beta: alpha / 3.0_f64.sqrt() };
         assert!(phases(5.0, 1.0 / 97.3, without_c).is_some());
+    }
+
+    /// An increment of a coarse encoder to and fro asks for 5 A up and down in turn, which no loop can follow; the mean flows.
+    #[test]
+    fn a_reference_to_and_fro_is_not_a_lost_phase() {
+        let found = |mean: f64, flows: f64| {
+            let p = Params { phases: Some(Phases { current: 1.3, time: 10e-3 }), ..Params::default() };
+            let mut x = State::default();
+            for k in 0..4000 {
+                let alpha = mean + if k % 2 == 0 { 5.0 } else { -5.0 };
+                let (reference, measured) = (AlphaBeta { alpha, beta: 0.0 }, AlphaBeta { alpha: flows, beta: 0.0 });
+                watch_currents(&p, &mut x, &Currents { velocity: 0.0, q: 0.0, reference, bandwidth: 2e3, measured }, H);
+            }
+            x.found
+        };
+        assert_eq!(found(0.3, 0.3), None);
+        assert_eq!(found(2.0, 2.0), None);
+        assert_eq!(found(2.0, 0.0), Some(Finding::LostPhase));
     }
 
     #[test]

@@ -27,9 +27,9 @@ const COMMANDS: [(&str, &str); 17] = [
         "hold an advice against 20 000 set-points and fresh draws (SERVOBENCH_SWEEP: so many times fewer levels)",
     ),
     (
-        "drill verdicts [--healthy | --proof]",
-        "hold verdicts on 20 000 sabotaged machines, on healthy ones alone, or that each rule is needed, against an oracle \
-         (SERVOBENCH_SWEEP: how many)",
+        "drill verdicts [--healthy | --proof | --cables]",
+        "hold verdicts on 20 000 sabotaged machines, on healthy ones alone, that each rule is needed, or on wrong cables, \
+         against an oracle (SERVOBENCH_SWEEP: how many)",
     ),
     ("dist", "pack binary, library, models and scenarios into one archive"),
 ];
@@ -70,6 +70,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["drill", "verdicts"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Pairs),
         ["drill", "verdicts", "--healthy"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Healthy),
         ["drill", "verdicts", "--proof"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Proof),
+        ["drill", "verdicts", "--cables"] => drill::verdicts(&Workspace::find()?, drill::Verdicts::Cables),
         ["dist"] => dist::run(&Workspace::find()?),
         other => Err(Failure::Usage { given: other.join(" "), commands: listing() }),
     }

@@ -99,8 +99,12 @@ fn outside_clients(outside: &Outside, workspace: &Workspace) -> impl Iterator<It
 fn twins(outside: &Outside, workspace: &Workspace, engines: Engines) -> Vec<Step> {
     let Some(python) = outside.common() else { return Vec::new() };
     let build = on_all_crates(workspace, engines, &["build", "--example", "twin"]);
-    let pairs = verdicts::tested(workspace, python, engines == Engines::All);
-    vec![Step::new("build of twins", build), Step::new("verdicts on twins", pairs)]
+    let [pairs, cables] = verdicts::tested(workspace, &python, engines == Engines::All);
+    vec![
+        Step::new("build of twins", build),
+        Step::new("verdicts on twins", pairs),
+        Step::new("verdicts on wrong cables", cables),
+    ]
 }
 
 /// A command of Cargo for the whole workspace. Release for all: the binary, the tests and the documentation share what they compile.

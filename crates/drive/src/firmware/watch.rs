@@ -25,11 +25,18 @@ pub(super) fn motion(p: &supervision::Params, x: &mut State, sensors: &Sensors, 
 }
 
 #[cold]
-pub(super) fn currents(p: &supervision::Params, x: &mut State, input: &current::Input, h: f64) {
+pub(super) fn currents(
+    p: &supervision::Params,
+    loops: &current::Params,
+    x: &mut State,
+    input: &current::Input,
+    h: f64,
+) {
     let currents = supervision::Currents {
         velocity: x.filtered_velocity,
         q: x.held.current.current.q,
         reference: input.reference.to_alpha_beta(input.rotor),
+        bandwidth: loops.gains.k_p.q / loops.motor.inductance.q,
         measured: input.current,
     };
     supervision::watch_currents(p, &mut x.supervision, &currents, h);

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::outside;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::Command;
 
 /// Pairs by hand, unless `SERVOBENCH_SWEEP` says how many.
@@ -16,8 +16,11 @@ const HEALTHY: &str = "2000";
 /// Pairs among which each rule is needed, unless it does.
 const PROOF: &str = "2000";
 
+/// Wrong cables and commutations, unless it does.
+const CABLES: &str = "200";
+
 /// Pairs in the tests: always the same, which take some ten seconds.
-const TESTED: [&str; 4] = ["--pairs", "400", "--seed", "1"];
+const TESTED: [[&str; 4]; 2] = [["--pairs", "400", "--seed", "1"], ["--cables", "100", "--seed", "1"]];
 
 /// Which drill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +31,8 @@ pub(crate) enum Drill {
     Healthy,
     /// Pairs of twins, among them some for each rule of the verdict that pass without it.
     Proof,
+    /// Wrong cables and commutations of supervised axes with little friction.
+    Cables,
 }
 
 /// Runs the drill.
@@ -43,9 +48,10 @@ pub(crate) fn run(workspace: &Workspace, drill: Drill) -> Result<(), Failure> {
         Drill::Pairs => ("--pairs", PAIRS),
         Drill::Healthy => ("--healthy", HEALTHY),
         Drill::Proof => ("--proof", PROOF),
+        Drill::Cables => ("--cables", CABLES),
     };
     let size = std::env::var("SERVOBENCH_SWEEP").unwrap_or_else(|_| usual.to_owned());
-    let mut command = judge(workspace, environment.python(), has_mujoco);
+    let mut command = judge(workspace, &environment.python(), has_mujoco);
     command.args([flag, &size]);
     if let Ok(seed) = std::env::var("SERVOBENCH_SEED") {
         command.args(["--seed", &seed]);
@@ -61,14 +67,16 @@ fn build(workspace: &Workspace, has_mujoco: bool) -> Command {
     build
 }
 
-/// The pairs of the tests, by this Python; the example has been built.
-pub(crate) fn tested(workspace: &Workspace, python: PathBuf, has_mujoco: bool) -> Command {
-    let mut command = judge(workspace, python, has_mujoco);
-    command.args(TESTED);
-    command
+/// The pairs and the wrong cables of the tests, by this Python; the example has been built.
+pub(crate) fn tested(workspace: &Workspace, python: &Path, has_mujoco: bool) -> [Command; 2] {
+    TESTED.map(|size| {
+        let mut command = judge(workspace, python, has_mujoco);
+        command.args(size);
+        command
+    })
 }
 
-fn judge(workspace: &Workspace, python: PathBuf, has_mujoco: bool) -> Command {
+fn judge(workspace: &Workspace, python: &Path, has_mujoco: bool) -> Command {
     let mut command = workspace.command(python, ["-B", "-u", "tests/twin/verdicts.py", "--program"]);
     command.arg(workspace.target.join("release").join("examples").join("twin"));
     command.env("LD_LIBRARY_PATH", workspace.native_lib());
