@@ -352,3 +352,33 @@ fn the_generator_of_fourth_order_ends_on_its_targets() {
     assert!(state("DiscreteMotion") < there && back > there);
     assert!(last(&recording, "load.position").abs() < 1e-5);
 }
+
+/// The second call repeats the first while that brakes to its end velocity: the set-point went back at 0.287 m/s.
+#[test]
+fn a_continuous_move_called_again_turns_round_nowhere() {
+    let axis = "[run]\nbase_rate = \"16 kHz\"\nduration = \"0.8 s\"\n[axis]\nmodel = \"ball-screw\"\n[motor]\n\
+        model = \"wittenstein-premo-1f\"\n[drive]\nmodel = \"servo-16khz\"\ndc_link = \"320 V\"\nmax_torque = \"6.09 Nm\"\n\
+        [bus]\ncycle = \"1 ms\"\nunits = { drive = 1, axis = \"100 nm\" }\n[setpoint]\norder = 3\nvelocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\n\
+        jerk = \"100 m/s3\"\n[plc]\nhoming_required = false\n[[call]]\nblock = \"MC_Power\"\nname = \"power\"\n\
+        [[call]]\nblock = \"MC_HomeDirect\"\nname = \"here\"\nstart = \"power.Status\"\nposition = \"0 mm\"\n";
+    for (sign, delay) in [(1, 274), (-1, 274), (1, 120), (1, 260)] {
+        let call = |name: &str, start: &str| {
+            format!(
+                "[[call]]\nblock = \"MC_MoveContinuousAbsolute\"\nname = \"{name}\"\nstart = {start}\nposition = \"{} mm\"\n\
+                 end_velocity = \"{} m/min\"\nvelocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\ndeceleration = \"5 m/s2\"\n\
+                 jerk = \"100 m/s3\"\n",
+                100 * sign,
+                20 * sign
+            )
+        };
+        let second = format!("{{ after = \"here.Done\", delay = \"{delay} ms\" }}");
+        let text = format!("{axis}{}{}", call("first", "\"here.Done\""), call("second", &second));
+        let loaded = scenario::parse("test.toml", &text, None).unwrap_or_else(|error| panic!("{error}"));
+        let Outcome { recording, failure } = outcome(&loaded);
+        assert_eq!(failure, None);
+        let velocity = recording.channel("setpoint.velocity").unwrap();
+        let back = velocity.iter().map(|v| f64::from(sign) * v).fold(f64::MAX, f64::min);
+        assert!(back >= -1e-9, "again after {delay} ms: back at {back} m/s");
+        assert!((last(&recording, "setpoint.velocity") - f64::from(sign) / 3.0).abs() < 1e-3);
+    }
+}

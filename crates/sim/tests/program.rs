@@ -90,6 +90,36 @@ fn an_aborting_move_of_order_2_takes_over_in_motion() {
     assert_eq!(*setpoints.last().unwrap(), Setpoint::at_rest(0.05));
 }
 
+/// Commanded again while it brakes to the velocity at which it passes its target, the move turned round there and took 1.7 s. Oracle: the
+/// same program without the second command.
+#[test]
+fn a_move_commanded_again_keeps_its_way() {
+    let limits = "velocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\njerk = \"100 m/s3\"\nsnap = \"5000 m/s4\"\n";
+    for (order, sign) in [(2, 1), (3, 1), (4, 1), (3, -1), (4, -1)] {
+        let limits: String = limits.lines().take(order).map(|line| format!("{line}\n")).collect();
+        let axis = format!("{}[setpoint]\norder = {order}\n{limits}", AXIS.split("[setpoint]").next().unwrap());
+        let first = format!("[[program]]\nmove_to = \"{} mm\"\nend_velocity = \"{} m/min\"\n", sign * 100, sign * 20);
+        let last = format!("[[program]]\nmove_to = \"{} mm\"\n", sign * 400);
+        let program = |again: &str| {
+            let text = format!("{axis}{first}{again}{last}");
+            let scenario = parse("test.toml", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
+            Program::new(&scenario).unwrap()
+        };
+        let (once, first_lasts) = (program("").end(), program("").durations().next().unwrap());
+        for share in [0.23, 0.8, 0.93, 0.999] {
+            let after = share * first_lasts;
+            let mut again = program(&format!("{first}aborts_after = \"{after} s\"\n"));
+            assert!(
+                (again.end() - once).abs() < 1e-9,
+                "order {order}, again after {after}: {} for {once}",
+                again.end()
+            );
+            let back = (0..16_000).map(|k| f64::from(sign) * again.at(f64::from(k) * TICK).v).fold(f64::MAX, f64::min);
+            assert!(back >= -1e-12, "order {order}, again after {after}: back at {back} m/s");
+        }
+    }
+}
+
 #[test]
 fn what_has_ended_cannot_be_aborted() {
     let text = "[[program]]\nmove_to = \"1 m\"\n[[program]]\nmove_to = \"0 m\"\naborts_after = \"1.4 s\"\n";
