@@ -3,27 +3,10 @@ use servobench_metrics::Name;
 use servobench_plant::Exact;
 use servobench_scenario::{Initial, Scenario, load};
 use servobench_sim::Bench;
-use servobench_tests::{engines, measured, run, scenario, value};
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::thread;
+use servobench_tests::{engines, faults, measured, ready_scenarios, run, scenario, value};
 
 /// How far the load goes in the last second: encoders have noise, and loops without an integrator of the position creep (m or rad).
 const AT_REST: f64 = 2e-3;
-
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(files(&path));
-        } else if path.extension().is_some_and(|end| end == "toml") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
 
 /// The hardware of `scenario` for ten seconds, with nothing to do.
 fn idle(mut scenario: Scenario) -> Scenario {
@@ -61,9 +44,8 @@ fn fault(scenario: &Scenario) -> Option<String> {
 
 #[test]
 fn every_ready_scenario_that_nothing_moves_is_at_rest() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let mut hardware: Vec<Scenario> = Vec::new();
-    for path in files(&folder) {
+    for path in ready_scenarios() {
         let Ok(loaded) = load(&path) else { continue };
         let scenario = idle(loaded.scenario);
         let is_known = |one: &Scenario| {
@@ -74,20 +56,7 @@ fn every_ready_scenario_that_nothing_moves_is_at_rest() {
         }
     }
     assert!(hardware.len() > 40, "{} ready scenarios", hardware.len());
-    let (next, wrong) = (Mutex::new(hardware.iter()), Mutex::new(Vec::new()));
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(2, usize::from) {
-            scope.spawn(|| {
-                loop {
-                    let Some(one) = next.lock().unwrap().next() else { return };
-                    if let Some(fault) = fault(one) {
-                        wrong.lock().unwrap().push(format!("{}: {fault}", one.name));
-                    }
-                }
-            });
-        }
-    });
-    let wrong = wrong.into_inner().unwrap();
+    let wrong = faults(&hardware, |one| fault(one).map(|fault| format!("{}: {fault}", one.name)));
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
