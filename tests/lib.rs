@@ -68,7 +68,7 @@ pub fn ready_scenarios() -> Vec<PathBuf> {
     found
 }
 
-/// What `fault` finds of each, on all processors.
+/// Faults that `fault` finds in all, by every processor.
 ///
 /// # Panics
 /// When `fault` does.
