@@ -198,6 +198,7 @@ fn only_where(signal: Signal) -> &'static str {
             Unit::Watt => "; only a PMSM has electrical power",
             _ => "; only a PMSM has a voltage",
         },
+        (Presence::WithSwitching, _) => "; only an inverter that switches has ripple",
         (Presence::WithInverter, _) => "; only an inverter that is not ideal has losses",
         (Presence::WithLink, _) => "; only a link with a capacitor of its own changes",
         (Presence::WithEndStops, _) => "; only an axis with end stops has it",

@@ -17,17 +17,9 @@ const EFFORT_REFERENCE: Signal = Signal::EffortReference;
 
 /// Notes current, voltage and torque over `rows`.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<usize>) {
-    let current = vector(recording, Signal::CurrentD, Signal::CurrentQ, rows);
-    set.note(Name::CurrentPeak, PEAK_CURRENT, current.clone().and_then(longest));
-    // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
-    set.note(
-        Name::CurrentRms,
-        RMS_CURRENT,
-        current.and_then(|[d, q]| {
-            let squares = d.iter().zip(q).map(|(d, q)| d * d + q * q);
-            root_mean(squares.map(|square| square / 2.0), PART)
-        }),
-    );
+    let (peak, rms) = current(recording, rows);
+    set.note(Name::CurrentPeak, PEAK_CURRENT, peak);
+    set.note(Name::CurrentRms, RMS_CURRENT, rms);
     let voltage = vector(recording, Signal::VoltageD, Signal::VoltageQ, rows);
     set.note(Name::VoltagePeak, "V", voltage.and_then(longest));
     for (name, share) in [
@@ -48,6 +40,25 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: &Range<us
 }
 
 const PART: &str = "of motor and inverter";
+
+/// Peak and effective value of the current: with its ripple where the inverter switches, or else of the rows.
+fn current(recording: &Checked<'_>, rows: &Range<usize>) -> (Result<f64, Absence>, Result<f64, Absence>) {
+    let peaks = channel(recording, Signal::CurrentPeak);
+    if !matches!(peaks, Err(Absence::NoChannel { .. })) {
+        // No tick ends at the first row of a run.
+        let ticks = if rows.len() > 1 { rows.start.max(1)..rows.end } else { rows.clone() };
+        let square = |all: &[f64]| root_mean(all[ticks.clone()].iter().map(|rms| rms * rms), PART);
+        let peak = peaks.and_then(|all| largest_magnitude(&all[ticks.clone()], PART));
+        return (peak, channel(recording, Signal::CurrentRms).and_then(square));
+    }
+    let vector = vector(recording, Signal::CurrentD, Signal::CurrentQ, rows);
+    // A phase of amplitude |i_dq| has the effective value |i_dq|/√2.
+    let effective = |[d, q]: [&[f64]; 2]| {
+        let squares = d.iter().zip(q).map(|(d, q)| d * d + q * q);
+        root_mean(squares.map(|square| square / 2.0), PART)
+    };
+    (vector.clone().and_then(longest), vector.and_then(effective))
+}
 
 /// The two components of a vector.
 fn vector<'a>(
@@ -111,6 +122,23 @@ mod tests {
         }
         // 3333 samples per period: the crest is met to (π/3333)²/2.
         assert!((set.value(Name::TorquePeak).unwrap() - 2.0).abs() < 1e-6);
+    }
+
+    /// Oracle: by hand. A row holds the tick that ends there; none ends at the first.
+    #[test]
+    fn the_ripple_of_an_inverter_that_switches_is_in_peak_and_effective_value() {
+        let recording = Build::new(10_000, 10_000)
+            .channel(Signal::CurrentD, "A", |_| 0.0)
+            .channel(Signal::CurrentQ, "A", |_| 3.0)
+            .channel(Signal::CurrentPeak, "A", |t| if t > 0.0 { 3.5 + t } else { 0.0 })
+            .channel(Signal::CurrentRms, "A", |t| if t > 0.0 { 2.25 } else { 0.0 })
+            .finish();
+        let mut set = MetricSet::default();
+        note(&mut set, &Checked::of(&recording), &(0..10_000));
+        assert_eq!(set.value(Name::CurrentRms), Some(2.25));
+        assert!((set.value(Name::CurrentPeak).unwrap() - 4.4999).abs() < 1e-12);
+        note(&mut set, &Checked::of(&recording), &(1_000..2_001));
+        assert!((set.value(Name::CurrentPeak).unwrap() - 3.7).abs() < 1e-12);
     }
 
     /// A quarter of the control ticks of 0.1 s is 25 ms.

@@ -40,7 +40,7 @@ impl Question {
 }
 
 /// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
-pub const MEASURED_FROM: [Signal; 31] = [
+pub const MEASURED_FROM: [Signal; 33] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
     Signal::RequestEffort,
@@ -57,6 +57,8 @@ pub const MEASURED_FROM: [Signal; 31] = [
     Signal::EffortMotor,
     Signal::CurrentD,
     Signal::CurrentQ,
+    Signal::CurrentPeak,
+    Signal::CurrentRms,
     Signal::VoltageD,
     Signal::VoltageQ,
     Signal::PowerElectrical,

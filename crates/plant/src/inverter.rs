@@ -21,6 +21,7 @@ pub(crate) use legs::{legs, vector};
 pub use link::{Brake, LinkParameter, LinkParams, LinkPower, LinkState, Sag};
 pub use params::{MOST_DEAD, Modulation, Parameter, Params};
 pub(crate) use switching::{Bridge, Switching};
+pub use tick::Ripple;
 pub(crate) use tick::{Input, Tick};
 
 use servobench_base::AlphaBeta;

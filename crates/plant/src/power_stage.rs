@@ -170,6 +170,13 @@ impl PowerStage {
         self.synchronous().map_or(0.0, Synchronous::inverter_loss)
     }
 
+    /// Length of the current vector over that tick, the ripple of an inverter that switches included (A); zero where none does.
+    #[inline(always)]
+    #[must_use]
+    pub fn ripple(&self) -> inverter::Ripple {
+        self.synchronous().map_or_else(inverter::Ripple::default, Synchronous::ripple)
+    }
+
     /// Voltage of the DC link (V), and its mean powers over that tick (W); zero where there is none.
     #[inline(always)]
     #[must_use]

@@ -14,8 +14,8 @@ pub struct Equipment {
     pub disturbed: [bool; 2],
     /// Whether the load meets stops at the ends of its travel.
     pub end_stops: bool,
-    /// Whether the inverter is not ideal, and whether the voltage of its DC link changes.
-    pub inverter: [bool; 2],
+    /// What the inverter does beside giving the voltage that it is asked for.
+    pub inverter: InverterEffects,
     /// Whether there is a fieldbus between the motion task and the drive.
     pub bus: bool,
     /// What the motor has beside its equations.
@@ -26,6 +26,17 @@ pub struct Equipment {
     pub amplifier: Option<Amplifier>,
     /// What the motor has: by the firmware, or by an FMU in its place.
     pub motor: Motor,
+}
+
+/// What an inverter has beside an ideal one, as far as that has signals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct InverterEffects {
+    /// Whether its devices have losses.
+    pub losses: bool,
+    /// Whether it switches.
+    pub switching: bool,
+    /// Whether the voltage of its DC link changes.
+    pub link: bool,
 }
 
 /// What a motor has beside its equations, as far as that has signals.
@@ -110,6 +121,8 @@ pub enum Presence {
     MeasuresVelocity,
     /// With an inverter that is not ideal.
     WithInverter,
+    /// With an inverter that switches.
+    WithSwitching,
     /// With a DC link whose voltage changes.
     WithLink,
 }
@@ -136,8 +149,9 @@ impl Presence {
             Self::LoadEncoderErrs => equipment.erring.encoders[1],
             Self::CurrentErrs => equipment.erring.current,
             Self::MeasuresVelocity => equipment.erring.velocity,
-            Self::WithInverter => equipment.inverter[0],
-            Self::WithLink => equipment.inverter[1],
+            Self::WithInverter => equipment.inverter.losses,
+            Self::WithSwitching => equipment.inverter.switching && equipment.motor == Motor::Currents,
+            Self::WithLink => equipment.inverter.link,
         }
     }
 }

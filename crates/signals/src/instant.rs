@@ -1,7 +1,7 @@
 //! All that is known at one tick.
 use servobench_base::{Dq, Request, RequestKind, Setpoint};
 use servobench_plant::BodyState;
-use servobench_plant::inverter::LinkPower;
+use servobench_plant::inverter::{LinkPower, Ripple};
 use servobench_plant::pmsm::{Power, Temperatures};
 
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
@@ -43,6 +43,8 @@ pub struct Instant {
     pub effort: f64,
     /// Currents of the motor.
     pub current: Dq,
+    /// Length of their vector over the tick that ends here, where the inverter switches.
+    pub ripple: Ripple,
     /// q-axis current that is asked for.
     pub current_reference: f64,
     /// What the current loop computes at this tick.

@@ -7,7 +7,7 @@ mod selection;
 mod signal;
 mod unit;
 
-pub use equipment::{Amplifier, Equipment, Erring, Motor, MotorEffects, Presence, Rates, Writer};
+pub use equipment::{Amplifier, Equipment, Erring, InverterEffects, Motor, MotorEffects, Presence, Rates, Writer};
 pub use instant::{Alarms, Instant, PerLimit};
 pub use selection::{NotRecorded, Selection};
 pub use signal::{Signal, UnknownSignal, write_row};

@@ -196,6 +196,10 @@ signals! {
         "q-axis current as the current loop measures it, amplitude; where sensors or commutation err";
     PowerInverter "power.inverter" Watt PowerStage WithInverter |now| now.inverter_loss;
         "loss of the inverter's devices, mean over the tick that ends; where it is not ideal";
+    CurrentPeak "current.peak" Ampere Motor WithSwitching |now| now.ripple.peak;
+        "largest length of the current vector over the tick that ends, ripple included, amplitude; where the inverter switches";
+    CurrentRms "current.rms" Ampere Motor WithSwitching |now| now.ripple.rms * core::f64::consts::FRAC_1_SQRT_2;
+        "RMS value of a phase current over the tick that ends, ripple included; where the inverter switches";
     VoltageDcLink "voltage.dc_link" Volt PowerStage WithLink |now| now.dc_link;
         "voltage of the DC link; where it changes";
     PowerMains "power.mains" Watt PowerStage WithLink |now| now.link_power.source;

@@ -18,11 +18,12 @@ use servobench_drive::measurement;
 use servobench_drive::unwrap::Unwrap;
 use servobench_fieldbus::LinkFault;
 use servobench_metrics::{JUDGED_BY, Occasion};
+use servobench_plant::inverter::Modulation;
 use servobench_plant::pmsm::Effects;
 use servobench_plant::{Chain, Encoder, EncoderState, Engine, SourceOutput};
 use servobench_scenario::{self as scenario, Actuator, AxisMechanics, Feedback, LoopSignal, Scenario};
 use servobench_signals::{
-    Amplifier, Equipment, Erring, Motor, MotorEffects, NotRecorded, Rates, Selection, Signal, Unit,
+    Amplifier, Equipment, Erring, InverterEffects, Motor, MotorEffects, NotRecorded, Rates, Selection, Signal, Unit,
 };
 use servobench_trace::{About, Event};
 
@@ -235,15 +236,18 @@ fn recorded(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError>
     all.of(wanted).map_err(|NotRecorded { signal }| BuildError::UnknownChannel { signal, available: available() })
 }
 
-/// The same, and those that its run is judged by.
+/// The same, and those that its run is judged by; where the current is wanted, its ripple, which is measured with it.
 fn measured(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError> {
-    let judged_by = JUDGED_BY.into_iter().filter(|signal| !wanted.is_empty() && all.has(*signal));
-    recorded(all, &wanted.iter().copied().chain(judged_by).collect::<Vec<_>>())
+    let is_current = |signal: &Signal| matches!(signal, Signal::CurrentD | Signal::CurrentQ);
+    let ripple = [Signal::CurrentPeak, Signal::CurrentRms].into_iter().filter(|_| wanted.iter().any(is_current));
+    let besides = JUDGED_BY.into_iter().filter(|_| !wanted.is_empty()).chain(ripple);
+    let besides = besides.filter(|signal| all.has(*signal));
+    recorded(all, &wanted.iter().copied().chain(besides).collect::<Vec<_>>())
 }
 
-/// Whether it costs the motor's powers.
+/// Whether it costs the motor's powers, of which the mean square of the current is one.
 fn is_power(signal: Signal) -> bool {
-    signal.unit() == Unit::Watt
+    signal.unit() == Unit::Watt || signal == Signal::CurrentRms
 }
 
 /// How many channels the axis of `scenario` has at most: with a body between motor and load, which its engine may find.
@@ -282,8 +286,12 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         table,
         end_stops: scenario.axis.end_stops.is_some(),
         inverter: match &scenario.actuator {
-            Actuator::Pmsm { inverter, link, .. } => [inverter.is_some(), link.is_some()],
-            _ => [false; 2],
+            Actuator::Pmsm { inverter, link, .. } => InverterEffects {
+                losses: inverter.is_some(),
+                switching: inverter.is_some_and(|inverter| inverter.modulation == Modulation::Switching),
+                link: link.is_some(),
+            },
+            _ => InverterEffects::default(),
         },
         bus: scenario.bus.is_some(),
         effects,

@@ -198,6 +198,7 @@ impl ClosedLoop {
         now.power = self.state.power.power();
         now.temperatures = self.state.power.temperatures();
         now.inverter_loss = self.state.power.inverter_loss();
+        now.ripple = self.state.power.ripple();
         (now.dc_link, now.link_power) = self.state.power.link();
         now.alarms.collapsed_link = self.state.power.link_has_collapsed();
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());

@@ -205,6 +205,7 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&[Signal::CurrentQ.name()], "q", style::MOTOR, WIDE),
             curve(&[Signal::CurrentD.name()], "d", style::AUXILIARY, MIDDLE),
             curve(&[Signal::CurrentQReference.name()], "q reference", style::REFERENCE, THIN),
+            curve(&[Signal::CurrentPeak.name()], "largest in a tick", style::MARK, THIN),
         ],
         ..PLAIN
     },

@@ -11,13 +11,16 @@
 //! mean. A pulse shorter than the dead time is lost, or becomes longer, as on the real bridge: an edge within the dead time of the one before
 //! takes its place.
 //!
+//! The [`Ripple`] of a tick is of the same segments: its mean square is the integral over each, its peak the largest length at their ends.
+//! Between two edges the current vector goes along a line that resistance and turn bend little, and a line is longest at one of its ends.
+//!
 //! Left out: a current that comes to zero within a dead time blocks its diode in a real leg, and stays zero until the device turns on;
 //! here it goes on through zero for what is left of t_d, by at most t_d·U_dc/L. A threshold keeps its sign from edge to edge.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::legs::{Legs, legs, vector};
 use super::modulation::duties;
 use super::params::Params;
-use super::tick::{Input, Tick};
+use super::tick::{Input, Ripple, Tick};
 use crate::pmsm::{self, Equations, Span, Sums, Winding};
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 
@@ -164,18 +167,20 @@ impl Switching {
             rotor: u.rotor,
             sums: Sums::default(),
             fluxes: [0.0; 2],
+            peak: square(before),
         };
         for k in 0..self.pieces(way.bridge.tick) {
             way.go(self.piece(way.bridge.tick, k));
         }
         way.bridge.tick = self.next(way.bridge.tick);
-        let Way { i, sums, fluxes, .. } = way;
+        let Way { i, sums, fluxes, peak, .. } = way;
         *current = i;
         let stored = if POWER { winding.stored(before, i) } else { 0.0 };
         let per = 1.0 / self.h;
         let voltage = AlphaBeta { alpha: fluxes[0] * per, beta: fluxes[1] * per };
         let over = (self.resistance, u.omega_e, self.h);
-        Tick::of::<POWER, W>(winding, &sums, stored, over, (voltage, duties.shortened))
+        let ripple = Ripple { peak: libm::sqrt(peak), rms: libm::sqrt(sums.square * per) };
+        Tick { ripple, ..Tick::of::<POWER, W>(winding, &sums, stored, over, (voltage, duties.shortened)) }
     }
 
     /// The same time without current or voltage: the carrier goes on.
@@ -242,6 +247,13 @@ struct Way<'a, const POWER: bool, W> {
     sums: Sums,
     /// ∫ u dt in the stator frame (V·s).
     fluxes: [f64; 2],
+    /// Largest square of the current so far (A²).
+    peak: f64,
+}
+
+#[inline(always)]
+fn square(i: Dq) -> f64 {
+    i.d * i.d + i.q * i.q
 }
 
 impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
@@ -331,6 +343,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         let omega = self.u.omega_e;
         let over = Span { voltage, drop, rotor: self.rotor, omega, time };
         self.i = self.winding.advance::<POWER>(self.i, &over, &mut self.sums);
+        self.peak = self.peak.max(square(self.i));
         self.rotor = self.rotor.ahead(omega * time);
     }
 }

@@ -28,6 +28,17 @@ pub(crate) struct Tick {
     pub(crate) voltage: AlphaBeta,
     /// Whether there was less than what was asked for.
     pub(crate) shortened: bool,
+    /// The current between the ends of the tick, where the inverter follows it.
+    pub(crate) ripple: Ripple,
+}
+
+/// Length of the current vector over a tick, the ripple of an inverter that switches included (A); zero with one that is averaged.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ripple {
+    /// Largest at the edges of the switches and the ends of the tick.
+    pub peak: f64,
+    /// Root of its mean square; zero where the powers of the motor are left out.
+    pub rms: f64,
 }
 
 impl Tick {
@@ -49,6 +60,6 @@ impl Tick {
         let per = 1.0 / h;
         let ohmic = 1.5 * resistance * sums.square * per;
         let power = pmsm::Power { electrical: power.electrical - ohmic, ..power };
-        Self { torque, power, loss: ohmic + 1.5 * sums.other * per, voltage, shortened }
+        Self { torque, power, loss: ohmic + 1.5 * sums.other * per, voltage, shortened, ripple: Ripple::default() }
     }
 }

@@ -181,6 +181,12 @@ impl Synchronous {
         self.inverter.as_ref().map_or(0.0, |inverter| inverter.loss())
     }
 
+    /// Length of the current over that tick; zero where no inverter switches.
+    #[inline(always)]
+    pub(super) fn ripple(&self) -> inverter::Ripple {
+        self.inverter.as_ref().map_or_else(inverter::Ripple::default, |inverter| inverter.ripple())
+    }
+
     /// Voltage of the DC link (V), and its mean powers over that tick (W).
     #[inline(always)]
     pub(super) fn link(&self) -> (f64, inverter::LinkPower) {

@@ -55,6 +55,7 @@ fn a_period_is_that_of_many_small_steps_between_the_same_edges() {
         edges.extend((0..3).map(|x| (h - d[x] * h / 2.0, x, true)));
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut y, mut t, mut up, mut later) = ([start.d, start.q, 0.0, 0.0, 0.0, 0.0], 0.0, [true; 3], Vec::new());
+        let longest = core::cell::Cell::new(start.magnitude());
         let go = |y: &mut [f64; 6], from: f64, to: f64, up: [bool; 3]| {
             let signs = at(Dq { d: y[0], q: y[1] }, from).map(f64::signum);
             let u = vector(core::array::from_fn(|x| if up[x] { U } else { 0.0 } - p.device_drop * signs[x]));
@@ -83,6 +84,7 @@ fn a_period_is_that_of_many_small_steps_between_the_same_edges() {
                 let k3 = slope(t + step / 2.0, &ahead(step / 2.0, &k2));
                 let k4 = slope(t + step, &ahead(step, &k3));
                 *y = core::array::from_fn(|n| y[n] + step / 6.0 * (k1[n] + 2.0 * k2[n] + 2.0 * k3[n] + k4[n]));
+                longest.set(longest.get().max(y[0].hypot(y[1])));
             }
         };
         while !(edges.is_empty() && later.is_empty()) {
@@ -109,6 +111,8 @@ fn a_period_is_that_of_many_small_steps_between_the_same_edges() {
         close(tick.power.copper, 1.5 * MOTOR.resistance * y[3] / h, 30.0);
         close(tick.power.electrical, y[4] / h, 1000.0);
         close(tick.loss, y[5] / h, 10.0);
+        close(tick.ripple.rms, (y[3] / h).sqrt(), 4.0);
+        close(tick.ripple.peak, longest.get(), 4.0);
     }
 }
 
@@ -158,6 +162,76 @@ fn the_mean_current_is_that_of_the_averaged_inverter() {
             // 0.1 % is asked for. The pulses are spread over the period, in which the rotor turns: of second order in its angle.
             assert!(error < 1e-3, "{carrier} Hz, {base} Hz, {omega} rad/s: {error}");
         }
+    }
+}
+
+/// What 16 periods of the carrier of 16 kHz have, in `parts` ticks each: ripple by the ticks' own account, and of the instants at their ends.
+fn ripple<W: Winding>(
+    p: &Params,
+    motor: &pmsm::Params,
+    winding: &W,
+    (start, voltage, omega): (Dq, Dq, f64),
+    parts: u32,
+) -> [Ripple; 2] {
+    let (periods, h) = (16, 1.0 / 16e3 / f64::from(parts));
+    let switching = Switching::new(p, motor, h).unwrap();
+    let (mut bridge, mut current, mut wanted) = (Bridge::default(), start, AlphaBeta::default());
+    let (mut peaks, mut squares) = ([0.0_f64; 2], [0.0; 2]);
+    for k in 0..periods * parts {
+        let angle = ElectricalAngle(omega * h * f64::from(k));
+        if k % parts == 0 {
+            wanted = voltage.to_alpha_beta(angle.ahead(omega * h * f64::from(parts) / 2.0).rotation());
+        }
+        let input = Input { wanted, u_dc: U, rotor: angle.rotation(), omega_e: omega };
+        let Ripple { peak, rms } = switching.step::<true, _>(winding, &mut bridge, &mut current, &input).ripple;
+        let instant = current.magnitude();
+        peaks = [peaks[0].max(peak), peaks[1].max(instant)];
+        squares = [squares[0] + rms * rms, squares[1] + instant * instant];
+    }
+    [0, 1].map(|n| Ripple { peak: peaks[n], rms: (squares[n] / f64::from(periods * parts)).sqrt() })
+}
+
+/// Oracle: the same current at instants 125 ns apart. A tick that is a period knows of it what lies between its ends: with dead time and
+/// thresholds, in field weakening, on an inductance that is next to none, in iron that saturates, and with a phase that is lost.
+#[test]
+fn a_tick_knows_the_ripple_between_its_ends() {
+    let weak = pmsm::Params { resistance: 16.0, inductance: Dq { d: 50e-6, q: 50e-6 }, ..MOTOR };
+    let idle = pmsm::Params { resistance: 0.4, inductance: Dq { d: 0.2e-3, q: 0.2e-3 }, ..MOTOR };
+    let map = pmsm::Saturation { current: 31.0, share: 0.8, residual: 0.1 };
+    let effects = pmsm::Effects {
+        flux_map: Some(pmsm::FluxMap::curve(&map, MOTOR.flux_linkage, MOTOR.inductance).unwrap()),
+        ..pmsm::Effects::default()
+    };
+    let saturating = pmsm::RealMotor::new(&MOTOR, &effects, 1.0 / 16e3).unwrap();
+    let line = AlphaBeta { alpha: 0.0, beta: 1.0 };
+    for (name, p, motor, current, omega) in [
+        ("ideal", &IDEAL, &MOTOR, Dq { d: 0.0, q: 4.0 }, 800.0),
+        ("dead time", &REAL, &MOTOR, Dq { d: 0.0, q: -4.0 }, 300.0),
+        ("field weakening", &REAL, &MOTOR, Dq { d: -9.0, q: 2.0 }, 3_000.0),
+        ("idle", &IDEAL, &idle, Dq::default(), 1_200.0),
+        ("weak", &REAL, &weak, Dq { d: 0.0, q: 3.0 }, 1_000.0),
+        ("saturating", &REAL, &MOTOR, Dq { d: 0.0, q: 9.0 }, 500.0),
+        ("lost phase", &IDEAL, &MOTOR, Dq { d: 0.0, q: 4.0 }, 700.0),
+    ] {
+        let way = (current, motor.steady_voltage(current, omega), omega);
+        let equations = Equations::new(motor, p.on_resistance);
+        let both = [1, 500].map(|parts| match name {
+            "saturating" => {
+                let winding = saturating.winding(motor, p.on_resistance).unwrap();
+                ripple(p, motor, &winding, way, parts)
+            }
+            "lost phase" => {
+                let winding = pmsm::OpenPhase::new(motor, None, p.on_resistance, line);
+                ripple(p, motor, &winding, (Dq::default(), way.1, omega), parts)
+            }
+            _ => ripple(p, motor, &equations, way, parts),
+        });
+        let [[found, sampled], [_, expected]] = both;
+        println!("{name}: {found:.4?}, at ends {sampled:.4?}, of instants {expected:.4?}");
+        // Between two instants a current goes 125 ns·(2/3·320 V)/L, whose largest is not met: half of it in the mean.
+        let step = 125e-9 * U / motor.inductance.d;
+        assert!(found.peak > expected.peak - 1e-9 && found.peak < expected.peak + step, "{name}: {both:?}");
+        assert!((found.rms / expected.rms - 1.0).abs() < 2e-3, "{name}: {both:?}");
     }
 }
 

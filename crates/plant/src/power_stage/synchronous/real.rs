@@ -5,7 +5,7 @@
 //! iron, temperature) → link (supplies what motor and devices took)
 //! ```
 use super::Synchronous;
-use crate::inverter::{self, Averaged, Bridge, LinkParams, LinkPower, LinkState, Modulation, Switching};
+use crate::inverter::{self, Averaged, Bridge, LinkParams, LinkPower, LinkState, Modulation, Ripple, Switching};
 use crate::pmsm::{self, Winding as _};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError};
 use std::sync::Arc;
@@ -23,6 +23,8 @@ pub(super) struct RealInverter {
     loss: f64,
     /// Mean powers of the link over the tick (W).
     link_power: LinkPower,
+    /// The current between the ends of the tick.
+    ripple: Ripple,
 }
 
 #[derive(Debug, Clone)]
@@ -52,7 +54,8 @@ impl RealInverter {
         };
         let is_real = !inverter.is_ideal() || link.is_some();
         let link = link.map(|link| (*link, link.at_first()));
-        Ok(is_real.then_some(Self { modulator, link, loss: 0.0, link_power: LinkPower::default() }))
+        let (link_power, ripple) = (LinkPower::default(), Ripple::default());
+        Ok(is_real.then_some(Self { modulator, link, loss: 0.0, link_power, ripple }))
     }
 
     pub(super) const fn loss(&self) -> f64 {
@@ -61,6 +64,10 @@ impl RealInverter {
 
     pub(super) const fn link_power(&self) -> LinkPower {
         self.link_power
+    }
+
+    pub(super) const fn ripple(&self) -> Ripple {
+        self.ripple
     }
 
     pub(super) const fn has_link(&self) -> bool {
@@ -134,6 +141,7 @@ struct Driven {
     shortens: bool,
     /// Of the devices (W).
     loss: f64,
+    ripple: Ripple,
 }
 
 impl Winding<'_> {
@@ -163,6 +171,7 @@ impl Winding<'_> {
             voltage,
             shortens: inverter::falls_short(input.voltage, wanted),
             loss: 0.0,
+            ripple: Ripple::default(),
         }
     }
 
@@ -179,6 +188,7 @@ impl Winding<'_> {
             voltage: tick.voltage.to_dq(input.rotor.ahead(input.omega_e * self.h / 2.0)),
             shortens: tick.shortened,
             loss: tick.loss,
+            ripple: tick.ripple,
         }
     }
 }
@@ -231,7 +241,7 @@ impl Synchronous {
             driven.output.power.stored -= arc;
         }
         (self.voltage, self.shortens) = (driven.voltage, driven.shortens);
-        self.account(&params, driven.output, before, travel, driven.loss, h).torque
+        self.account(&params, driven.output, before, travel, (driven.loss, driven.ripple), h).torque
     }
 
     /// The power is off for a tick in which the winding gives what is in `output`.
@@ -243,7 +253,7 @@ impl Synchronous {
         let params = self.effects.as_ref().map_or(*self.motor.params(), |real| real.params(&self.motor));
         let before = self.state;
         self.state = pmsm::State::default();
-        self.account(&params, output, before, travel, 0.0, h)
+        self.account(&params, output, before, travel, (0.0, Ripple::default()), h)
     }
 
     /// What acts on the rotor beside the winding, and what the link supplies.
@@ -253,14 +263,14 @@ impl Synchronous {
         winding: pmsm::Output,
         before: pmsm::State,
         travel: pmsm::Travel,
-        loss: f64,
+        (loss, ripple): (f64, Ripple),
         h: f64,
     ) -> pmsm::Output {
         let currents = [before, self.state];
         let output = self.effects.as_mut().map_or(winding, |real| real.on_the_rotor(params, winding, currents, travel));
         self.power = self.power.map(|_| output.power);
         if let Some(inverter) = &mut self.inverter {
-            inverter.loss = loss;
+            (inverter.loss, inverter.ripple) = (loss, ripple);
             self.u_dc = inverter.supply(output.power.electrical, h).unwrap_or(self.u_dc);
         }
         output
