@@ -20,7 +20,7 @@ use servobench_config::Kind::Plain;
 use servobench_config::quantities::{
     CURRENT, CURRENT_GAIN, FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE, TIME, VOLTAGE,
 };
-use servobench_config::{ParameterError, any, positive};
+use servobench_config::{ParameterError, any, not_negative, positive};
 
 servobench_config::parameters! {
     /// A parameter of the current loop.
@@ -47,8 +47,8 @@ servobench_config::parameters! {
         INDUCTANCE_D "estimate of the inductance, d axis" = positive(Plain(&INDUCTANCE), "36 mH");
         /// Inductance of the q axis
         INDUCTANCE_Q "estimate of the inductance, q axis" = positive(Plain(&INDUCTANCE), "51 mH");
-        /// Flux linkage, amplitude
-        FLUX_LINKAGE "estimate of the flux linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
+        /// Flux linkage, amplitude; 0 for a reluctance motor
+        FLUX_LINKAGE "estimate of the flux linkage" = not_negative(Plain(&FLUX_LINKAGE), "0.545 V s");
     }
 }
 
@@ -61,7 +61,7 @@ pub struct MotorEstimate {
     pub resistance: f64,
     /// Inductances (H).
     pub inductance: Dq,
-    /// Flux linkage, peak (V·s).
+    /// Flux linkage, peak (V·s); 0 for a reluctance motor.
     pub flux_linkage: f64,
 }
 
@@ -197,18 +197,27 @@ impl Params {
         }
         limit(Parameter::MAX_CURRENT, self.max_current)?;
         let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;
-        if !is_within || self.effort_constant() <= 0.0 {
+        self.operation.check(self.max_current)?;
+        let has_torque = match self.operation.strategy {
+            operating_point::Strategy::DReference => self.effort_constant() > 0.0,
+            operating_point::Strategy::Mtpa => self.motor.flux_linkage > 0.0 || self.motor.saliency() != 0.0,
+        };
+        if !has_torque && self.motor.flux_linkage == 0.0 && self.d_reference == 0.0 {
+            let bound = "above 0 where the d axis has no current that makes torque by different inductances";
+            return Err(ParameterError { name: Parameter::FLUX_LINKAGE, value: 0.0, bound });
+        }
+        if !is_within || !has_torque {
             let bound = "below the largest current and leave the motor some torque";
             return Err(ParameterError { name: Parameter::D_REFERENCE, value: self.d_reference, bound });
         }
-        self.operation.check(self.max_current)?;
         if let Some(dead_time) = &self.dead_time {
             dead_time.check()?;
         }
         limit(Parameter::DC_LINK, self.max_voltage).map(|_| ())
     }
 
-    /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes.
+    /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes; 0 where only maximum torque per ampere gives the d axis its
+    /// current.
     #[must_use]
     pub fn effort_constant(&self) -> f64 {
         self.motor.effort_constant(self.d_reference)

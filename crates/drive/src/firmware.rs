@@ -393,14 +393,14 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
 
 #[inline(always)]
 fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &Sensors, h: f64) {
-    // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
-    let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
-    x.held.current_reference = wanted.clamp(-most, most);
-    let mut reference = Dq { d: p.d_reference, q: x.held.current_reference };
-    if !p.operation.is_plain() {
-        reference = x.held.references;
-        x.held.current_reference = reference.q;
-    }
+    let reference = if p.operation.is_plain() {
+        // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
+        let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
+        Dq { d: p.d_reference, q: wanted.clamp(-most, most) }
+    } else {
+        x.held.references
+    };
+    x.held.current_reference = reference.q;
     let input = current::Input {
         reference,
         current: sensors.current,

@@ -48,8 +48,8 @@ pub use phases::PhaseParameter;
 pub(crate) use segment::Equations;
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
 use servobench_config::Kind::Plain;
-use servobench_config::positive;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
+use servobench_config::{not_negative, positive};
 use table::{Solution, Tables};
 pub use temperature::{CLASS_F, COPPER, Temperature, TemperatureParameter, Temperatures, ThermalNetwork};
 pub(crate) use winding::{Span, Sums, Winding};
@@ -65,8 +65,8 @@ servobench_config::parameters! {
         INDUCTANCE_D "inductance, d axis" = positive(Plain(&INDUCTANCE), "36 mH");
         /// Inductance of the q axis, phase to neutral
         INDUCTANCE_Q "inductance, q axis" = positive(Plain(&INDUCTANCE), "51 mH");
-        /// Flux linkage of the magnets, amplitude
-        FLUX_LINKAGE "flux linkage" = positive(Plain(&FLUX_LINKAGE), "0.545 V s");
+        /// Flux linkage of the magnets, amplitude; 0 for a reluctance motor, whose inductances differ
+        FLUX_LINKAGE "flux linkage" = not_negative(Plain(&FLUX_LINKAGE), "0.545 V s");
     }
 }
 
@@ -80,7 +80,7 @@ pub struct Params {
     pub resistance: f64,
     /// Inductances, phase to neutral (H).
     pub inductance: Dq,
-    /// Flux linkage of the magnets, peak (V·s).
+    /// Flux linkage of the magnets, peak (V·s); 0 for a reluctance motor.
     pub flux_linkage: f64,
 }
 
@@ -104,14 +104,24 @@ pub struct Input {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter that is not finite and positive.
+    /// [`ParamError`] names the first parameter that is out of its bound; so is a flux linkage of 0 where no saliency makes torque.
     pub fn check(&self) -> Result<(), ParamError> {
         Parameter::ELECTRICAL_RATIO.check_in_words(self.electrical_ratio)?;
         Parameter::RESISTANCE.check_in_words(self.resistance)?;
         Parameter::INDUCTANCE_D.check_in_words(self.inductance.d)?;
         Parameter::INDUCTANCE_Q.check_in_words(self.inductance.q)?;
         Parameter::FLUX_LINKAGE.check_in_words(self.flux_linkage)?;
+        if self.has_no_torque() {
+            let bound = "positive where both inductances are equal";
+            return Err(ParamError { name: Parameter::FLUX_LINKAGE.name, value: self.flux_linkage, bound });
+        }
         Ok(())
+    }
+
+    /// True where neither magnets nor a difference of the inductances make torque.
+    #[must_use]
+    pub fn has_no_torque(&self) -> bool {
+        self.flux_linkage == 0.0 && self.inductance.d - self.inductance.q == 0.0
     }
 
     /// Torque or force per q-axis current at the d-axis current `i_d` (N·m/A or N/A, peak): 1.5·p·(ψ + (L_d − L_q)·i_d).

@@ -4,6 +4,8 @@ use crate::coupled;
 use crate::error::BuildError;
 use crate::speeds::Speeds;
 use servobench_base::Dq;
+use servobench_drive::Stage;
+use servobench_drive::current::operating_point::Strategy;
 use servobench_metrics::Quantity;
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, Scenario};
@@ -85,6 +87,8 @@ pub enum NotAnalysed {
     Fmus,
     /// The commutation is off while a current flows at standstill: what is analysed is the loop around that current in its own axis.
     Commutation,
+    /// The commutation is off, and without magnets the current that it turns makes all of the torque.
+    CommutationWithoutMagnets,
     /// Function blocks make the program, so that only a run tells whether it stays at the speed at which the gain schedule is unstable.
     GainSchedule(Box<Instability>),
     /// The motor is connected wrongly: what is analysed is the loop with a cable that is right.
@@ -108,6 +112,9 @@ impl Display for NotAnalysed {
             Self::Commutation => f.write_str(
                 "a commutation that is late or off turns the current that the d axis has at standstill, which is not analysed; the \
                  loop around that current in the d axis is",
+            ),
+            Self::CommutationWithoutMagnets => f.write_str(
+                "a commutation that is off turns the current that gives a motor without magnets its torque, which is not analysed",
             ),
             Self::GainSchedule(instability) => {
                 write!(f, "whether function blocks stay at this speed only a run tells: {instability}")
@@ -183,8 +190,9 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     };
     let bus = scenario.bus.as_ref();
     let closes_position = bus.is_none_or(|bus| !matches!(bus.mode, BusMode::CyclicVelocity | BusMode::ProfileVelocity));
+    let (params, point) = operated(drive, &source);
     let model = Loop {
-        drive: drive.params.clone(),
+        drive: params,
         closes_position,
         velocity_signal: velocity_signal(*encoder),
         position_feedback: match drive.position_feedback {
@@ -195,10 +203,11 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         source,
         mechanics: plant::checked(chain)?,
         sensors: sensors(*encoder, drive),
-        point: drive.params.current_loop().map_or_else(OperatingPoint::default, |(current, _)| OperatingPoint {
-            current: Dq { d: current.d_reference, q: 0.0 },
-        }),
+        point,
     };
+    if matches!(&model.source, Source::Pmsm(motor) if motor.flux_linkage == 0.0) && model.sensors.commutation != 0.0 {
+        return Ok(Err(NotAnalysed::CommutationWithoutMagnets));
+    }
     let acts = scenario.fmus.iter().any(|fmu| fmu.efforts().next().is_some());
     let turns =
         model.point.current != Dq::default() && (model.sensors.motor_latency > 0.0 || model.sensors.commutation != 0.0);
@@ -206,6 +215,21 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     let left_out = [(acts, NotAnalysed::Fmus), (turns, NotAnalysed::Commutation), (is_wrong, NotAnalysed::Wiring)];
     let without = left_out.into_iter().filter_map(|(is_left_out, what)| is_left_out.then_some(what)).collect();
     Ok(Ok((model, without)))
+}
+
+/// The drive where it is linearised: without effort, with the d-axis current that it holds then. Where motor or estimate has no magnets,
+/// maximum torque per ampere has no slope there; around any effort it is that of the d-axis current of that effort, since both axes of the
+/// current loop answer alike, and the current of the largest effort is taken.
+fn operated(drive: &Drive, source: &Source) -> (servobench_drive::Params, OperatingPoint) {
+    let mut params = drive.params.clone();
+    let Stage::Current { params: current, .. } = &mut params.stage else { return (params, OperatingPoint::default()) };
+    let has_no_magnets =
+        matches!(source, Source::Pmsm(motor) if motor.flux_linkage == 0.0) || current.motor.flux_linkage == 0.0;
+    if current.operation.strategy == Strategy::Mtpa && has_no_magnets {
+        current.d_reference = current.motor.mtpa_at_current(current.max_current);
+    }
+    let point = OperatingPoint { current: Dq { d: current.d_reference, q: 0.0 } };
+    (params, point)
 }
 
 /// How late the sensors of `drive` and the `encoder` of its motor are.

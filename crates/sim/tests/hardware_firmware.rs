@@ -127,6 +127,56 @@ fn a_constant_load_is_held_by_the_least_current() {
     assert!((d / exact - 1.0).abs() < 1e-4 && (torque(d, q) / 23.7 - 1.0).abs() < 1e-4, "{d} {q} {exact}");
 }
 
+/// The 6.7 kW reluctance motor in place of the one with magnets, `d` and `q` (mH) being its inductances.
+fn without_magnets(text: &str, d: f64, q: f64) -> String {
+    let of = |d: &str, q: &str, psi: &str| {
+        format!("inductance_d = \"{d} mH\"\ninductance_q = \"{q} mH\"\nflux_linkage = \"{psi} V s\"")
+    };
+    text.replace(&of("36", "51", "0.545"), &of(&d.to_string(), &q.to_string(), "0"))
+        .replace("pole_pairs = 3\nresistance = \"3.6 Ohm\"", "pole_pairs = 2\nresistance = \"0.54 Ohm\"")
+}
+
+/// Oracle: τ = 1.5·p·(L_d − L_q)·i_d·i_q takes least current at 45°, i_d with the sign of L_d − L_q, i_q with that of τ.
+#[test]
+fn a_motor_without_magnets_holds_a_load_by_its_saliency() {
+    for (l_d, l_q) in [(41.5, 6.2), (6.2, 41.5)] {
+        for (load, way) in [(-17.3, 0.4), (17.3, 0.4), (-17.3, -0.4), (17.3, -0.4)] {
+            let program = format!("velocity = \"60 rpm\"\n[[program]]\nmove_by = \"{way} rev\"");
+            let text = without_magnets(&text("strategy = \"mtpa\"", 31.0, load, &program, ""), l_d, l_q);
+            let text = text.replace("base_rate = \"16 kHz\"", "base_rate = \"16 kHz\"\nduration = \"1.5 s\"");
+            let recording = run(&text.replace("gain = \"0.01 1/s\"", "bandwidth = \"3 Hz\""));
+            let [d, q, turned] = ["current.d", "current.q", "load.position"].map(|name| end(channel(&recording, name)));
+            let expected = (17.3 / (1.5 * 2.0 * (l_d - l_q).abs() * 1e-3)).sqrt();
+            println!("{l_d} {l_q} mH, {load} Nm: i = ({d:.6}, {q:.6}) A, closed form {expected:.6} A");
+            assert!((d / (expected * (l_d - l_q).signum()) - 1.0).abs() < 1e-4, "{d} {expected}");
+            assert!((q / (expected * -load.signum()) - 1.0).abs() < 1e-4, "{q} {expected}");
+            assert!((turned / (way * std::f64::consts::TAU) - 1.0).abs() < 1e-3, "{turned}");
+        }
+    }
+}
+
+/// A motor without magnets, unloaded, comes to rest without a current, and stays there; with a constant d-axis current it keeps that.
+#[test]
+fn a_motor_without_magnets_comes_to_rest() {
+    let program = "velocity = \"600 rpm\"\n[[program]]\nmove_by = \"3 rev\"\n[[program]]\nmove_by = \"-3 rev\"";
+    for (l_d, l_q, strategy, held) in [
+        (41.5, 6.2, "strategy = \"mtpa\"", 0.0),
+        (6.2, 41.5, "strategy = \"mtpa\", field_weakening = true", 0.0),
+        (41.5, 6.2, "d_reference = \"8 Apk\"", 8.0),
+        (6.2, 41.5, "d_reference = \"-8 Apk\"", -8.0),
+    ] {
+        let text = without_magnets(&text(strategy, 31.0, 0.0, program, ""), l_d, l_q);
+        let text = text.replace("base_rate = \"16 kHz\"", "base_rate = \"16 kHz\"\nduration = \"10 s\"");
+        let recording = run(&text.replace("gain = \"0.01 1/s\"", "bandwidth = \"3 Hz\""));
+        let last = |name: &str| *channel(&recording, name).last().unwrap();
+        println!("{strategy}: {} rad/s, {} A, {} A", last("motor.velocity"), last("current.d"), last("current.q"));
+        assert!(last("motor.velocity").abs() < 1e-9, "{strategy}: {}", last("motor.velocity"));
+        assert!((last("current.d") - held).abs() < 1e-3 && last("current.q").abs() < 1e-3, "{strategy}");
+        let moved = channel(&recording, "load.position").iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        assert!((moved / (6.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{moved}");
+    }
+}
+
 /// Oracle: t = −τ·ln(1 − I_n²/I²) at the current limit I, from when it flows; then I_n flows.
 #[test]
 fn a_peak_current_ends_when_the_thermal_load_is_reached() {

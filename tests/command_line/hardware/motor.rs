@@ -39,6 +39,13 @@ const SCENARIOS: [(&str, &[&str], &[&str]); 8] = [
     ),
 ];
 
+/// Without its own strategy, a constant current in d, and with less of the difference of inductances that its torque comes from.
+#[test]
+fn a_motor_without_magnets_has_torque_by_its_saliency() {
+    let constant = "drive.current={ rate='16 kHz', bandwidth='1.2 kHz', d_reference='18 Apk' }";
+    passes_but_not_with("reluctance", &[&[constant], &["motor.inductance_q=12 mH"]]);
+}
+
 #[test]
 fn each_scenario_passes_as_it_is_and_fails_without_its_effect_and_with_twice_of_it() {
     for (scenario, off, doubled) in SCENARIOS {

@@ -7,12 +7,14 @@
 //! ```
 //! **Maximum torque per ampere.** Least |i| for τ where w³·(w − ψ) = (L_d − L_q)²·(τ/K)², w = ψ + (L_d − L_q)·i_d: the left side is
 //! convex beyond its root, so that Newton's method comes down to it from above. At I_max
-//! i_d = ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + I_max²/2), written without the difference that L_d = L_q makes 0/0.
+//! i_d = ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + I_max²/2), written without the difference that L_d = L_q makes 0/0. Without magnets
+//! (ψ = 0) both currents are as large, i_d with the sign of L_d − L_q, and none flows without torque.
 //!
 //! **Field weakening.** At i_d the largest |i_q| is that of the circle or, by a quadratic, of the voltage ellipse, resistance
 //! included. Both sets are convex, so the effort over i_d has one maximum. It is the end of maximum torque per ampere, the corner of
-//! circle and ellipse, or, where ψ/L_d < I_max at high speed, the point of maximum torque per voltage. A smaller effort is
-//! given at the i_d that the strategy prefers, or at the nearest one below at which the voltage suffices. The
+//! circle and ellipse, or, where ψ/L_d < I_max at high speed, the point of maximum torque per voltage. That is below the i_d that the
+//! strategy prefers, except where this alone is more than ψ/L_d: with little or no magnets the field is weakened by less of it. A smaller
+//! effort is given at the preferred i_d, or at the nearest one towards the maximum at which the voltage suffices. The
 //! voltage must suffice for i_q = 0 too, lest an effort that ends leaves none.
 //!
 //! **Voltage feedback.** What the estimates have wrong shows in the voltage that the current loop computes: U falls by
@@ -126,7 +128,8 @@ impl Params {
 
 impl MotorEstimate {
     /// L_d − L_q (H).
-    fn saliency(&self) -> f64 {
+    #[must_use]
+    pub fn saliency(&self) -> f64 {
         self.inductance.d - self.inductance.q
     }
 
@@ -144,6 +147,10 @@ impl MotorEstimate {
         let wanted = effort / (1.5 * self.electrical_ratio);
         let right = saliency * saliency * wanted * wanted;
         let mut w = psi + libm::sqrt(libm::sqrt(right));
+        // No magnets and no torque, or one whose square is rounded to zero.
+        if w == 0.0 {
+            return 0.0;
+        }
         for _ in 0..NEWTON {
             w -= (w * w * w * (w - psi) - right) / (w * w * (4.0 * w - 3.0 * psi));
         }
@@ -193,7 +200,13 @@ impl Bounds<'_> {
         if q > 0.0 { self.p.motor.effort_constant(d) * q } else { q }
     }
 
-    /// The largest effort with a d-axis current of `most` at most.
+    /// Up to which d-axis current the largest effort may lie, where a strategy prefers `most`.
+    fn highest(&self, most: f64) -> f64 {
+        let motor = &self.p.motor;
+        if motor.saliency() < 0.0 && motor.flux_linkage < -motor.inductance.d * most { 0.0 } else { most }
+    }
+
+    /// The largest effort, of a strategy that prefers the d-axis current `most` for it.
     fn peak(&self, most: f64) -> Peak {
         let motor = &self.p.motor;
         let ceiling =
@@ -207,7 +220,11 @@ impl Bounds<'_> {
         let middle = -omega * omega * l * psi / square;
         let inside = self.voltage * self.voltage * square - omega * omega * psi * psi * r * r;
         let half = libm::sqrt(inside.max(0.0)) / square;
-        let (mut low, mut high) = ((middle - half).max(-self.p.max_current), (middle + half).min(most));
+        let (mut low, mut high) = ((middle - half).max(-self.p.max_current), (middle + half).min(self.highest(most)));
+        if motor.saliency() > 0.0 {
+            // Below, i_q makes an effort against its sign.
+            low = low.max(-psi / motor.saliency());
+        }
         if inside < 0.0 || low > high {
             return Peak { effort: 0.0, d: middle.clamp(-self.p.max_current, most) };
         }
@@ -280,7 +297,9 @@ impl Envelope {
             }
         }
         let most = super::q_current(p.max_current, d);
-        Dq { d, q: sign * (wanted / p.motor.effort_constant(d)).min(most) }
+        let per_ampere = p.motor.effort_constant(d);
+        // Nothing is to be divided by where a motor without magnets has no current.
+        Dq { d, q: if per_ampere > 0.0 { sign * (wanted / per_ampere).min(most) } else { 0.0 } }
     }
 }
 

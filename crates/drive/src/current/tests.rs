@@ -110,7 +110,8 @@ fn errors_name_the_parameter() {
     let weak = MotorEstimate { flux_linkage: 0.0, ..MOTOR };
     assert_eq!(
         said(Params { motor: weak, ..good }),
-        "`estimate of the flux linkage` must be finite and positive, got 0"
+        "`estimate of the flux linkage` must be above 0 where the d axis has no current that makes torque by different \
+         inductances, got 0"
     );
     assert_eq!(said(Params { max_current: -1.0, ..good }), "`largest current` must be positive, got -1");
     assert_eq!(said(Params { max_voltage: f64::NAN, ..good }), "`voltage of the DC link` must be positive, got NaN");

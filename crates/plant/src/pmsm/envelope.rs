@@ -220,6 +220,27 @@ mod tests {
         }
     }
 
+    /// Oracle: without magnets and resistance, half of (L_d − L_q)·I² at low speed and half of (L_d − L_q)·(U/ω)²/(L_d·L_q) at high speed,
+    /// whichever inductance is the larger one; and no last speed.
+    #[test]
+    fn a_motor_without_magnets_has_torque_by_its_saliency() {
+        for inductance in [Dq { d: 41.5e-3, q: 6.2e-3 }, Dq { d: 6.2e-3, q: 41.5e-3 }] {
+            let p = Params { electrical_ratio: 2.0, resistance: 1e-9, inductance, flux_linkage: 0.0 };
+            assert_eq!(p.check(), Ok(()));
+            let bounds = Bounds { current: 31.0, ..BOUNDS };
+            let factor = 1.5 * 2.0 * (inductance.d - inductance.q).abs() / 2.0;
+            for omega_e in [5.0, -5.0, 9_000.0] {
+                let flux = bounds.voltage / omega_e;
+                let expected = factor * (31.0_f64.powi(2)).min(flux * flux / (inductance.d * inductance.q));
+                let found = most(&p, bounds, omega_e);
+                assert!((found.effort / expected - 1.0).abs() < 1e-6, "{omega_e}: {found:?} {expected}");
+            }
+        }
+        let alike = Params { inductance: Dq { d: 6e-3, q: 6e-3 }, flux_linkage: 0.0, ..SALIENT };
+        let refusal = alike.check().unwrap_err().to_string();
+        assert_eq!(refusal, "`flux linkage` must be positive where both inductances are equal, got 0");
+    }
+
     #[test]
     fn beyond_its_last_speed_there_is_nothing() {
         assert_eq!(SALIENT.most_effort(BOUNDS, 1e5), None);

@@ -5,7 +5,7 @@ use crate::field::{Reported, Slot};
 use crate::file;
 use crate::resolve::drive::Known;
 use crate::resolve::motor::Motor;
-use crate::resolve::{Alternative, need, one_of, sensors, task_rate};
+use crate::resolve::{Alternative, estimate, need, one_of, sensors, task_rate};
 use crate::source::Span;
 use servobench_base::{Dq, Rate};
 use servobench_drive::current::Tuning;
@@ -59,6 +59,7 @@ pub(super) fn resolve(
     };
     let d_reference = d_reference(&given.d_reference, known, report)?;
     let operation = operation(given, report)?;
+    has_torque(drive, given, (operation.strategy, d_reference), known, report)?;
     let sensor = sensors::current(&given.sensor, known.base_rate, report)?;
     Ok(Some(CurrentLoop {
         rate: rate.ok_or(Reported)?,
@@ -114,6 +115,37 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
         return Err(Reported);
     }
     Ok(at.value)
+}
+
+/// The motor, and what the drive believes of it, must have torque with the currents that the strategy chooses.
+fn has_torque(
+    drive: &file::Drive,
+    given: &file::Current,
+    (strategy, i_d): (Strategy, f64),
+    known: &Known<'_>,
+    report: &mut Report,
+) -> Result<(), Reported> {
+    let Some(Motor::Pmsm { motor, .. }) = known.motor else { return Ok(()) };
+    let estimates = drive.estimate.given();
+    let believed = estimates.and_then(|given| given.motor.span()).unwrap_or(given.span);
+    for (whose, span, motor) in [
+        ("the motor", given.d_reference.span().unwrap_or(given.span), estimate::of_motor(None, motor)),
+        ("the motor that the drive believes in", believed, estimate::of_motor(estimates, motor)),
+    ] {
+        let has_torque = match strategy {
+            Strategy::DReference => motor.effort_constant(i_d) > 0.0,
+            Strategy::Mtpa => motor.flux_linkage > 0.0 || motor.saliency() != 0.0,
+        };
+        if !has_torque {
+            let psi = motor.flux_linkage;
+            let message =
+                format!("with a flux linkage of {psi} V s {whose} has no torque at a d-axis current of {i_d:.5} A");
+            let help = "a reluctance motor takes `strategy = \"mtpa\"`, or a `d_reference` with which (L_d − L_q)·i_d is above 0";
+            report.error(span, message, help);
+            return Err(Reported);
+        }
+    }
+    Ok(())
 }
 
 fn tuning(given: &file::Current, path: &str, report: &mut Report) -> Result<Tuning, Reported> {

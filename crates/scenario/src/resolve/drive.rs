@@ -275,6 +275,9 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report:
                 Motor::Pmsm { .. } if used.d_reference != 0.0 => {
                     "that is 1.5·p·(ψ + (L_d − L_q)·i_d) times what `d_reference` leaves of `max_current`"
                 }
+                Motor::Pmsm { .. } if used.strategy == Strategy::Mtpa => {
+                    "that is 1.5·p·(ψ + (L_d − L_q)·i_d)·i_q with the i_d of maximum torque per ampere at `max_current`"
+                }
                 Motor::Pmsm { .. } if turns => "that is 1.5·p·ψ·`max_current`",
                 Motor::Pmsm { .. } => "that is 1.5·(π/τ_p)·ψ·`max_current`",
                 _ => "that is `gain` times `limit`",

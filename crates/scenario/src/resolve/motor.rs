@@ -90,6 +90,16 @@ fn pmsm(motor: &file::Motor, encoder: Option<Encoder>, sources: &Sources, report
         resistance: resistance?,
         flux_linkage: flux_linkage?,
     };
+    if params.has_no_torque() {
+        let span = motor.flux_linkage.span().unwrap_or(header);
+        let message = format!(
+            "a `flux_linkage` of 0 V s and equal inductances of {} H leave the motor no torque",
+            params.inductance.d
+        );
+        let help = "a reluctance motor has an `inductance_d` and an `inductance_q` that differ, any other a `flux_linkage` above 0";
+        report.error(span, message, help);
+        return None;
+    }
     let effects = Box::new(motor_effects::resolve(motor, &params, sources, report).ok()?);
     let encoder = sensors::with_commutation(encoder?, &motor.encoder, params.electrical_ratio).ok()?;
     let wiring = wiring(motor, report).ok()?;

@@ -25,6 +25,7 @@ pub(super) fn resolve(
     sources: &Sources,
     report: &mut Report,
 ) -> Result<Effects, Reported> {
+    refuse_without_magnets(motor, params, report)?;
     let cogging = each(&motor.cogging, |one| cogging(one, params.electrical_ratio, report));
     let flux_harmonics = each(&motor.flux_harmonic, |one| flux_harmonic(&one.value));
     let phase_resistance = phase_resistance(motor, report);
@@ -39,6 +40,40 @@ pub(super) fn resolve(
         temperature: temperature?,
         flux_map: flux_map?,
     })
+}
+
+/// Objects to what is given in parts of the magnets' flux linkage where there is none.
+fn refuse_without_magnets(motor: &file::Motor, params: &pmsm::Params, report: &mut Report) -> Result<(), Reported> {
+    if params.flux_linkage > 0.0 {
+        return Ok(());
+    }
+    let mut result = Ok(());
+    for (key, span, why, help) in [
+        (
+            "flux_harmonic",
+            motor.flux_harmonic.span(),
+            "has parts of the magnets' flux linkage, which is 0 V s",
+            "leave it out: a motor without magnets has no such harmonics",
+        ),
+        (
+            "iron_loss",
+            motor.iron_loss.span(),
+            "is the loss of a rotor whose magnets turn without current, and their flux linkage is 0 V s",
+            "leave it out: give such losses as friction of `axis.motor_side`",
+        ),
+        (
+            "saturation",
+            motor.saturation.span(),
+            "is a share of the torque per ampere at i_d = 0, and without magnets there is none",
+            "describe how it saturates by a `flux_map`",
+        ),
+    ] {
+        if let Some(span) = span {
+            report.error(span, format!("`{key}` {why}"), help);
+            result = Err(Reported);
+        }
+    }
+    result
 }
 
 /// All of a list that may be absent.
@@ -220,7 +255,8 @@ fn table(
 fn doubtful(motor: &file::Motor, params: &pmsm::Params, data: &FluxData, map: &FluxMap, report: &mut Report) {
     let Some(span) = motor.flux_map.span() else { return };
     let (of_map, own) = (map.flux(Dq::default()).d, params.flux_linkage);
-    if (of_map - own).abs() > MAGNETS_DIFFER * own {
+    let largest = data.psi_d.iter().fold(0.0, |most: f64, psi| most.max(psi.abs()));
+    if (of_map - own).abs() > MAGNETS_DIFFER * own + f64::EPSILON * largest {
         let message = format!("without current the map has a flux linkage of {of_map} V s, the motor {own} V s");
         report.warning(span, message, "the drive believes the motor's: is the map that of this motor?");
     }

@@ -35,6 +35,41 @@ fn what_chooses_the_current_is_one_thing() {
     says(&current("dead_time_compensation = { dead_time = \"2 us\" }"), &["missing `frequency`"]);
 }
 
+/// A motor without magnets has its torque by different inductances and a current in d; what is a part of the magnets' flux is refused.
+#[test]
+fn a_motor_without_magnets_needs_saliency_and_a_current_in_d() {
+    let motor = |inductance: &str, current: &str, more: &str| {
+        let text = AXIS
+            .replace("inductance = \"3.5 mH\"", inductance)
+            .replace("flux_linkage = \"0.06 V s\"", "flux_linkage = \"0 V s\"")
+            .replace("bandwidth = \"1 kHz\"", &format!("bandwidth = \"1 kHz\"\n{current}"));
+        mistakes(&format!("{text}\n{more}\n"))
+    };
+    let (unlike, alike) = ("inductance_d = \"35 mH\"\ninductance_q = \"6 mH\"", "inductance = \"3.5 mH\"");
+    let mtpa = "strategy = \"mtpa\"";
+    assert_eq!(motor(unlike, mtpa, ""), [""; 0]);
+    assert_eq!(motor(unlike, "d_reference = \"4 Apk\"", ""), [""; 0]);
+    says(
+        &motor(alike, mtpa, ""),
+        &["`flux_linkage` of 0 V s and equal inductances of 0.0035 H", "`inductance_d` and an"],
+    );
+    says(
+        &motor(unlike, "", ""),
+        &["has no torque at a d-axis current of 0", "`strategy = \"mtpa\"`, or a `d_reference`"],
+    );
+    says(&motor(unlike, "d_reference = \"-4 Apk\"", ""), &["no torque in its direction"]);
+    for (key, table) in [
+        ("`iron_loss` is the loss", "[motor.iron_loss]\nspeed = \"3000 rpm\"\neddy = \"6 W\""),
+        ("`flux_harmonic` has parts", "[[motor.flux_harmonic]]\norder = 6\nd = 0.01"),
+        ("`saturation` is a share", "[motor.saturation]\ncurrent = \"10 Apk\"\nshare = 0.9"),
+    ] {
+        says(&motor(unlike, mtpa, table), &[key]);
+    }
+    let believed = "[drive.estimate.motor]\nflux_linkage = \"0 V s\"";
+    says(&with(believed), &["the motor that the drive believes in has no torque"]);
+    says(&with(&believed.replace('0', "-1")), &["`flux_linkage` must be zero or more"]);
+}
+
 #[test]
 fn a_thermal_load_has_one_time() {
     let motor = |keys: &str| with(&format!("[drive.i2t]\nmotor = {{ {keys} }}"));

@@ -239,7 +239,8 @@ fn voltage_for(motor: &pmsm::Params, drive: &Params, torque: f64, speed: f64) ->
         let current = with_the_motor(motor, current);
         i_d = Envelope::new(&current, &State::default(), omega_e).currents(&current, torque).d;
     }
-    let i_q = torque / motor.effort_constant(i_d);
+    // A motor without magnets has no current in d where it has no torque.
+    let i_q = if torque == 0.0 { 0.0 } else { torque / motor.effort_constant(i_d) };
     let u_d = motor.resistance * i_d - omega_e * motor.inductance.q * i_q;
     let u_q = motor.resistance * i_q + omega_e * (motor.inductance.d * i_d + motor.flux_linkage);
     u_d.hypot(u_q)

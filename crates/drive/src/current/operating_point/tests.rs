@@ -197,6 +197,89 @@ fn beyond_the_last_speed_nothing_is_left() {
     assert!((i.d + 9.12).abs() < 1e-12 && i.q.abs() < 1e-12, "{i:?}");
 }
 
+/// A reluctance motor of 6.7 kW without magnets, either axis being the one of the larger inductance.
+fn reluctance(r: f64, d: f64, q: f64) -> Loop {
+    let motor = MotorEstimate { electrical_ratio: 2.0, ..motor(r, d, q, 0.0) };
+    drive(motor, Strategy::Mtpa, 31.0, 540.0)
+}
+
+/// Oracle: τ = K·(L_d − L_q)·i_d·i_q is largest for a current at 45°: |i_d| = |i_q| = √(|τ|/(K·|L_d − L_q|)), i_d with the sign of
+/// L_d − L_q and i_q with that of τ. No torque takes no current, nor does one whose square is below the smallest number.
+#[test]
+fn a_motor_without_magnets_has_both_currents_alike() {
+    for (l_d, l_q) in [(41.5e-3, 6.2e-3), (6.2e-3, 41.5e-3)] {
+        let p = reluctance(0.54, l_d, l_q);
+        assert_eq!(p.check(), Ok(()));
+        let sign = f64::signum(l_d - l_q);
+        let k = 1.5 * 2.0 * (l_d - l_q).abs();
+        assert!((p.max_effort() / (k * 31.0 * 31.0 / 2.0) - 1.0).abs() < 1e-14);
+        for omega in [0.0, 90.0, -90.0] {
+            let envelope = Envelope::new(&p, &State::default(), omega);
+            for effort in [1e-9, 0.3, 20.1, 50.0] {
+                for direction in [1.0, -1.0] {
+                    let i = envelope.currents(&p, direction * effort);
+                    let expected = (effort / k).sqrt();
+                    assert!((i.d * sign / expected - 1.0).abs() < 1e-12, "{l_d} {effort}: {i:?}");
+                    assert!((i.q * direction / expected - 1.0).abs() < 1e-12, "{l_d} {effort}: {i:?}");
+                }
+            }
+            for nothing in [0.0, -0.0] {
+                assert_eq!(envelope.currents(&p, nothing).magnitude().to_bits(), 0.0_f64.to_bits());
+            }
+            // Field weakening finds a d-axis current that suffices by halving what the limit allows.
+            assert!(envelope.currents(&p, 1e-200).magnitude() < 31.0 * 0.5_f64.powi(35));
+        }
+    }
+}
+
+/// Oracles, without resistance: the corner of circle and ellipse, L_d²·i_d² + L_q²·(I² − i_d²) = (U/ω)²; from where it is inside of the
+/// circle the most torque per voltage, L_d·|i_d| = L_q·|i_q| = U/(√2·ω). With the smaller inductance in d that is less i_d than at rest.
+#[test]
+fn the_field_of_a_motor_without_magnets_is_weakened_to_its_voltage() {
+    let (most, ratio) = (31.0_f64, 1.5 * 2.0);
+    for (l_d, l_q) in [(41.5e-3_f64, 6.2e-3_f64), (6.2e-3, 41.5e-3)] {
+        let p = reluctance(LOSSLESS, l_d, l_q);
+        for omega in [250.0_f64, 390.0, 600.0, -1_500.0, 9_000.0] {
+            let u = p.max_voltage / omega.abs();
+            let [at_rest, per_voltage] = [[most / 2.0_f64.sqrt(); 2], [l_d, l_q].map(|l| u / (2.0_f64.sqrt() * l))];
+            let [d, q] = if (l_d * at_rest[0]).hypot(l_q * at_rest[1]) < u {
+                at_rest
+            } else if per_voltage[0].hypot(per_voltage[1]) < most {
+                per_voltage
+            } else {
+                let square = (u * u - l_q * l_q * most * most) / (l_d * l_d - l_q * l_q);
+                [square.sqrt(), (most * most - square).sqrt()]
+            };
+            let exact = ratio * (l_d - l_q).abs() * d * q;
+            let envelope = Envelope::new(&p, &State::default(), omega);
+            for peak in [envelope.forward, envelope.backward] {
+                assert!((peak.effort / exact - 1.0).abs() < 1e-6, "{l_d} {omega}: {peak:?} {d} {exact}");
+            }
+            for share in [1.0, 0.6, 1e-3, -0.6, -1.0] {
+                let i = envelope.currents(&p, share * exact);
+                assert!((torque(&p.motor, i) / (share * exact) - 1.0).abs() < 1e-6, "{omega} {share}: {i:?}");
+                assert!(p.motor.steady_voltage(i, omega).magnitude() < p.max_voltage * (1.0 + 1e-6), "{omega} {share}");
+                assert!(i.magnitude() < most * (1.0 + 1e-12));
+            }
+        }
+    }
+}
+
+/// Without magnets the d axis needs a current for the effort that the strategy gives; without saliency there is none.
+#[test]
+fn a_motor_without_any_torque_is_refused() {
+    let p = reluctance(0.54, 41.5e-3, 6.2e-3);
+    let of = |d_reference: f64| Loop { operation: Params::default(), d_reference, ..p };
+    assert_eq!(of(8.0).check(), Ok(()));
+    for refused in [of(0.0), of(-8.0), reluctance(0.54, 6e-3, 6e-3)] {
+        let said = refused.check().unwrap_err().to_string();
+        assert!(
+            said.contains("leave the motor some torque") || said.contains("flux linkage` must be above 0"),
+            "{said}"
+        );
+    }
+}
+
 /// Oracle: dU/dt = α·(U − |u|): what exceeds it by 10 V for 3 ms at 20 Hz takes 10·2π·20·3e-3 V; it never rises above 0 and ends at
 /// half.
 #[test]
