@@ -107,7 +107,7 @@ fn previewed(jobs: &[Job], depth: Depth) -> Result<Option<Preview>, BuildError> 
     let demand = Demand::of(scenario, chain.as_ref(), program.run)?;
     let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
     let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
-    let engines = EngineSteps::of(scenario, modes.as_ref(), &names);
+    let engines = EngineSteps::of(scenario, modes.as_ref(), &names, program.run);
     let stability = LoopStability::of(scenario, depth)?;
     let mut doubts = program.doubts(scenario);
     doubts.extend(stability.doubts());
