@@ -36,5 +36,5 @@ pub use preview::{
     PlannedProgram, Preview, VoltageDemand, check_warnings, preview,
 };
 pub use requirements::instability;
-pub use usage::{LoadMode, Usage, limits_of_set_point, load_mode};
+pub use usage::{LoadMode, Usage, limits_of_set_point, load_mode, longest_move};
 pub use worker::{RunLimits, WorkerCommand, WorkerError, Workers};

@@ -70,6 +70,19 @@ pub fn load_mode(scenario: &Scenario) -> Option<LoadMode> {
     Some(LoadMode { table, is_alone: body.name == name, link, frequency, damping_ratio })
 }
 
+/// Distance of the longest move of `scenario` from rest to rest by limits (m or rad); `None` where there is none.
+#[must_use]
+pub fn longest_move(scenario: &Scenario) -> Option<f64> {
+    let distances = scenario.program.iter().filter_map(|step| match step {
+        Step::Move(step) => match &step.request.generator {
+            Generator::PointToPoint(request) => Some(request.distance.abs()),
+            Generator::Replanning(_) | Generator::Rockwell(_) | Generator::Table(_) => None,
+        },
+        Step::Wait(_) => None,
+    });
+    distances.reduce(f64::max).filter(|distance| *distance > 0.0)
+}
+
 /// Velocity, acceleration, jerk and snap that the moves of a scenario are limited to, of each the largest; `None` where none goes from rest to
 /// rest by limits.
 #[must_use]
@@ -100,6 +113,7 @@ mod tests {
         let scenario = servobench_scenario::parse(name, text, None).unwrap_or_else(|e| panic!("{e}")).scenario;
         let mode = load_mode(&scenario).unwrap();
         assert_eq!((mode.table, mode.is_alone), ("axis.load", true));
+        assert!((longest_move(&scenario).unwrap() - 0.25).abs() < 1e-12);
         assert!((mode.frequency - 17.5).abs() < 0.01 && (mode.damping_ratio - 0.004).abs() < 1e-4, "{mode:?}");
         let limits = limits_of_set_point(&scenario).unwrap();
         assert!((limits.velocity - 0.5).abs() < 1e-12 && (limits.jerk - 50.0).abs() < 1e-12, "{limits:?}");
