@@ -1,8 +1,10 @@
 //! From a question to an answer that was verified.
+use crate::explore::{Effort, best, sown};
 use crate::machines::Machines;
-use crate::refine::refined;
+use crate::merit::Merit;
+use crate::prices::{TIGHTER, WIDER, fastest, priced, prices};
 use crate::search::{Allowance, Bench, Found, Planned, SAME, Search, Worst};
-use crate::set_point::{Family, SetPoint, grid};
+use crate::set_point::{Family, SetPoint};
 use crate::verify::{Plan, Verification, needed, on_draws, on_grid, shown_by};
 use servobench_motion::Limits;
 use servobench_sweep::SweepError;
@@ -15,6 +17,8 @@ pub struct Question {
     pub families: Vec<Family>,
     /// The largest limits that a set-point may have; infinite where none is given.
     pub ceiling: Limits,
+    /// Distance of the longest move (m or rad).
+    pub distance: f64,
     /// The machines on which it has to do.
     pub machines: Machines,
     /// Natural frequency of the mode that rings (Hz), which says how fine lobes are.
@@ -130,35 +134,38 @@ pub enum AdviseError {
     Draws(#[from] SweepError),
 }
 
-/// Set-points that are at most so much slower than the best on the coarse grid are refined, so many of them and of each family.
-const NEAR: f64 = 1.06;
-const REFINED: usize = 12;
-const OF_EACH_FAMILY: usize = 4;
-/// The same where a price is asked for.
-const REFINED_FOR_A_PRICE: usize = 2;
+/// The search begins again where machines that have joined make the best so many times slower.
+const SLOWER: f64 = 1.01;
 /// Rounds of search and verification.
 const ROUNDS: u32 = 16;
 /// From this round on draws may fail, as many as the promised share allows.
 const PATIENT: u32 = 8;
-/// Factors of the priced limit, in ascending order.
-const TIGHTER: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
-const WIDER: [f64; 2] = [1.1, 2.0];
+/// Other kinds are told that take so many times the best time at most.
+const WORTH: f64 = 1.06;
+/// So many set-points of a kind are tried on machines that have joined.
+const TRIES: usize = 4;
 
 /// The fastest set-point that keeps all limits on the machines of the box.
 ///
 /// # Errors
 /// [`AdviseError`]
 pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, AdviseError> {
-    let mut machines = question.machines.corners();
-    machines.push(question.machines.middle());
-    let mut search = Search::new(bench, machines);
-    let mut planned = candidates(question, &mut search)?;
+    let mut search = Search::new(bench, question.machines.corners());
     let allowed = vec![1.0; question.limits];
-    let (mut shown, mut looks) = (0.0, 0);
+    let (sifted, planned) = sown(question, &mut search, &allowed)?;
+    let (mut shown, mut looks, mut before) = (0.0, 0, f64::INFINITY);
     for round in 0..ROUNDS {
-        let found = best(question, &mut search, &planned, &allowed, REFINED);
+        let known = search.known().to_vec();
+        let mut found =
+            if round == 0 { Vec::new() } else { best(question, &mut search, &known, &allowed, Effort::AGAIN) };
+        if found.first().is_none_or(|found| found.worst.time > SLOWER * before) {
+            // Machines that have joined leave another set-point the best.
+            let from = [known, sifted.clone()].concat();
+            found = best(question, &mut search, &from, &allowed, Effort::of_first(question.families.len()));
+        }
+        before = found.first().map_or(before, |found| found.worst.time);
         let Some(best) = found.first().cloned() else {
-            return Err(AdviseError::NoneKeeps { planned: planned.len() });
+            return Err(AdviseError::NoneKeeps { planned });
         };
         // Draws that have helped to find it prove nothing.
         let seed = question.seed.wrapping_add(u64::from(round));
@@ -171,11 +178,9 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
             search.add_some(&off_grid);
             continue;
         }
-        let tighter = priced(question, &mut search, &planned, &TIGHTER);
-        if let Some(faster) = fastest(&tighter).filter(|found| found.worst.time < best.worst.time - SAME) {
-            // What keeps a tighter limit keeps this one, too: the search begins again with it.
-            let place = planned.partition_point(|one| one.duration <= faster.planned.duration);
-            planned.insert(place, faster.planned);
+        let tighter = priced(question, &mut search, &TIGHTER);
+        if fastest(&tighter).is_some_and(|found| found.worst.time < best.worst.time - SAME) {
+            // What keeps a tighter limit keeps this one, too: the search begins again with it, which it knows now.
             continue;
         }
         let (verification, failed) = on_draws(&mut search, &best.planned, &grid, &allowed, plan)?;
@@ -186,7 +191,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
             search.add_some(&failed);
             continue;
         }
-        let wider = priced(question, &mut search, &planned, &WIDER);
+        let wider = priced(question, &mut search, &WIDER);
         let Planned { point, duration } = best.planned;
         let worst = worse(&best.worst, &verification.worst);
         return Ok(Advice {
@@ -195,53 +200,12 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
             prices: prices(&tighter, &wider, best.worst.time, worst.time),
             worst,
             verification,
-            others: others(&found, point.family),
+            others: others(question, &mut search, &allowed, &best),
             runs: search.runs(),
-            planned: planned.len(),
+            planned,
         });
     }
     Err(AdviseError::NotVerified { wanted: 100.0 * question.share, found: 100.0 * shown, rounds: ROUNDS })
-}
-
-/// All set-points of the coarse grid.
-fn candidates(question: &Question, search: &mut Search<'_>) -> Result<Vec<Planned>, AdviseError> {
-    let Limits { velocity, acceleration, .. } = question.ceiling;
-    let fast = SetPoint { family: 0, limits: [velocity, acceleration, f64::INFINITY, f64::INFINITY] };
-    let of_second = question.families.iter().position(|family| family.order == 2);
-    let fast = SetPoint { family: of_second.unwrap_or(0), ..fast };
-    let shortest = search.planned(&[fast]).first().ok_or(AdviseError::NoPlan)?.duration;
-    let all: Vec<SetPoint> = question
-        .families
-        .iter()
-        .enumerate()
-        .flat_map(|(index, family)| grid(index, family, &question.ceiling, shortest))
-        .collect();
-    let planned = search.planned(&all);
-    if planned.is_empty() { Err(AdviseError::NoPlan) } else { Ok(planned) }
-}
-
-/// The best set-points, refined, the fastest first.
-fn best(
-    question: &Question,
-    search: &mut Search<'_>,
-    planned: &[Planned],
-    allowed: &Allowance,
-    most: usize,
-) -> Vec<Found> {
-    let coarse = search.fastest(planned, allowed, NEAR);
-    let mut of_family = vec![0; question.families.len()];
-    let mut starts = Vec::new();
-    for found in coarse {
-        let count = &mut of_family[found.planned.point.family];
-        if *count < OF_EACH_FAMILY && starts.len() < most {
-            *count += 1;
-            starts.push(found);
-        }
-    }
-    let refine = |found| refined(search, &question.families, &question.ceiling, allowed, found);
-    let mut all: Vec<Found> = starts.into_iter().map(refine).collect();
-    all.sort_by(|one, other| one.worst.time.total_cmp(&other.worst.time));
-    all
 }
 
 /// Refuses a promise that the draws of a question do not show, were they all clean.
@@ -258,53 +222,27 @@ pub fn refuse_impossible(question: &Question) -> Result<(), AdviseError> {
     Ok(())
 }
 
-/// The best of each family but one.
-fn others(found: &[Found], but: usize) -> Vec<(SetPoint, f64)> {
+/// The best that is known of each family but that of `best`, if it takes little more time: on the machines of the search.
+fn others(question: &Question, search: &mut Search<'_>, allowed: &Allowance, best: &Found) -> Vec<(SetPoint, f64)> {
+    let most = WORTH * best.worst.time;
     let mut others: Vec<(SetPoint, f64)> = Vec::new();
-    for one in found.iter().filter(|one| one.planned.point.family != but) {
-        if others.iter().all(|(point, _)| point.family != one.planned.point.family) {
-            others.push((one.planned.point, one.worst.time));
+    for family in (0..question.families.len()).filter(|family| *family != best.planned.point.family) {
+        // Machines may have joined since it was run.
+        for _ in 0..TRIES {
+            let Some(fastest) = search.fastest_known(allowed, Some(family)) else { break };
+            match search.on_all(&[fastest], allowed, most, Merit::time_kept).pop() {
+                Some(found) => {
+                    others.push((found.planned.point, found.worst.time));
+                    break;
+                }
+                // It takes too long, and so do all others.
+                None if search.known_merit(&fastest, allowed).keeps() => break,
+                None => {}
+            }
         }
     }
+    others.sort_by(|one, other| one.1.total_cmp(&other.1));
     others
-}
-
-/// The fastest with other values of the priced limit, each with its factor.
-fn priced(
-    question: &Question,
-    search: &mut Search<'_>,
-    planned: &[Planned],
-    factors: &[f64],
-) -> Vec<(f64, Option<Found>)> {
-    let Some(priced) = question.priced else { return Vec::new() };
-    let with = |factor: &f64| {
-        let mut allowed = vec![1.0; question.limits];
-        allowed[priced] = *factor;
-        let found = best(question, search, planned, &allowed, REFINED_FOR_A_PRICE);
-        (*factor, found.into_iter().next())
-    };
-    factors.iter().map(with).collect()
-}
-
-/// The fastest of all.
-fn fastest(priced: &[(f64, Option<Found>)]) -> Option<&Found> {
-    let found = priced.iter().filter_map(|(_, found)| found.as_ref());
-    found.min_by(|one, other| one.worst.time.total_cmp(&other.worst.time))
-}
-
-/// What tighter and wider limits cost and save beside an advice that takes `own` (s) on the machines of the search and `worst` on those of
-/// the verification, too. What keeps a tighter limit keeps a wider one, too.
-fn prices(tighter: &[(f64, Option<Found>)], wider: &[(f64, Option<Found>)], own: f64, worst: f64) -> Vec<Price> {
-    let mut fastest = f64::INFINITY;
-    let mut prices = Vec::new();
-    for (all, known) in [(tighter, f64::INFINITY), (wider, own)] {
-        fastest = fastest.min(known);
-        for (factor, found) in all {
-            fastest = found.as_ref().map_or(fastest, |found| fastest.min(found.worst.time));
-            prices.push(Price { factor: *factor, time: fastest.is_finite().then_some(worst + (fastest - own)) });
-        }
-    }
-    prices
 }
 
 /// The worse of both in each respect.

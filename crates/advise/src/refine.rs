@@ -1,51 +1,230 @@
-//! The neighbours of a set-point, nearer and nearer.
-use crate::search::{Allowance, Found, Search};
-use crate::set_point::{Family, SetPoint};
-use servobench_motion::Limits;
+//! The best set-point near another one: step by step to where a linear model has it.
+use crate::merit::Merit;
+use crate::search::{Allowance, Found, Planned, Reading, Search};
+use crate::set_point::{Room, SetPoint};
 
-/// The first step to a neighbour, and the last, as parts of a value.
-const STEPS: (f64, f64) = (0.08, 0.0008);
+/// The largest step and the smallest, as parts of a box.
+pub(crate) type Steps = (f64, f64);
 
-/// The best near `start`: neighbours in every direction of velocity, acceleration and the times of their rise, until there is none that is
-/// faster at the smallest step.
+/// Models, at most.
+const MOST: usize = 40;
+/// After so many models a set-point that promises no less than the bound is given up.
+const PATIENCE: usize = 2;
+/// The smallest step of what does not keep its limits yet.
+const FINEST: f64 = 0.0003;
+/// A short box moves as if it were longer by this part of the longest.
+const FLOOR: f64 = 0.1;
+/// What is left of a step that has not led to anything better, and what a step that has grows by.
+const SHORTER: f64 = 0.4;
+const LONGER: f64 = 1.5;
+/// A model is made anew for steps so many times smaller.
+const REACH: f64 = 6.0;
+/// The difference by which a slope is found, as part of the step, and the smallest, which five digits still show.
+const DIFFERENCE: (f64, f64) = (0.25, 0.0004);
+/// Machines with at least this part of the largest use are in the model from the start.
+const BINDING: f64 = 0.7;
+/// The part by which boxes are made longer until the limits are kept, twice as much each time, and how often at most.
+const STRETCHES: (f64, i32) = (0.002, 11);
+/// What the model allows of a limit, so that its own error does not carry the step beyond.
+const WITHIN: f64 = 0.999;
+/// The best of the model is looked for on a grid of so many positions along each box, which is made finer by half so many times.
+const POSITIONS: usize = 5;
+const HALVINGS: i32 = 8;
+
+/// The best near `start`, which need not keep its limits. Limits that bind on several machines make kinks, along which no single box can be made
+/// shorter: the model sees all of them. A machine on which a step fails joins the model.
 pub(crate) fn refined(
     search: &mut Search<'_>,
-    families: &[Family],
-    ceiling: &Limits,
+    room: &Room<'_>,
+    order: u32,
     allowed: &Allowance,
     start: Found,
+    (first, last): Steps,
+    bound: f64,
 ) -> Found {
-    let (mut best, (mut step, last)) = (start, STEPS);
-    while step >= last {
-        let around = neighbours(&best.planned.point, families, ceiling, step);
-        let planned = search.planned(&around);
-        match search.fastest_below(&planned, allowed, 1.0, best.worst.time).into_iter().next() {
-            Some(better) => best = better,
-            None => step *= 0.5,
+    let (mut best, mut step) = (start, first);
+    for k in 0..MOST {
+        if k >= PATIENCE && best.merit.promise() > bound {
+            break;
+        }
+        let uses = search.uses(&best.planned, allowed);
+        let most = uses.iter().map(|one| one.1).fold(0.0, f64::max);
+        let mut machines: Vec<usize> = uses.iter().filter(|one| one.1 >= BINDING * most).map(|one| one.0).collect();
+        let mut model = Model::new(room, order, &best);
+        model.add(search, room, allowed, &machines, step);
+        let floor = if best.merit.keeps() { last } else { last.min(FINEST) };
+        let coarsest = floor.max(step / REACH);
+        while step >= coarsest {
+            let point = model.best(room, step);
+            let planned = if point.key() == best.planned.point.key() { None } else { search.planned(&[point]).pop() };
+            let Some(planned) = planned else {
+                step *= SHORTER;
+                continue;
+            };
+            if let Some(better) = search.better(&planned, allowed, &best) {
+                best = better;
+                step = first.min(LONGER * step);
+                break;
+            }
+            let uses = search.uses(&planned, allowed).into_iter();
+            let failed = uses.filter(|(machine, over)| *over > 1.0 && !machines.contains(machine)).map(|one| one.0);
+            let failed: Vec<usize> = failed.collect();
+            if failed.is_empty() {
+                // What jumps, as a time to settle does, no model sees.
+                let shorter = if best.merit.keeps() { model.shorter(room, step) } else { Vec::new() };
+                let shorter = search.planned(&shorter);
+                if let Some(better) = shorter.iter().find_map(|one| search.better(one, allowed, &best)) {
+                    best = better;
+                    break;
+                }
+                step *= SHORTER;
+            }
+            model.add(search, room, allowed, &failed, step);
+            machines.extend(failed);
+        }
+        if step < floor
+            && !best.merit.keeps()
+            && best.planned.duration < bound
+            && let Some(kept) = lengthened(search, room, order, allowed, &best)
+        {
+            best = kept;
+            step = first;
+        }
+        if step < floor {
+            break;
         }
     }
     best
 }
 
-/// Set-points whose velocity, acceleration and times are each a step less, the same, or a step more.
-fn neighbours(point: &SetPoint, families: &[Family], ceiling: &Limits, step: f64) -> Vec<SetPoint> {
-    let Some(family) = families.get(point.family) else { return Vec::new() };
-    let dimensions = family.order as usize;
-    let own = point.times();
-    let mut all = Vec::new();
-    for code in 0..3_usize.pow(family.order) {
-        let mut times = own;
-        let mut rest = code;
-        for time in times.iter_mut().take(dimensions) {
-            *time *= [1.0 / (1.0 + step), 1.0, 1.0 + step][rest % 3];
-            rest /= 3;
-        }
-        let near = SetPoint::by_times(point.family, family.order, times).below(ceiling);
-        if near.is_below(ceiling) && near.key() != point.key() {
-            all.push(near);
+/// `found` with all boxes as much longer as it takes to keep the limits; `None` where that does not help.
+fn lengthened(
+    search: &mut Search<'_>,
+    room: &Room<'_>,
+    order: u32,
+    allowed: &Allowance,
+    found: &Found,
+) -> Option<Found> {
+    let own = found.planned.point.boxes(room.distance);
+    (0..STRETCHES.1).find_map(|k| {
+        let factor = 1.0 + STRETCHES.0 * 2_f64.powi(k);
+        let point = room.point(found.planned.point.family, order, own.map(|length| length * factor));
+        let planned = search.planned(&[point]);
+        search.on_all(&planned, allowed, f64::INFINITY, Merit::time_kept).pop()
+    })
+}
+
+/// A figure of a run that goes linearly with the lengths of the boxes.
+struct Linear {
+    value: f64,
+    slopes: [f64; 4],
+}
+
+impl Linear {
+    fn at(&self, moved: &[f64; 4]) -> f64 {
+        self.value + self.slopes.iter().zip(moved).map(|(slope, moved)| slope * moved).sum::<f64>()
+    }
+}
+
+/// All uses of all limits, and all times to settle, near a set-point.
+struct Model<'f> {
+    order: u32,
+    found: &'f Found,
+    own: [f64; 4],
+    uses: Vec<Linear>,
+    settling: Vec<Linear>,
+}
+
+impl<'f> Model<'f> {
+    fn new(room: &Room<'_>, order: u32, found: &'f Found) -> Self {
+        let own = found.planned.point.boxes(room.distance);
+        Self { order, found, own, uses: Vec::new(), settling: Vec::new() }
+    }
+
+    /// How far a box moves in a step of one.
+    fn scale(&self, k: usize) -> f64 {
+        self.own[k] + FLOOR * self.own[0]
+    }
+
+    /// From now on these machines count, too.
+    fn add(&mut self, search: &mut Search<'_>, room: &Room<'_>, allowed: &Allowance, machines: &[usize], step: f64) {
+        let Planned { point, .. } = self.found.planned;
+        let part = (DIFFERENCE.0 * step).max(DIFFERENCE.1);
+        let longer = |k: usize| {
+            let mut boxes = self.own;
+            boxes[k] += part * self.scale(k);
+            room.point(point.family, self.order, boxes)
+        };
+        let points: Vec<SetPoint> = (0..self.order as usize).map(longer).collect();
+        for machine in machines {
+            let base = figures(search.reading(&self.found.planned, *machine), allowed, self.found.planned.duration);
+            let mut slopes = vec![[0.0; 4]; base.len()];
+            for (k, point) in points.iter().enumerate() {
+                let Some(planned) = search.planned(&[*point]).pop() else { continue };
+                let figures = figures(search.reading(&planned, *machine), allowed, planned.duration);
+                // A longer box makes those longer that have to hold it.
+                let moved: Vec<f64> =
+                    point.boxes(room.distance).iter().zip(self.own).map(|(one, own)| one - own).collect();
+                for ((slopes, figure), base) in slopes.iter_mut().zip(figures).zip(&base) {
+                    let outer: f64 = (0..k).map(|outer| slopes[outer] * moved[outer]).sum();
+                    slopes[k] = (figure - base - outer) / moved[k];
+                }
+            }
+            let mut all = base.into_iter().zip(slopes).map(|(value, slopes)| Linear { value, slopes });
+            self.settling.extend(all.next().filter(|one| one.value.is_finite()));
+            self.uses.extend(all.filter(|one| one.value.is_finite()));
         }
     }
-    all.sort_by_key(SetPoint::key);
-    all.dedup_by_key(|point| point.key());
-    all
+
+    /// How good the model has `boxes`.
+    fn penalised(&self, boxes: &[f64; 4]) -> f64 {
+        let moved: [f64; 4] = std::array::from_fn(|k| boxes[k] - self.own[k]);
+        let settling = self.settling.iter().map(|one| one.at(&moved)).fold(0.0, f64::max);
+        let over = self.uses.iter().map(|one| one.at(&moved).abs()).fold(WITHIN, f64::max) / WITHIN;
+        Merit { time: self.found.planned.duration + moved.iter().sum::<f64>() + settling, over }.penalised()
+    }
+
+    /// Set-points with one box a step shorter.
+    fn shorter(&self, room: &Room<'_>, step: f64) -> Vec<SetPoint> {
+        let with = |k: usize| {
+            let mut boxes = self.own;
+            boxes[k] -= step * self.scale(k);
+            room.point(self.found.planned.point.family, self.order, boxes)
+        };
+        (0..self.order as usize).map(with).collect()
+    }
+
+    /// The best of the model within a step.
+    fn best(&self, room: &Room<'_>, step: f64) -> SetPoint {
+        let count = self.order as usize;
+        let mut centre = self.own;
+        for halving in 0..HALVINGS {
+            let finer = 0.5_f64.powi(halving);
+            let from = centre;
+            for code in 0..POSITIONS.pow(self.order) {
+                let mut rest = code;
+                let boxes = std::array::from_fn(|k| {
+                    if k >= count {
+                        return 0.0;
+                    }
+                    let half = (POSITIONS / 2) as f64;
+                    let part = ((rest % POSITIONS) as f64 - half) / half;
+                    rest /= POSITIONS;
+                    let room = step * self.scale(k);
+                    (from[k] + part * finer * room).clamp(self.own[k] - room, self.own[k] + room)
+                });
+                let boxes = room.fitted(self.order, boxes);
+                if self.penalised(&boxes) < self.penalised(&centre) {
+                    centre = boxes;
+                }
+            }
+        }
+        room.point(self.found.planned.point.family, self.order, centre)
+    }
+}
+
+/// The time to settle, and the parts of what is allowed that a run uses of each limit.
+fn figures(reading: &Reading, allowed: &Allowance, duration: f64) -> Vec<f64> {
+    let uses = reading.usage.iter().zip(allowed).map(|(usage, most)| usage / most);
+    std::iter::once(reading.time - duration).chain(uses).collect()
 }

@@ -1,4 +1,5 @@
 //! Set-points that may be chosen.
+use crate::best::Question;
 use servobench_motion::Limits;
 
 /// A kind of set-point.
@@ -24,71 +25,32 @@ pub struct SetPoint {
 }
 
 /// Significant digits of a limit.
-const DIGITS: usize = 4;
-/// What rounding or a step may carry a limit beyond its ceiling by: it then stands at it.
-const BEYOND: f64 = 1.1;
+const DIGITS: usize = 5;
 
 /// The number with [`DIGITS`] significant digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 
-/// Levels of a limit from its largest value down: how many, and their ratio.
-type Levels = (i32, f64);
-
-/// The levels of a coarse grid.
-struct Grid {
-    velocities: Levels,
-    accelerations: Levels,
-    /// Times in which acceleration and jerk rise, from the longest down.
-    rises: Levels,
-}
-
-/// Of second and third order the lengths of all boxes are near to those with which a mode is met at a zero; the fourth order has neighbours
-/// enough to be refined from, and a shaper meets the mode by itself.
-const FINE: Grid = Grid { velocities: (10, 0.975), accelerations: (20, 0.97), rises: (50, 1.1) };
-const OF_FOURTH_ORDER: Grid = Grid { velocities: (6, 0.96), accelerations: (14, 0.95), rises: (26, 1.2) };
-const WITH_SHAPER: Grid = Grid { velocities: (3, 0.95), accelerations: (6, 0.92), rises: (12, 1.4) };
-/// Accelerations far below the largest, as parts of it: what a weak axis follows.
-const SLOW: [f64; 4] = [0.4, 0.25, 0.15, 0.08];
-/// The longest rise, as part of the shortest move of second order.
-const LONGEST_RISE: f64 = 0.5;
-
 impl SetPoint {
-    /// By velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; of those the first `order − 2` count. Limits
-    /// are rounded to four significant digits, so that what was run is what is told.
+    /// By the lengths (s) of the boxes that a move over `distance` is the convolution of, the longest first: d through boxes T₀, T₁, T₂, T₃ has
+    /// v = d/T₀, a = v/T₁, j = a/T₂, s = j/T₃. The first `order` count. Limits are rounded to five significant digits, so that what was run is
+    /// what is told.
     #[must_use]
-    pub fn by_times(family: usize, order: u32, [velocity, acceleration, rise, rise_of_jerk]: [f64; 4]) -> Self {
+    pub fn by_boxes(family: usize, order: u32, distance: f64, [cruise, ramp, rise, rise_of_jerk]: [f64; 4]) -> Self {
+        let velocity = distance / cruise;
+        let acceleration = velocity / ramp;
         let jerk = if order > 2 { acceleration / rise } else { f64::INFINITY };
         let snap = if order > 3 { jerk / rise_of_jerk } else { f64::INFINITY };
         Self { family, limits: [velocity, acceleration, jerk, snap].map(rounded) }
     }
 
-    /// Velocity (SI), acceleration (SI), and the times (s) in which acceleration and jerk rise; 0 where they jump.
+    /// The lengths (s) of the boxes of a move over `distance`; 0 above the order.
     #[must_use]
-    pub fn times(&self) -> [f64; 4] {
+    pub fn boxes(&self, distance: f64) -> [f64; 4] {
         let [velocity, acceleration, jerk, snap] = self.limits;
-        [velocity, acceleration, acceleration / jerk, if jerk.is_finite() { jerk / snap } else { 0.0 }]
-    }
-
-    /// The same with what rounding or a step has carried beyond the ceiling at it.
-    pub(crate) fn below(self, ceiling: &Limits) -> Self {
-        let Limits { velocity, acceleration, jerk, snap } = *ceiling;
-        let most = [velocity, acceleration, jerk, snap];
-        let limits = std::array::from_fn(|k| {
-            let limit = self.limits[k];
-            // What is infinite belongs to a higher order.
-            if limit.is_finite() && limit <= BEYOND * most[k] { limit.min(most[k]) } else { limit }
-        });
-        Self { limits, ..self }
-    }
-
-    /// Whether no limit is above the ceiling.
-    pub(crate) fn is_below(&self, ceiling: &Limits) -> bool {
-        let Limits { velocity, acceleration, jerk, snap } = *ceiling;
-        let most = [velocity, acceleration, jerk, snap];
-        // An order below three has no jerk to bound.
-        self.limits.iter().zip(most).all(|(limit, most)| limit.is_infinite() || *limit <= most)
+        let above = |lower: f64, upper: f64| if upper.is_finite() { lower / upper } else { 0.0 };
+        [distance / velocity, velocity / acceleration, above(acceleration, jerk), above(jerk, snap)]
     }
 
     /// Bits by which it is told from others.
@@ -97,34 +59,89 @@ impl SetPoint {
     }
 }
 
-/// All set-points of a family on a coarse grid; `shortest` is the duration of the move of second order at the ceiling (s).
-pub(crate) fn grid(index: usize, family: &Family, ceiling: &Limits, shortest: f64) -> Vec<SetPoint> {
-    let Grid { velocities, accelerations, rises } = match family.order {
-        _ if family.shaper.is_some() => WITH_SHAPER,
-        4 => OF_FOURTH_ORDER,
-        _ => FINE,
+/// The moves of a question.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Room<'a> {
+    /// Distance of the longest one (m or rad).
+    pub(crate) distance: f64,
+    /// The largest limits.
+    pub(crate) ceiling: &'a Limits,
+}
+
+/// The shortest box, as part of the longest: what is shorter changes nothing.
+const SHORTEST: f64 = 1e-3;
+
+/// Halvings by which a length is found that holds boxes which grow as it falls: to a millionth.
+const HALVINGS: u32 = 20;
+
+/// `boxes` as long as they have to be, so that `reached` (d, v, a or j) divided by them stays below `most`, and each holds all after it.
+fn fit(fitted: &mut [f64], boxes: &[f64], most: &[f64], reached: f64, shortest: f64) {
+    let (Some(length), Some(most_of_it)) = (boxes.first(), most.first()) else { return };
+    let mut inside = |length: f64| {
+        fit(&mut fitted[1..], &boxes[1..], &most[1..], reached / length, shortest);
+        fitted[1..].iter().sum::<f64>()
     };
-    let levels = |top: f64, (count, ratio): Levels| (0..count).map(move |k| top * ratio.powi(k));
-    let rises = || levels(LONGEST_RISE * shortest, (rises.0, 1.0 / rises.1));
-    let mut all = Vec::new();
-    for velocity in levels(ceiling.velocity, velocities) {
-        let slow = SLOW.map(|part| part * ceiling.acceleration);
-        for acceleration in levels(ceiling.acceleration, accelerations).chain(slow) {
-            let add = |all: &mut Vec<SetPoint>, rise, rise_of_jerk| {
-                let times = [velocity, acceleration, rise, rise_of_jerk];
-                let point = SetPoint::by_times(index, family.order, times).below(ceiling);
-                all.extend(point.is_below(ceiling).then_some(point));
-            };
-            match family.order {
-                2 => add(&mut all, 0.0, 0.0),
-                3 => rises().for_each(|rise| add(&mut all, rise, 0.0)),
-                _ => rises().for_each(|rise| {
-                    rises().filter(|other| *other <= rise).for_each(|other| add(&mut all, rise, other));
-                }),
-            }
+    let mut low = length.max(reached / most_of_it).max(shortest);
+    let mut high = inside(low);
+    if high <= low {
+        fitted[0] = low;
+        return;
+    }
+    // A longer box needs shorter ones inside it.
+    if inside(high) < high {
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if inside(middle) > middle { low = middle } else { high = middle }
+        }
+        inside(high);
+    }
+    fitted[0] = high;
+}
+
+impl<'q> Room<'q> {
+    pub(crate) const fn of(question: &'q Question) -> Self {
+        Self { distance: question.distance, ceiling: &question.ceiling }
+    }
+
+    /// The shortest that all boxes together may be (s).
+    pub(crate) fn shortest(&self, order: u32) -> f64 {
+        self.fitted(order, [0.0; 4]).iter().sum()
+    }
+
+    /// `boxes`, of which the first `order` count, as long as they have to be: that the ceiling is kept, and that all limits are reached (T₀ ≥ T₁ +
+    /// T₂ + T₃, T₁ ≥ T₂ + T₃, T₂ ≥ T₃).
+    pub(crate) fn fitted(&self, order: u32, boxes: [f64; 4]) -> [f64; 4] {
+        let Limits { velocity, acceleration, jerk, snap } = *self.ceiling;
+        let most = [velocity, acceleration, jerk, snap];
+        let mut fitted = [0.0; 4];
+        let shortest = SHORTEST * boxes[0].max(self.distance / velocity);
+        let count = order as usize;
+        fit(&mut fitted[..count], &boxes[..count], &most[..count], self.distance, shortest);
+        fitted
+    }
+
+    /// The set-point with these boxes, as long as they have to be.
+    pub(crate) fn point(&self, index: usize, order: u32, boxes: [f64; 4]) -> SetPoint {
+        let Limits { velocity, acceleration, jerk, snap } = *self.ceiling;
+        let most = [velocity, acceleration, jerk, snap];
+        let SetPoint { family, limits } = SetPoint::by_boxes(index, order, self.distance, self.fitted(order, boxes));
+        // Rounding may carry a limit beyond the ceiling; what is infinite belongs to a higher order.
+        SetPoint {
+            family,
+            limits: std::array::from_fn(|k| if limits[k].is_finite() { limits[k].min(most[k]) } else { limits[k] }),
         }
     }
-    all
+
+    /// The length of all boxes of a set-point together (s): that of its profile.
+    pub(crate) fn length(&self, point: &SetPoint) -> f64 {
+        point.boxes(self.distance).iter().sum()
+    }
+
+    /// Whether both are of one kind and no box of one differs from that of the other by more than `part` of it.
+    pub(crate) fn are_near(&self, one: &SetPoint, other: &SetPoint, part: f64) -> bool {
+        let boxes = one.boxes(self.distance).into_iter().zip(other.boxes(self.distance));
+        one.family == other.family && boxes.into_iter().all(|(one, other)| (one - other).abs() <= part * one.max(other))
+    }
 }
 
 #[cfg(test)]
@@ -136,34 +153,32 @@ mod tests {
     }
 
     #[test]
-    fn limits_and_times_say_the_same() {
-        let times = [0.5, 4.0, 0.08, 0.05];
-        let point = SetPoint::by_times(0, 4, times);
-        assert!(is_same(&point.limits, &[0.5, 4.0, 50.0, 1000.0]), "{point:?}");
-        assert!(is_same(&point.times(), &times), "{point:?}");
-        let third = SetPoint::by_times(0, 3, times);
-        assert!(third.limits[3].is_infinite() && is_same(&third.times(), &[0.5, 4.0, 0.08, 0.0]));
-        assert!(is_same(&SetPoint::by_times(0, 2, times).times(), &[0.5, 4.0, 0.0, 0.0]));
+    fn limits_and_boxes_agree() {
+        let boxes = [0.5, 0.125, 0.08, 0.04];
+        let point = SetPoint::by_boxes(0, 4, 0.25, boxes);
+        assert!(is_same(&point.limits, &[0.5, 4.0, 50.0, 1250.0]), "{point:?}");
+        assert!(is_same(&point.boxes(0.25), &boxes), "{point:?}");
+        let third = SetPoint::by_boxes(0, 3, 0.25, boxes);
+        assert!(third.limits[3].is_infinite() && is_same(&third.boxes(0.25), &[0.5, 0.125, 0.08, 0.0]));
+        let second = SetPoint::by_boxes(0, 2, 0.25, boxes);
+        assert!(second.limits[2].is_infinite() && is_same(&second.boxes(0.25), &[0.5, 0.125, 0.0, 0.0]));
     }
 
-    /// Four digits, and at the ceiling where they would carry it beyond.
+    /// A short way: limits that no move would reach are lowered to those that it does. And none is above its ceiling.
     #[test]
-    fn limits_are_rounded_and_stay_below_the_ceiling() {
-        let ceiling = Limits { velocity: 1.0 / 3.0, acceleration: 2.0 / 3.0, jerk: 1.0, snap: 1.0 };
-        let rounded = SetPoint::by_times(0, 2, [1.0 / 3.0, 2.0 / 3.0, 0.0, 0.0]);
-        assert!(is_same(&rounded.limits[..2], &[0.3333, 0.6667]) && !rounded.is_below(&ceiling));
-        let below = rounded.below(&ceiling);
-        assert!(is_same(&below.limits[..2], &[0.3333, 2.0 / 3.0]) && below.is_below(&ceiling), "{below:?}");
-    }
-
-    #[test]
-    fn a_grid_stays_below_the_ceiling() {
-        let ceiling = Limits { velocity: 0.5, acceleration: 4.0, jerk: 100.0, snap: f64::INFINITY };
-        let family = |order| Family { order, shaper: None, settings: vec![], name: String::new() };
-        assert_eq!(grid(0, &family(2), &ceiling, 0.6).len(), 240);
-        for order in [3, 4] {
-            let all = grid(0, &family(order), &ceiling, 0.6);
-            assert!(all.len() > 100 && all.iter().all(|point| point.limits[2] <= 100.0), "{order}");
-        }
+    fn boxes_are_as_long_as_their_limits_need() {
+        let free = Limits { velocity: 9.0, acceleration: 900.0, jerk: f64::INFINITY, snap: f64::INFINITY };
+        let fitted = Room { distance: 0.02, ceiling: &free }.fitted(4, [0.01, 0.1, 0.02, 0.1]);
+        assert!(is_same(&fitted, &[0.4, 0.2, 0.1, 0.1]), "{fitted:?}");
+        let ceiling = Limits { velocity: 1.0 / 3.0, acceleration: 2.0 / 3.0, jerk: 10.0, snap: 1e3 };
+        let room = Room { distance: 1.0, ceiling: &ceiling };
+        assert!(is_same(&room.fitted(3, [0.0; 4]), &[3.0, 0.5, 2.0 / 30.0, 0.0]));
+        // A move that does not reach its velocity: two ramps of √(d/a) each.
+        let ceiling = Limits { velocity: 2.0, acceleration: 20.0, jerk: f64::INFINITY, snap: f64::INFINITY };
+        let triangle = Room { distance: 0.02, ceiling: &ceiling }.fitted(2, [0.0; 4]);
+        let ramp = 0.001_f64.sqrt();
+        assert!((triangle[0] - ramp).abs() < 1e-5 * ramp && (triangle[1] - ramp).abs() < 1e-5 * ramp, "{triangle:?}");
+        // Five digits, and at the ceiling where they would carry it beyond: 0.66667 is above 2/3.
+        assert!(is_same(&room.point(0, 2, [0.0; 4]).limits[..2], &[0.33333, 2.0 / 3.0]));
     }
 }

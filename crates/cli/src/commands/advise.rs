@@ -16,7 +16,7 @@ use servobench_motion::Limits;
 use servobench_motion::shape::ShaperKind;
 use servobench_report::{AdviceOptions, advice_json, advice_text};
 use servobench_scenario::{KeyRange, root_of};
-use servobench_suite::{LoadMode, Source, limits_of_set_point, load_mode};
+use servobench_suite::{LoadMode, Source, limits_of_set_point, load_mode, longest_move};
 use std::path::Path;
 use thiserror::Error;
 
@@ -62,6 +62,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     let question = Question {
         families: families(args, &base, mode.as_ref(), frequency)?,
         ceiling: ceiling(args, &base)?,
+        distance: longest_move(scenario).ok_or(AdviseMistake::NoMove)?,
         machines,
         frequency: frequency.unwrap_or_default(),
         limits: limits.len(),

@@ -10,7 +10,7 @@ use servobench_metrics::digits;
 pub(super) fn words(question: &Question, advice: &Advice, options: &AdviceOptions<'_>, style: Style) -> String {
     let family = &question.families[advice.point.family];
     let [velocity, acceleration, jerk, snap] = advice.point.limits;
-    let [.., rise, rise_of_jerk] = advice.point.times();
+    let [.., rise, rise_of_jerk] = advice.point.boxes(question.distance);
     // User units as most drives have them.
     let (unit, scale) = if options.motion == Coordinate::Linear { ("mm", 1e3) } else { ("°", 1f64.to_degrees()) };
     let number = |value: f64| digits(value, DIGITS);

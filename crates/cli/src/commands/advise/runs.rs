@@ -95,11 +95,11 @@ impl<'a> Runs<'a> {
 
     /// Refuses a box whose corners are no valid scenarios or have an unstable loop, and a scenario that cannot be run on its engine.
     pub(super) fn check(&self) -> Result<(), CliError> {
-        let ceiling = &self.question.ceiling;
+        let Question { ceiling, distance, .. } = self.question;
         let mut unstable = Vec::new();
         for (index, family) in self.question.families.iter().enumerate() {
-            let slow = [ceiling.velocity, ceiling.acceleration, 0.1, 0.1];
-            let point = SetPoint::by_times(index, family.order, slow);
+            let slow = [distance / ceiling.velocity, ceiling.velocity / ceiling.acceleration, 0.1, 0.1];
+            let point = SetPoint::by_boxes(index, family.order, *distance, slow);
             // Only a choice changes the loop, not an order or a shaper.
             let is_new = index == 0 || !self.args.choose.is_empty();
             let mut why_not = None;
