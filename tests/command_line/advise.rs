@@ -150,6 +150,61 @@ fn what_cannot_be_advised_says_why() {
     assert!(none.contains("keeps all limits on all machines"), "{none}");
 }
 
+/// Nothing is fed forward, so that the following error bounds the velocity to a third of its ceiling. The scenario is of third order.
+const FOLLOWING: &str = r#"
+[run]
+base_rate = "2 kHz"
+duration = "2 s"
+[axis]
+motion = "linear"
+motor_side = { mass = "95 kg", viscous = "203 N s/m", coulomb = "20 N", bias = "-3 N" }
+[motor]
+kind = "ideal-source"
+gain = "35.15 N/V"
+limit = "10 V"
+[drive]
+velocity = { rate = "1 kHz", kind = "p", gain = "243 V s/m" }
+position = { rate = "1 kHz", gain = "160 1/s" }
+[setpoint]
+order = 3
+velocity = "0.5 m/s"
+acceleration = "3 m/s2"
+jerk = "60 m/s3"
+[[program]]
+move_to = "200 mm"
+[measure]
+window = "100 um"
+[limits]
+following_error_peak_load = "1.2 mm"
+settling_time = "100 ms"
+torque_reference_peak = "300 N"
+"#;
+
+/// Oracle: 0.175 m/s with 2 m/s² and 20 m/s³ keeps all limits and takes 200/175 + 0.175/2 + 2/20 = 1.33 s.
+#[test]
+fn a_third_of_the_velocity_is_found_for_another_order_too() {
+    let work = folder(&[("following.toml", FOLLOWING)]);
+    let (file, out) = (work.path().join("following.toml"), work.path().join("advice.json"));
+    let output = servobench(&[
+        "advise",
+        file.to_str().unwrap(),
+        "--order",
+        "4",
+        "--within",
+        "axis.motor_side.mass=95 kg±5 %",
+        "--draws",
+        "40",
+        "--share",
+        "85 %",
+        "-o",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let advice = json(&fs::read(out).unwrap());
+    let time = advice["time"].as_f64().unwrap();
+    assert!(time <= 1.30, "{advice}");
+}
+
 /// A gain is chosen where that is asked for.
 #[test]
 fn other_keys_are_chosen_where_they_are_named() {
