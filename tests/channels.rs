@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 /// The first ticks of axes that have everything between them: a synchronous motor with a table before the load, an
 /// ideal source, a load that is pushed, one with end stops, a fieldbus, motors and sensors that are not ideal; and something that pushes
 /// the motor.
-const AXES: [&str; 13] = [
+const AXES: [&str; 14] = [
     "demo/snap.toml",
     "lambrechts-snap.toml",
     "feed-axis-load-step.toml",
@@ -21,6 +21,7 @@ const AXES: [&str; 13] = [
     "hardware/sincos-amplitude.toml",
     "hardware/scale-offset.toml",
     "hardware/dead-time.toml",
+    "hardware/switching.toml",
     "hardware/brake-resistor.toml",
     "hardware/velocity-mt.toml",
 ];

@@ -206,6 +206,7 @@ pub(crate) const PLOTS: &[Plot] = &[
             curve(&[Signal::CurrentD.name()], "d", style::AUXILIARY, MIDDLE),
             curve(&[Signal::CurrentQReference.name()], "q reference", style::REFERENCE, THIN),
             curve(&[Signal::CurrentPeak.name()], "largest in a tick", style::MARK, THIN),
+            curve(&[Signal::CurrentRms.name()], "RMS of a phase in a tick", style::AUXILIARY, THIN),
         ],
         ..PLAIN
     },
