@@ -96,8 +96,8 @@ fn an_aborting_move_of_order_2_takes_over_in_motion() {
 fn a_move_commanded_again_keeps_its_way() {
     let limits = "velocity = \"0.5 m/s\"\nacceleration = \"5 m/s2\"\njerk = \"100 m/s3\"\nsnap = \"5000 m/s4\"\n";
     for (order, sign) in [(2, 1), (3, 1), (4, 1), (3, -1), (4, -1)] {
-        let limits: String = limits.lines().take(order).map(|line| format!("{line}\n")).collect();
-        let axis = format!("{}[setpoint]\norder = {order}\n{limits}", AXIS.split("[setpoint]").next().unwrap());
+        let limits = limits.lines().take(order).collect::<Vec<_>>().join("\n");
+        let axis = format!("{}[setpoint]\norder = {order}\n{limits}\n", AXIS.split("[setpoint]").next().unwrap());
         let first = format!("[[program]]\nmove_to = \"{} mm\"\nend_velocity = \"{} m/min\"\n", sign * 100, sign * 20);
         let last = format!("[[program]]\nmove_to = \"{} mm\"\n", sign * 400);
         let program = |again: &str| {
