@@ -198,10 +198,7 @@ impl Params {
         limit(Parameter::MAX_CURRENT, self.max_current)?;
         let is_within = self.d_reference.is_finite() && self.d_reference.abs() < self.max_current;
         self.operation.check(self.max_current)?;
-        let has_torque = match self.operation.strategy {
-            operating_point::Strategy::DReference => self.effort_constant() > 0.0,
-            operating_point::Strategy::Mtpa => self.motor.flux_linkage > 0.0 || self.motor.saliency() != 0.0,
-        };
+        let has_torque = self.operation.strategy.has_torque(&self.motor, self.d_reference);
         if !has_torque && self.motor.flux_linkage == 0.0 && self.d_reference == 0.0 {
             let bound = "above 0 where the d axis has no current that makes torque by different inductances";
             return Err(ParameterError { name: Parameter::FLUX_LINKAGE, value: 0.0, bound });

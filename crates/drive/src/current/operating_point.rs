@@ -126,6 +126,17 @@ impl Params {
     }
 }
 
+impl Strategy {
+    /// True where `motor` has torque with the d-axis currents that it chooses: a constant one of `d_reference` (A, peak), or any.
+    #[must_use]
+    pub fn has_torque(self, motor: &MotorEstimate, d_reference: f64) -> bool {
+        match self {
+            Self::DReference => motor.effort_constant(d_reference) > 0.0,
+            Self::Mtpa => motor.flux_linkage > 0.0 || motor.saliency() != 0.0,
+        }
+    }
+}
+
 impl MotorEstimate {
     /// L_d − L_q (H).
     #[must_use]

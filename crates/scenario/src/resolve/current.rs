@@ -132,11 +132,7 @@ fn has_torque(
         ("the motor", given.d_reference.span().unwrap_or(given.span), estimate::of_motor(None, motor)),
         ("the motor that the drive believes in", believed, estimate::of_motor(estimates, motor)),
     ] {
-        let has_torque = match strategy {
-            Strategy::DReference => motor.effort_constant(i_d) > 0.0,
-            Strategy::Mtpa => motor.flux_linkage > 0.0 || motor.saliency() != 0.0,
-        };
-        if !has_torque {
+        if !strategy.has_torque(&motor, i_d) {
             let psi = motor.flux_linkage;
             let message =
                 format!("with a flux linkage of {psi} V s {whose} has no torque at a d-axis current of {i_d:.5} A");
