@@ -29,16 +29,16 @@ const FASTER: f64 = 0.998;
 const HOPS: usize = 4;
 const LONGER: f64 = 1.1;
 
-/// How far a search goes.
+/// Extent of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Effort {
-    /// How many set-points are run on all machines, and how many of these are refined: in all, and of each family.
+    /// Most set-points that are run on all machines, and most of these that are refined: in all, and of each family.
     run: [usize; 2],
     refined: [usize; 2],
-    /// How many are refined to the end, and how far.
+    /// Number that is refined to the end, and the steps of that.
     to_the_end: usize,
     fine: Steps,
-    /// Whether it hops from the best to other lobes.
+    /// True where it hops from the best to other lobes.
     has_hops: bool,
 }
 

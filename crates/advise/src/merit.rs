@@ -1,8 +1,8 @@
-//! How good a set-point is, whether it keeps its limits or not.
+//! Merit of a set-point, whether it keeps its limits or not.
 use crate::search::{Allowance, Reading};
 
-/// What a limit that could not be measured counts as, and what a requirement that failed does, as multiples of the limit: a search moves away
-/// from both and still tells which of two is nearer.
+/// Use of a limit that could not be measured, and of a requirement that failed, as multiples of the limit: a search moves away from both and
+/// still tells which of two is nearer.
 const UNKNOWN: f64 = 2.0;
 const UNSOUND: f64 = 3.0;
 /// A load that does not settle counts as if it took so many times its move.
@@ -13,7 +13,7 @@ const PENALTY: f64 = 2.0;
 /// a period more is enough for ten times less. What falls smoothly with time is found by refinement from anywhere.
 const STRETCH: f64 = 0.12;
 
-/// How good a run of a move of `duration` (s) is.
+/// Merit of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Merit {
     /// Move and settling (s).
@@ -26,6 +26,7 @@ impl Merit {
     /// Before any run.
     pub(crate) const NONE: Self = Self { time: 0.0, over: 0.0 };
 
+    /// Of the `reading` of a move of `duration` (s).
     pub(crate) fn of(reading: &Reading, allowed: &Allowance, duration: f64) -> Self {
         let parts = reading.usage.iter().zip(allowed).map(|(usage, most)| usage / most);
         let unknown = parts.clone().filter(|part| part.is_nan()).count();
@@ -89,7 +90,7 @@ mod tests {
         );
     }
 
-    /// What fails can still be compared; what broke off cannot.
+    /// Failures can still be compared; runs that broke off cannot.
     #[test]
     fn failures_have_an_order() {
         let unsettled = reading(f64::NAN, &[f64::NAN, 1.2], true);

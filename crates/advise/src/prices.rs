@@ -1,4 +1,4 @@
-//! What another limit would cost or save.
+//! Prices of limits: the time that another value would cost or save.
 use crate::best::{Price, Question};
 use crate::explore::{Effort, best};
 use crate::search::{Found, Search};
@@ -33,7 +33,7 @@ pub(crate) fn fastest(priced: &Priced) -> Option<&Found> {
     found.min_by(|one, other| one.worst.time.total_cmp(&other.worst.time))
 }
 
-/// What tighter and wider limits cost and save beside an advice that takes `own` (s) on the machines of the search and `worst` on those of
+/// Prices of tighter and wider limits beside an advice that takes `own` (s) on the machines of the search and `worst` on those of
 /// the verification, too. What keeps a tighter limit keeps a wider one, too.
 pub(crate) fn prices(tighter: &Priced, wider: &Priced, own: f64, worst: f64) -> Vec<Price> {
     let mut fastest = f64::INFINITY;

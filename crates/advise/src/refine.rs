@@ -14,7 +14,7 @@ const PATIENCE: usize = 2;
 const FINEST: f64 = 0.0003;
 /// A short box moves as if it were longer by this part of the longest.
 const FLOOR: f64 = 0.1;
-/// What is left of a step that has not led to anything better, and what a step that has grows by.
+/// Factors of a step that has led to nothing better, and of one that has.
 const SHORTER: f64 = 0.4;
 const LONGER: f64 = 1.5;
 /// A model is made anew for steps so many times smaller.
@@ -25,7 +25,7 @@ const DIFFERENCE: (f64, f64) = (0.25, 0.0004);
 const BINDING: f64 = 0.7;
 /// The part by which boxes are made longer until the limits are kept, twice as much each time, and how often at most.
 const STRETCHES: (f64, i32) = (0.002, 11);
-/// What the model allows of a limit, so that its own error does not carry the step beyond.
+/// Part of a limit that the model allows, so that its own error does not carry the step beyond.
 const WITHIN: f64 = 0.999;
 /// The best of the model is looked for on a grid of so many positions along each box, which is made finer by half so many times.
 const POSITIONS: usize = 5;
@@ -141,7 +141,7 @@ impl<'f> Model<'f> {
         Self { order, found, own, uses: Vec::new(), settling: Vec::new() }
     }
 
-    /// How far a box moves in a step of one.
+    /// Distance that a box moves in a step of one (s).
     fn scale(&self, k: usize) -> f64 {
         self.own[k] + FLOOR * self.own[0]
     }
@@ -176,7 +176,7 @@ impl<'f> Model<'f> {
         }
     }
 
-    /// How good the model has `boxes`.
+    /// Merit of `boxes` by the model (s).
     fn penalised(&self, boxes: &[f64; 4]) -> f64 {
         let moved: [f64; 4] = std::array::from_fn(|k| boxes[k] - self.own[k]);
         let settling = self.settling.iter().map(|one| one.at(&moved)).fold(0.0, f64::max);
@@ -197,7 +197,7 @@ impl<'f> Model<'f> {
     /// The best of the model within a step.
     fn best(&self, room: &Room<'_>, step: f64) -> SetPoint {
         let count = self.order as usize;
-        let mut centre = self.own;
+        let (mut centre, mut least) = (self.own, self.penalised(&self.own));
         for halving in 0..HALVINGS {
             let finer = 0.5_f64.powi(halving);
             let from = centre;
@@ -214,8 +214,9 @@ impl<'f> Model<'f> {
                     (from[k] + part * finer * room).clamp(self.own[k] - room, self.own[k] + room)
                 });
                 let boxes = room.fitted(self.order, boxes);
-                if self.penalised(&boxes) < self.penalised(&centre) {
-                    centre = boxes;
+                let merit = self.penalised(&boxes);
+                if merit < least {
+                    (centre, least) = (boxes, merit);
                 }
             }
         }

@@ -47,7 +47,7 @@ pub(crate) struct Found {
     pub(crate) merit: Merit,
 }
 
-/// What is asked of a run: how much of each limit it may use. 1 is the limit itself.
+/// Share of each limit that a run may use: 1 is the limit itself.
 pub(crate) type Allowance = Vec<f64>;
 
 /// Machines that join the search at a time.
@@ -160,7 +160,7 @@ impl<'b> Search<'b> {
         all
     }
 
-    /// What is known of a set-point: the merit on the machines on which it was run.
+    /// Merit of a set-point on the machines on which it was run.
     pub(crate) fn known_merit(&self, one: &Planned, allowed: &Allowance) -> Merit {
         let of = |machine| self.readings.get(&(one.point.key(), machine));
         let readings = (0..self.machines.len()).filter_map(of);
@@ -226,7 +226,7 @@ impl<'b> Search<'b> {
         &self.readings[&(planned.point.key(), machine)]
     }
 
-    /// How much of what is allowed `planned` uses at most on each machine on which it was run.
+    /// Largest share of what is allowed that `planned` uses on each machine on which it was run.
     pub(crate) fn uses(&self, planned: &Planned, allowed: &Allowance) -> Vec<(usize, f64)> {
         let over = |machine: usize| {
             let reading = self.readings.get(&(planned.point.key(), machine))?;

@@ -137,7 +137,7 @@ impl<'q> Room<'q> {
         point.boxes(self.distance).iter().sum()
     }
 
-    /// Whether both are of one kind and no box of one differs from that of the other by more than `part` of it.
+    /// True where both are of one kind and no box of one differs from that of the other by more than `part` of it.
     pub(crate) fn are_near(&self, one: &SetPoint, other: &SetPoint, part: f64) -> bool {
         let boxes = one.boxes(self.distance).into_iter().zip(other.boxes(self.distance));
         one.family == other.family && boxes.into_iter().all(|(one, other)| (one - other).abs() <= part * one.max(other))

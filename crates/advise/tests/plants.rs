@@ -6,7 +6,7 @@ use servobench_advise::{SetPoint, advise};
 use servobench_motion::Limits;
 use servobench_testkit::Random;
 
-/// How many of something: few, or as many times more as the environment wants.
+/// Size of a test: `few`, or `SERVOBENCH_SWEEP` times as many.
 fn count(few: usize) -> usize {
     few * std::env::var("SERVOBENCH_SWEEP").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
 }
