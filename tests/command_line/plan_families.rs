@@ -117,6 +117,11 @@ fn a_way_beyond_its_target_says_so() {
         let expected = [from.min(from + sign * turn), from.max(from + sign * turn)];
         assert!((lowest - expected[0]).abs() < 1e-9 && (highest - expected[1]).abs() < 1e-9, "{plan_json}");
     }
+    // Where it begins at its target, either way is beyond it: 0.9·0.1 − 20·0.1³/6 + 0.16 m once more.
+    for speed in [0.9, -0.9] {
+        let said = plan(&format!("{limits} --start-velocity={speed}m/s --distance=0m"));
+        assert!(said.replace('\n', " ").contains("goes 247 mm beyond its target"), "{said}");
+    }
     // What is reached from one side is not passed, nor is a target that the move leaves behind at a velocity.
     for line in [
         "--start-velocity 0.9m/s --distance 0.3m",

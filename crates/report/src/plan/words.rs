@@ -10,6 +10,7 @@ use servobench_motion::sampled::Execution;
 use servobench_planner::{
     Filter, Follow, Generator, Grid, Method, PlanDetails, Sampling, Sending, TableMove, Velocities,
 };
+use std::cmp::Ordering;
 
 /// An excess below this part of a limit is rounding.
 const EXCESS: f64 = 1e-9;
@@ -129,13 +130,18 @@ impl PlannedMove {
         notes
     }
 
-    /// How far beyond its target a move leads that passes it and comes back, if it does.
+    /// Farthest distance beyond its target of a move that passes it and comes back, in words; `None` of any other.
     fn beyond_target(&self, target: &Target) -> Option<String> {
         let (Target::Position { x, .. }, start, reached) = (target, self.plan.start().x, self.plan.positions()) else {
             return None;
         };
         // Before the start it may turn round, too: that is not beyond its target.
-        let beyond = if *x >= start { reached.highest - x } else { x - reached.lowest };
+        let [above, below] = [reached.highest - x, x - reached.lowest];
+        let beyond = match x.total_cmp(&start) {
+            Ordering::Greater => above,
+            Ordering::Less => below,
+            Ordering::Equal => above.max(below),
+        };
         (beyond > HIT.max(EXCESS * (x - start).abs())).then(|| {
             format!(
                 "goes {} beyond its target and comes back: from its initial state there is no way without turning round",
