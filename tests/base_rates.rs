@@ -12,7 +12,7 @@ use std::path::Path;
 const TIMES: [u32; 3] = [1, 2, 4];
 /// Keys of what begins or ends within a tick, and is seen at its end.
 const OF_TICKS: [&str; 6] = ["coulomb", "end_stops.", "bus.", "connection.", "inverter.", "link."];
-/// What random numbers make of a time that they give in ticks is another fault at another base rate.
+/// Random numbers that give a time in ticks: another fault at another base rate.
 const RANDOM: &str = "jitter";
 
 /// Ratio of the two differences of an error of order 1 or 2, less a quarter of it for terms of higher order; and the part of the way below
@@ -63,10 +63,19 @@ fn compare(path: &Path) -> Result<(), String> {
         let Outcome { mut recording, failure } = outcome(&faster, *engine)?;
         let verdict = judge(&mut recording, failure, &faster).map_err(|error| error.to_string())?;
         verdicts.push((verdict.passed(), verdict.reasons().collect::<Vec<_>>().join("; ")));
-        let recording = outcome(&ideal(faster), *engine)?.recording;
+        let Outcome { recording, failure } = outcome(&ideal(faster), *engine)?;
         let way = recording.channel("load.position").ok_or("no position of the load")?;
-        // The last row of a run whose length is no whole number of ticks is nearer to its end.
+        if let Some(failure) = failure {
+            return Err(format!("with ideal sensors at {times} times the rate: {failure}"));
+        }
+        if let Some(row) = way.iter().position(|x| !x.is_finite()) {
+            return Err(format!("not finite in row {row} at {times} times the rate"));
+        }
         ways.push(way.iter().copied().step_by(times as usize).collect::<Vec<f64>>());
+    }
+    // The last row of a run whose length is not a whole number of ticks is nearer to its end.
+    if ways.iter().any(|way| way.len().abs_diff(ways[0].len()) > 1) {
+        return Err("runs of different lengths".into());
     }
     if verdicts.iter().any(|(passed, _)| *passed != verdicts[0].0) {
         return Err(format!("verdicts {verdicts:?}"));
