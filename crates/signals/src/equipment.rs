@@ -14,7 +14,7 @@ pub struct Equipment {
     pub disturbed: [bool; 2],
     /// Whether the load meets stops at the ends of its travel.
     pub end_stops: bool,
-    /// What the inverter does beside giving the voltage that it is asked for.
+    /// Effects of the inverter beside the voltage that it gives.
     pub inverter: InverterEffects,
     /// Whether there is a fieldbus between the motion task and the drive.
     pub bus: bool,
@@ -28,14 +28,14 @@ pub struct Equipment {
     pub motor: Motor,
 }
 
-/// What an inverter has beside an ideal one, as far as that has signals.
+/// Effects of an inverter that an ideal one lacks, as far as they have signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct InverterEffects {
-    /// Whether its devices have losses.
+    /// Its devices have losses.
     pub losses: bool,
-    /// Whether it switches.
+    /// It switches.
     pub switching: bool,
-    /// Whether the voltage of its DC link changes.
+    /// The voltage of its DC link changes.
     pub link: bool,
 }
 

@@ -245,7 +245,7 @@ fn measured(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError>
     recorded(all, &wanted.iter().copied().chain(besides).collect::<Vec<_>>())
 }
 
-/// Whether it costs the motor's powers, of which the mean square of the current is one.
+/// True where it costs the motor's powers, of which the mean square of the current is one.
 fn is_power(signal: Signal) -> bool {
     signal.unit() == Unit::Watt || signal == Signal::CurrentRms
 }

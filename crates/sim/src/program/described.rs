@@ -14,7 +14,7 @@ impl Program {
 }
 
 impl Planned {
-    /// What a recording says of it, `delay` (s) later at its end than it is planned.
+    /// Its description in a recording, `delay` (s) later at its end than it is planned.
     pub(super) fn describe(&self, unit: &DisplayUnit, delay: f64) -> Move {
         let (plan, order) = (&self.plan, self.plan.order());
         let length = self.end - self.start;
@@ -60,7 +60,7 @@ fn label(unit: &DisplayUnit, ends: [f64; 2], order: &str) -> String {
     format!("move from {from} to {to}, order {order}")
 }
 
-/// What a label says of a move besides its order.
+/// Words of a label for the kind of a move, besides its order.
 pub(super) const fn kind(generator: &Generator) -> &'static str {
     match generator {
         Generator::PointToPoint(asked) => match asked.method {

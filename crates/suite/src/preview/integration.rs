@@ -1,4 +1,4 @@
-//! What each engine makes of the modes.
+//! Modes as each engine integrates them.
 use super::{Doubt, Modes};
 use servobench_metrics::Quantity;
 use servobench_plant::{Distortion, EngineName, Integrator, Mode};
@@ -42,7 +42,7 @@ struct Phase {
     steps: f64,
     /// Share by which it rings too fast.
     shift: f64,
-    /// How long it rings (s).
+    /// Length of its ringing (s).
     rings: f64,
 }
 
@@ -55,7 +55,7 @@ impl Phase {
         Some(Self { omega, steps: TAU / (omega * h), shift, rings: rings.min(length) })
     }
 
-    /// What it is ahead by at the end (periods).
+    /// Lead at the end (periods); negative behind.
     fn ahead(&self) -> f64 {
         self.shift * self.omega * self.rings / TAU
     }
