@@ -3,6 +3,11 @@
 //! `no_std`; depends on nothing of servobench. Plain `f64` in SI, the unit in the doc of every item.
 #![cfg_attr(not(test), no_std)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
+// So that the derived code names this crate as every other crate does.
+extern crate self as servobench_base;
+
 mod coordinate;
 mod ending;
 mod frames;
@@ -14,6 +19,7 @@ mod setpoint;
 mod severity;
 mod shortest;
 mod sine;
+pub mod state;
 mod step_end;
 mod time;
 mod wide_registers;

@@ -1,8 +1,9 @@
 //! What a drive tells its power stage.
 use crate::frames::AlphaBeta;
+use crate::state::State;
 
 /// What goes from the drive to the power stage, held from one tick to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, State)]
 pub enum PowerCommand {
     /// Stator voltage (V, peak).
     Voltage(AlphaBeta),

@@ -1,8 +1,9 @@
 //! The set-point of one instant: position and its four derivatives.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use crate::state::State;
 
 /// Position and its derivatives at one instant, in the axis unit (m or rad).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
 pub struct Setpoint {
     /// Position (m or rad).
     pub x: f64,

@@ -1,7 +1,8 @@
 //! How far a step of a simulation has come.
 
+use crate::state::State;
 /// How far a step of a simulation has come: that of an FMU, or of any other block of a co-simulation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, State)]
 pub enum StepEnd {
     /// To its end.
     Done,

@@ -12,8 +12,9 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 36] = [
-    ("base", May::On(&[])),
+const PLAN: [(&str, May); 37] = [
+    ("state-derive", May::On(&[])),
+    ("base", May::On(&["state-derive"])),
     ("files", May::On(&[])),
     ("config", May::On(&["base"])),
     ("cia402", May::On(&["base"])),

@@ -1,0 +1,185 @@
+//! States as numbers: everything that a part of the loop carries from tick to tick, saved, restored and named.
+//!
+//! A state is declared once. `#[derive(State)]` saves every field of it, so that a new field cannot be forgotten, and a field that is
+//! not to be saved says why:
+//!
+//! | mark | of a field |
+//! |---|---|
+//! | `#[state(constant)]` | a parameter: equal in all states of a run |
+//! | `#[state(derived)]` | computed from the rest of the state; saved, but moving it alone means nothing |
+//! | `#[state(fixed)]` | an option or a list whose length the parameters decide; it is restored in place and needs no `Default`. Also of an enum |
+//!
+//! ```
+//! use servobench_base::state::{State, restore, words};
+//!
+//! #[derive(Clone, Debug, PartialEq, State)]
+//! struct Integrator {
+//!     #[state(constant)]
+//!     gain: f64,
+//!     integral: f64,
+//!     is_held: bool,
+//! }
+//!
+//! let integrator = Integrator { gain: 2.0, integral: 0.5, is_held: false };
+//! let mut saved = Vec::new();
+//! integrator.save(&mut words(|word| saved.push(word)));
+//! let mut other = Integrator { gain: 2.0, integral: 0.0, is_held: true };
+//! restore(&mut other, &saved).unwrap();
+//! assert_eq!(other, integrator);
+//! ```
+//!
+//! Restoring is in place: parameters, tables and plans stay where they are.
+mod values;
+
+pub use servobench_state_derive::State;
+use thiserror::Error;
+
+/// All that a part of the loop carries from tick to tick.
+pub trait State {
+    /// Writes every number of it, in an order that its parameters decide.
+    fn save(&self, to: &mut dyn Writer);
+
+    /// Takes the numbers that [`save`](Self::save) of a state with the same parameters has written.
+    ///
+    /// # Errors
+    /// [`Damaged`]; then a part of the state may be restored, and it must not be used but to restore another.
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged>;
+}
+
+/// An option or a list whose length the parameters decide.
+pub trait FixedForm {
+    /// See [`State::save`].
+    fn save_fixed(&self, to: &mut dyn Writer);
+
+    /// See [`State::restore`].
+    ///
+    /// # Errors
+    /// [`Damaged`], also where the form is another.
+    fn restore_fixed(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged>;
+}
+
+/// A name that numbers of a state belong to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Name of the field.
+    pub name: &'static str,
+    /// True where it is computed from the rest.
+    pub is_derived: bool,
+}
+
+impl Part {
+    /// A field.
+    #[must_use]
+    pub const fn field(name: &'static str) -> Self {
+        Self { name, is_derived: false }
+    }
+
+    /// A field that is computed from the rest.
+    #[must_use]
+    pub const fn derived(name: &'static str) -> Self {
+        Self { name, is_derived: true }
+    }
+}
+
+/// Receives the numbers of a state.
+pub trait Writer {
+    /// A number that varies continuously.
+    fn number(&mut self, value: f64);
+
+    /// A count, a choice or a flag.
+    fn word(&mut self, value: u64);
+
+    /// Numbers up to [`leave`](Self::leave) belong to this part.
+    fn enter(&mut self, part: Part);
+
+    /// The part ends.
+    fn leave(&mut self);
+}
+
+/// A writer that gives each number to `take` as a word, numbers by their bits.
+pub const fn words<F: FnMut(u64)>(take: F) -> Words<F> {
+    Words(take)
+}
+
+/// See [`words`].
+#[derive(Debug, Clone, Copy)]
+pub struct Words<F>(F);
+
+impl<F: FnMut(u64)> Writer for Words<F> {
+    fn number(&mut self, value: f64) {
+        (self.0)(value.to_bits());
+    }
+
+    fn word(&mut self, value: u64) {
+        (self.0)(value);
+    }
+
+    fn enter(&mut self, _: Part) {}
+
+    fn leave(&mut self) {}
+}
+
+/// The words of a saved state, one after the other.
+#[derive(Debug, Clone)]
+pub struct Reader<'a>(&'a [u64]);
+
+impl<'a> Reader<'a> {
+    /// From the first of `words` on.
+    #[must_use]
+    pub const fn new(words: &'a [u64]) -> Self {
+        Self(words)
+    }
+
+    /// The next word.
+    ///
+    /// # Errors
+    /// [`Damaged`] at the end.
+    pub fn word(&mut self) -> Result<u64, Damaged> {
+        let (first, rest) = self.0.split_first().ok_or(Damaged)?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    /// The next number.
+    ///
+    /// # Errors
+    /// [`Damaged`] at the end.
+    pub fn number(&mut self) -> Result<f64, Damaged> {
+        self.word().map(f64::from_bits)
+    }
+
+    /// A number of things each of which has at least one word.
+    ///
+    /// # Errors
+    /// [`Damaged`] where there are fewer words than that.
+    pub fn length(&mut self) -> Result<usize, Damaged> {
+        let length = self.word()?;
+        usize::try_from(length).ok().filter(|length| *length <= self.0.len()).ok_or(Damaged)
+    }
+
+    /// The end.
+    ///
+    /// # Errors
+    /// [`Damaged`] where there are further words.
+    pub const fn end(&self) -> Result<(), Damaged> {
+        if self.0.is_empty() { Ok(()) } else { Err(Damaged) }
+    }
+}
+
+/// Restores `state` from all of `words`.
+///
+/// # Errors
+/// [`Damaged`] where they are not of a state with the same parameters; then `state` must not be used but to restore another.
+pub fn restore(state: &mut (impl State + ?Sized), words: &[u64]) -> Result<(), Damaged> {
+    let mut from = Reader::new(words);
+    state.restore(&mut from)?;
+    from.end()
+}
+
+/// Numbers are not a saved state of what they are to restore.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("not a state of this loop: it was saved with other parameters, or it is damaged")]
+pub struct Damaged;
+
+#[cfg(test)]
+mod tests;
