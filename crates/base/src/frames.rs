@@ -6,13 +6,13 @@
 //! ```
 //! Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 3 (with factor 2/3).
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use crate::state::State;
+use crate::state::Stateful;
 
 use crate::sine::sincos;
 
 /// Electrical angle of the rotor (rad): pole pairs × mechanical angle. A type of its own, because mixing the two
 /// is the classic error that dimensions cannot catch.
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ElectricalAngle(pub f64);
 
 impl ElectricalAngle {
@@ -38,7 +38,7 @@ impl ElectricalAngle {
 }
 
 /// Sine and cosine of an electrical angle: computed once, used for every transformation at that angle.
-#[derive(Debug, Clone, Copy, PartialEq, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Rotation {
     /// Sine of the angle.
     pub sin: f64,
@@ -47,7 +47,7 @@ pub struct Rotation {
 }
 
 /// An electrical angle with its rotation, for others who need that of the very same angle: a sine costs more than a look.
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct KnownRotation {
     angle: ElectricalAngle,
     rotation: Rotation,
@@ -93,7 +93,7 @@ impl Rotation {
 }
 
 /// Rotor frame: d along the magnet flux, q ahead of it by 90° electrical.
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Dq {
     /// Direct component.
     pub d: f64,
@@ -102,7 +102,7 @@ pub struct Dq {
 }
 
 /// Stator frame: α along phase a.
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct AlphaBeta {
     /// Component along phase a.
     pub alpha: f64,

@@ -34,5 +34,6 @@ pub use request::{Request, RequestKind};
 pub use setpoint::Setpoint;
 pub use severity::Severity;
 pub use shortest::Shortest;
+pub use state::Stateful;
 pub use step_end::StepEnd;
 pub use time::{Countdown, Divider, Rate, RateError, Tick};

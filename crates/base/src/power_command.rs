@@ -1,9 +1,9 @@
 //! What a drive tells its power stage.
 use crate::frames::AlphaBeta;
-use crate::state::State;
+use crate::state::Stateful;
 
 /// What goes from the drive to the power stage, held from one tick to the next.
-#[derive(Debug, Clone, Copy, PartialEq, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum PowerCommand {
     /// Stator voltage (V, peak).
     Voltage(AlphaBeta),

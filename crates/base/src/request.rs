@@ -1,11 +1,11 @@
 //! The request of the task: what moves, tables and function blocks want of an axis at an instant.
 use crate::setpoint::Setpoint;
-use crate::state::State;
+use crate::state::Stateful;
 
 /// Request of the task to the axis at an instant, never what a drive, the loop of a master or an interpolation makes of it.
 ///
 /// Positions are in the coordinate of the machine and count on over the turns of a modulo axis.
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub enum Request {
     /// Nothing: the drive is not enabled, homes or has a fault.
     #[default]
@@ -23,7 +23,7 @@ pub enum Request {
 }
 
 /// The kinds of [`Request`], as recordings name them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum RequestKind {
     /// [`Request::Nothing`].
     #[default]

@@ -1,9 +1,9 @@
 //! The set-point of one instant: position and its four derivatives.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use crate::state::State;
+use crate::state::Stateful;
 
 /// Position and its derivatives at one instant, in the axis unit (m or rad).
-#[derive(Debug, Clone, Copy, PartialEq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Setpoint {
     /// Position (m or rad).
     pub x: f64,

@@ -1,6 +1,6 @@
 //! States as numbers: everything that a part of the loop carries from tick to tick, saved, restored and named.
 //!
-//! A state is declared once. `#[derive(State)]` saves every field of it, so that a new field cannot be forgotten, and a field that is
+//! A state is declared once. `#[derive(Stateful)]` saves every field of it, so that a new field cannot be forgotten, and a field that is
 //! not to be saved says why:
 //!
 //! | mark | of a field |
@@ -10,9 +10,9 @@
 //! | `#[state(fixed)]` | an option or a list whose length the parameters decide; it is restored in place and needs no `Default`. Also of an enum |
 //!
 //! ```
-//! use servobench_base::state::{State, restore, words};
+//! use servobench_base::state::{Stateful, restore, words};
 //!
-//! #[derive(Clone, Debug, PartialEq, State)]
+//! #[derive(Clone, Debug, PartialEq, Stateful)]
 //! struct Integrator {
 //!     #[state(constant)]
 //!     gain: f64,
@@ -31,11 +31,11 @@
 //! Restoring is in place: parameters, tables and plans stay where they are.
 mod values;
 
-pub use servobench_state_derive::State;
+pub use servobench_state_derive::Stateful;
 use thiserror::Error;
 
 /// All that a part of the loop carries from tick to tick.
-pub trait State {
+pub trait Stateful {
     /// Writes every number of it, in an order that its parameters decide.
     fn save(&self, to: &mut dyn Writer);
 
@@ -48,10 +48,10 @@ pub trait State {
 
 /// An option or a list whose length the parameters decide.
 pub trait FixedForm {
-    /// See [`State::save`].
+    /// See [`Stateful::save`].
     fn save_fixed(&self, to: &mut dyn Writer);
 
-    /// See [`State::restore`].
+    /// See [`Stateful::restore`].
     ///
     /// # Errors
     /// [`Damaged`], also where the form is another.
@@ -170,7 +170,7 @@ impl<'a> Reader<'a> {
 ///
 /// # Errors
 /// [`Damaged`] where they are not of a state with the same parameters; then `state` must not be used but to restore another.
-pub fn restore(state: &mut (impl State + ?Sized), words: &[u64]) -> Result<(), Damaged> {
+pub fn restore(state: &mut (impl Stateful + ?Sized), words: &[u64]) -> Result<(), Damaged> {
     let mut from = Reader::new(words);
     state.restore(&mut from)?;
     from.end()

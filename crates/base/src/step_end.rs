@@ -1,8 +1,8 @@
 //! How far a step of a simulation has come.
 
-use crate::state::State;
+use crate::state::Stateful;
 /// How far a step of a simulation has come: that of an FMU, or of any other block of a co-simulation.
-#[derive(Debug, Clone, Copy, PartialEq, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum StepEnd {
     /// To its end.
     Done,

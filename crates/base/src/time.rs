@@ -1,12 +1,12 @@
 //! Time is an integer: a run has one base rate in whole hertz and a tick counter, t = k/f.
 //!
 //! Every task's period is a whole number of base ticks. Seconds are computed from ticks, never accumulated.
-use crate::state::State;
+use crate::state::Stateful;
 use core::num::NonZeroU32;
 use thiserror::Error;
 
 /// Number of base ticks since the start of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Stateful)]
 pub struct Tick(pub u64);
 
 /// A rate in whole hertz, at least 1 Hz.
@@ -19,7 +19,7 @@ pub struct Rate(NonZeroU32);
 pub struct Divider(NonZeroU32);
 
 /// Counts down to a task's next turn; the state that goes with its [`Divider`]. The first turn is at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, State)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Countdown {
     ticks_left: u32,
 }

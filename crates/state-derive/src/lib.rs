@@ -1,4 +1,4 @@
-//! `#[derive(State)]` for `servobench_base::state::State`, where the attributes are described.
+//! `#[derive(Stateful)]` for `servobench_base::state::Stateful`, where the attributes are described.
 //!
 //! Every field is saved and restored in the order of the declaration, unless it is marked; a field of a type that is not a state does
 //! not compile. A variant of an enum is written by its index.
@@ -9,7 +9,7 @@ use syn::punctuated::Punctuated;
 use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Token, parse_macro_input};
 
 /// See the module `servobench_base::state`.
-#[proc_macro_derive(State, attributes(state))]
+#[proc_macro_derive(Stateful, attributes(state))]
 pub fn derive_state(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     implementation(&input).unwrap_or_else(Error::into_compile_error).into()
@@ -69,8 +69,8 @@ fn statements(fields: &Fields) -> Result<Statements, Error> {
                 all.bindings.push(binding);
                 continue;
             }
-            Mark::None => (quote!(field), quote!(State::save), quote!(State::restore)),
-            Mark::Derived => (quote!(derived), quote!(State::save), quote!(State::restore)),
+            Mark::None => (quote!(field), quote!(Stateful::save), quote!(Stateful::restore)),
+            Mark::Derived => (quote!(derived), quote!(Stateful::save), quote!(Stateful::restore)),
             Mark::Fixed => (quote!(field), quote!(FixedForm::save_fixed), quote!(FixedForm::restore_fixed)),
         };
         all.save.extend(quote! {
@@ -105,7 +105,7 @@ fn implementation(input: &DeriveInput) -> Result<TokenStream, Error> {
     let (name, (generics, arguments, bounds)) = (&input.ident, input.generics.split_for_impl());
     Ok(quote! {
         #[automatically_derived]
-        impl #generics ::servobench_base::state::State for #name #arguments #bounds {
+        impl #generics ::servobench_base::state::Stateful for #name #arguments #bounds {
             fn save(&self, to: &mut dyn ::servobench_base::state::Writer) {
                 #save
             }

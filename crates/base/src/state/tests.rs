@@ -1,8 +1,8 @@
-use super::{Damaged, Part, State, Writer, restore, words};
+use super::{Damaged, Part, Stateful, Writer, restore, words};
 use std::string::String;
 use std::vec::Vec;
 
-#[derive(Debug, Clone, PartialEq, Default, State)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 enum Way {
     #[default]
     Rest,
@@ -12,7 +12,7 @@ enum Way {
     },
 }
 
-#[derive(Debug, Clone, PartialEq, State)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 struct Filter {
     #[state(constant)]
     corner: f64,
@@ -25,10 +25,10 @@ struct Filter {
 }
 
 /// Without a default.
-#[derive(Debug, Clone, PartialEq, State)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 struct Inner(f64, bool);
 
-fn saved(state: &impl State) -> Vec<u64> {
+fn saved(state: &impl Stateful) -> Vec<u64> {
     let mut all = Vec::new();
     state.save(&mut words(|word| all.push(word)));
     all

@@ -1,8 +1,8 @@
 //! States that are values: numbers, flags, and what is made of several states.
-use super::{Damaged, FixedForm, Part, Reader, State, Writer};
+use super::{Damaged, FixedForm, Part, Reader, Stateful, Writer};
 use core::convert::identity;
 
-impl State for f64 {
+impl Stateful for f64 {
     fn save(&self, to: &mut dyn Writer) {
         to.number(*self);
     }
@@ -13,7 +13,7 @@ impl State for f64 {
     }
 }
 
-impl State for bool {
+impl Stateful for bool {
     fn save(&self, to: &mut dyn Writer) {
         to.word((*self).into());
     }
@@ -30,7 +30,7 @@ impl State for bool {
 
 macro_rules! integers {
     ($($type:ty, $to:expr, $from:expr;)*) => {$(
-        impl State for $type {
+        impl Stateful for $type {
             fn save(&self, to: &mut dyn Writer) {
                 to.word($to(*self));
             }
@@ -57,7 +57,7 @@ integers! {
     i32, |value| signed(i64::from(value)), u64::cast_signed;
 }
 
-impl State for u64 {
+impl Stateful for u64 {
     fn save(&self, to: &mut dyn Writer) {
         to.word(*self);
     }
@@ -68,7 +68,7 @@ impl State for u64 {
     }
 }
 
-impl State for i64 {
+impl Stateful for i64 {
     fn save(&self, to: &mut dyn Writer) {
         to.word(signed(*self));
     }
@@ -79,7 +79,7 @@ impl State for i64 {
     }
 }
 
-impl State for () {
+impl Stateful for () {
     fn save(&self, _: &mut dyn Writer) {}
 
     fn restore(&mut self, _: &mut Reader<'_>) -> Result<(), Damaged> {
@@ -89,7 +89,7 @@ impl State for () {
 
 macro_rules! tuples {
     ($($name:ident $index:tt),*) => {
-        impl<$($name: State),*> State for ($($name,)*) {
+        impl<$($name: Stateful),*> Stateful for ($($name,)*) {
             fn save(&self, to: &mut dyn Writer) {
                 $(
                     to.enter(Part::field(stringify!($index)));
@@ -110,7 +110,7 @@ tuples!(A 0, B 1);
 tuples!(A 0, B 1, C 2);
 tuples!(A 0, B 1, C 2, D 3);
 
-impl<T: State, const N: usize> State for [T; N] {
+impl<T: Stateful, const N: usize> Stateful for [T; N] {
     fn save(&self, to: &mut dyn Writer) {
         for one in self {
             one.save(to);
@@ -122,7 +122,7 @@ impl<T: State, const N: usize> State for [T; N] {
     }
 }
 
-impl<T: State + Default> State for Option<T> {
+impl<T: Stateful + Default> Stateful for Option<T> {
     fn save(&self, to: &mut dyn Writer) {
         self.save_fixed(to);
     }
@@ -138,7 +138,7 @@ impl<T: State + Default> State for Option<T> {
     }
 }
 
-impl<T: State> FixedForm for Option<T> {
+impl<T: Stateful> FixedForm for Option<T> {
     fn save_fixed(&self, to: &mut dyn Writer) {
         to.word(self.is_some().into());
         if let Some(one) = self {
@@ -154,7 +154,7 @@ impl<T: State> FixedForm for Option<T> {
     }
 }
 
-impl<T: State> FixedForm for [T] {
+impl<T: Stateful> FixedForm for [T] {
     fn save_fixed(&self, to: &mut dyn Writer) {
         to.word(self.len() as u64);
         for one in self {
@@ -172,13 +172,13 @@ impl<T: State> FixedForm for [T] {
 
 #[cfg(feature = "alloc")]
 mod with_a_heap {
-    use super::{Damaged, FixedForm, Reader, State, Writer};
+    use super::{Damaged, FixedForm, Reader, Stateful, Writer};
     use alloc::boxed::Box;
     use alloc::collections::VecDeque;
     use alloc::string::String;
     use alloc::vec::Vec;
 
-    impl<T: State + ?Sized> State for Box<T> {
+    impl<T: Stateful + ?Sized> Stateful for Box<T> {
         fn save(&self, to: &mut dyn Writer) {
             (**self).save(to);
         }
@@ -188,7 +188,7 @@ mod with_a_heap {
         }
     }
 
-    impl<T: State + Default> State for Vec<T> {
+    impl<T: Stateful + Default> Stateful for Vec<T> {
         fn save(&self, to: &mut dyn Writer) {
             self[..].save_fixed(to);
         }
@@ -200,7 +200,7 @@ mod with_a_heap {
         }
     }
 
-    impl<T: State> FixedForm for Vec<T> {
+    impl<T: Stateful> FixedForm for Vec<T> {
         fn save_fixed(&self, to: &mut dyn Writer) {
             self[..].save_fixed(to);
         }
@@ -210,7 +210,7 @@ mod with_a_heap {
         }
     }
 
-    impl<T: State + Default> State for VecDeque<T> {
+    impl<T: Stateful + Default> Stateful for VecDeque<T> {
         fn save(&self, to: &mut dyn Writer) {
             to.word(self.len() as u64);
             for one in self {
@@ -225,7 +225,7 @@ mod with_a_heap {
         }
     }
 
-    impl State for String {
+    impl Stateful for String {
         fn save(&self, to: &mut dyn Writer) {
             to.word(self.len() as u64);
             self.bytes().for_each(|byte| to.word(byte.into()));
