@@ -7,7 +7,10 @@
 //! |---|---|
 //! | `#[state(constant)]` | a parameter: equal in all states of a run |
 //! | `#[state(derived)]` | computed from the rest of the state; saved, but moving it alone means nothing |
-//! | `#[state(fixed)]` | an option or a list whose length the parameters decide; it is restored in place and needs no `Default`. Also of an enum |
+//! | `#[state(fixed)]` | an option or a list with parameters in it, whose form they decide |
+//!
+//! A type without parameters in it is a [`Value`], which an option or a list can make anew. A type that has fields with parameters in them, and
+//! an enum with parameters in it, is itself marked `#[state(fixed)]`.
 //!
 //! ```
 //! use servobench_base::state::{Stateful, restore, words};
@@ -46,7 +49,16 @@ pub trait Stateful {
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged>;
 }
 
-/// An option or a list whose length the parameters decide.
+/// A state without parameters: its numbers are all of it.
+pub trait Value: Stateful + Sized {
+    /// The state that [`save`](Stateful::save) has written.
+    ///
+    /// # Errors
+    /// [`Damaged`].
+    fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged>;
+}
+
+/// An option or a list whose form the parameters decide.
 pub trait FixedForm {
     /// See [`Stateful::save`].
     fn save_fixed(&self, to: &mut dyn Writer);

@@ -15,7 +15,7 @@
 pub mod dead_time;
 pub mod operating_point;
 
-use servobench_base::{AlphaBeta, Dq, Rotation, limit};
+use servobench_base::{AlphaBeta, Dq, Rotation, Stateful, limit};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{
     CURRENT, CURRENT_GAIN, FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE, TIME, VOLTAGE,
@@ -103,7 +103,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Integrators (V).
     pub integral: Dq,
@@ -125,7 +125,7 @@ pub struct Input {
 }
 
 /// What tick k gives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Output {
     /// Voltage to apply from now on (V): the one computed a tick ago.
     pub voltage: AlphaBeta,

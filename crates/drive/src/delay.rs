@@ -4,7 +4,7 @@
 //! controller works against the feedforward. Between two samples the set-point is the polynomial of the earlier one
 //! ([`Setpoint::after`]): exact as long as snap switches at sample instants, as a sampled plan does.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::TIME;
 use servobench_config::{ParameterError, not_negative};
@@ -31,7 +31,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold: the last set-points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct State {
     kept: [Setpoint; CAPACITY + 2],
     /// Index of the newest.
@@ -74,7 +74,7 @@ impl State {
 }
 
 /// The last values of something that is no set-point and between two samples a line.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct Values {
     kept: [f64; CAPACITY + 2],
     /// Index of the newest.

@@ -5,6 +5,7 @@
 //! ```
 //! Backward Euler: stable for every time constant; without a filter it is the difference of two values. Of first order in h.
 //! Source: Åström & Hägglund, *Advanced PID Control*, 2006, §3.4 and §13.4 (T_f = T_d/N with N about 10).
+use servobench_base::Stateful;
 use servobench_config::Kind::Plain;
 use servobench_config::ParameterError;
 use servobench_config::quantities::TIME;
@@ -37,7 +38,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Value of the last cycle; none before the first one.
     pub last: Option<f64>,

@@ -62,7 +62,7 @@ use crate::modes::{Actual, Answer, Moment, Targets};
 use crate::supervision::Finding;
 use crate::{Demand, EffortLimits};
 use running::Running;
-use servobench_base::{ParamError, Setpoint};
+use servobench_base::{ParamError, Setpoint, Stateful};
 use servobench_cia402::{
     self as cia402, Command, Commands, Deceleration, DriveFunction, Mode, PowerInputs, PowerMemory, PowerState,
     StatusBit, Statusword, Transition,
@@ -127,7 +127,7 @@ pub struct Outputs {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {
     power: PowerMemory,

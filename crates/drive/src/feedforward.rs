@@ -8,7 +8,7 @@
 //! The set-point `x` is the load's. Loops that measure on the motor must follow the motor's own reference `x_m`: fed
 //! with `x` itself they fight the feedforward. Axis coordinate throughout.
 //! Source: Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005.
-use servobench_base::{Setpoint, finite};
+use servobench_base::{Setpoint, Stateful, finite};
 use servobench_config::Kind::{Axis, Plain};
 use servobench_config::quantities::{EFFORT, INERTIAL, RATIO, STIFFNESS, VISCOUS};
 use servobench_config::{ParameterError, any, not_negative, positive};
@@ -79,7 +79,7 @@ pub struct Params {
 }
 
 /// What the motor-side loops follow.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct MotorReference {
     /// Position of the motor, in the axis coordinate (m or rad).
     pub position: f64,

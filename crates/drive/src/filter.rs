@@ -12,7 +12,7 @@
 //! *Discrete-Time Signal Processing*, 3rd ed., §6.3 (transposed form).
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use core::f64::consts::PI;
-use servobench_base::Rate;
+use servobench_base::{Rate, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{FREQUENCY, RATIO};
 use servobench_config::{ParameterError, not_negative, positive};
@@ -94,7 +94,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold: s_1 and s_2 of each filter (N·m or N).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// One pair for each filter.
     pub memory: [[f64; 2]; MOST],

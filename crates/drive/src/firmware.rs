@@ -15,7 +15,7 @@ use crate::measurement::{self, Edge};
 use crate::params::{Params, Stage};
 use crate::{Blocks, Demand, EffortLimits};
 use crate::{current, delay, derivative, filter, overload, position, supervision, velocity};
-use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint};
+use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint, Stateful};
 use servobench_config::ParameterError;
 
 mod held;
@@ -67,7 +67,7 @@ impl Sensors {
 }
 
 /// Which of the loops are closed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 enum Closed {
     #[default]
     Position,
@@ -78,7 +78,7 @@ enum Closed {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct State {
     delay: delay::State,
     /// Velocity offsets wait with the set-points that they belong to.

@@ -8,6 +8,7 @@
 //!
 //! Without one of them the loop takes the velocity of an encoder that gives it, and differences of any other. The motor's coordinate.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use servobench_base::Stateful;
 use servobench_config::ParameterError;
 
 pub mod mt;
@@ -46,7 +47,7 @@ pub enum Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     mt: mt::State,
     observer: observer::State,

@@ -8,7 +8,7 @@
 //! the continuous current until the load is below [`RELEASE`], or it tells a fault (CiA 402: 2350h).
 //! Source: IEC 60034-1, 2022, §4.2 (thermal equilibrium of duty types) for the lag of first order; by hand for its step.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use servobench_base::Dq;
+use servobench_base::{Dq, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{CURRENT, TIME};
 use servobench_config::{ParameterError, positive};
@@ -50,7 +50,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Load Θ.
     pub load: f64,

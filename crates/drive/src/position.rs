@@ -8,6 +8,7 @@
 //! The derivative counts as a velocity loop of the gain K_v·T_d beside the reference that is fed forward.
 //! Sources: Åström & Hägglund, *Advanced PID Control*, 2006, §3.4 and §3.5.
 use crate::derivative;
+use servobench_base::Stateful;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::TIME;
 use servobench_config::{ParameterError, positive};
@@ -30,7 +31,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Integral I (axis coordinate).
     pub integral: f64,

@@ -25,7 +25,7 @@
 //! emergency message.
 //!
 //! A finding stays until the power goes off. Without power nothing is looked for.
-use servobench_base::AlphaBeta;
+use servobench_base::{AlphaBeta, Stateful};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{CURRENT, TEMPERATURE, TIME, VELOCITY, VOLTAGE};
 use servobench_config::{Bound, Measure, ParameterError, positive};
@@ -196,7 +196,7 @@ impl Swings {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// What was found first.
     pub found: Option<Finding>,

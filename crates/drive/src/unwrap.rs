@@ -3,8 +3,9 @@
 //! A reading is taken to be the one of its images that is nearest to the reading before: right while the axis goes less than half
 //! the range in between. The first one is taken as it is, which is all that a drive knows when it is switched on.
 
+use servobench_base::Stateful;
 /// Where the drive is: all that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Unwrap {
     range: f64,
     last: Option<f64>,

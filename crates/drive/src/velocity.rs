@@ -11,7 +11,7 @@
 //! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::EffortLimits;
-use servobench_base::limit;
+use servobench_base::{Stateful, limit};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{EFFORT, TIME, VISCOUS};
 use servobench_config::{ParameterError, not_negative, positive};
@@ -40,7 +40,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct State {
     /// Integrator effort (N·m or N).
     pub integral: f64,
@@ -62,7 +62,7 @@ pub struct Input {
 }
 
 /// Which limit cuts the effort.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub enum Cut {
     /// The loop's own, [`Params::max_effort`], or that of the direction, [`Input::limits`].
     Effort,
@@ -71,7 +71,7 @@ pub enum Cut {
 }
 
 /// What tick k gives.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct Output {
     /// Effort reference (N·m or N).
     pub effort: f64,

@@ -24,7 +24,7 @@ enum Mark {
     Constant,
     /// Computed from the rest of the state.
     Derived,
-    /// An option, a list or an enum whose form the parameters decide.
+    /// An option, a list or a type whose form the parameters decide.
     Fixed,
 }
 
@@ -48,20 +48,25 @@ fn mark(attributes: &[Attribute]) -> Result<Mark, Error> {
     Ok(mark)
 }
 
-/// The statements that save and restore some fields, each of which is bound to a reference of its name.
+/// The code that saves, restores and makes some fields, each of which is bound to a reference of its name.
 #[derive(Default)]
-struct Statements {
+struct FieldCode {
     save: TokenStream,
     restore: TokenStream,
+    make: TokenStream,
     bindings: Vec<Ident>,
+    /// False where parameters are among the fields.
+    is_value: bool,
 }
 
-fn statements(fields: &Fields) -> Result<Statements, Error> {
-    let mut all = Statements::default();
+fn field_code(fields: &Fields) -> Result<FieldCode, Error> {
+    let mut all = FieldCode { is_value: true, ..FieldCode::default() };
     for (index, field) in fields.iter().enumerate() {
         let binding = field.ident.clone().unwrap_or_else(|| format_ident!("field_{index}"));
         let name = field.ident.as_ref().map_or_else(|| index.to_string(), ToString::to_string);
-        let (part, save, restore) = match mark(&field.attrs)? {
+        let mark = mark(&field.attrs)?;
+        all.is_value &= matches!(mark, Mark::None | Mark::Derived);
+        let (part, save, restore) = match mark {
             Mark::Constant => {
                 let ignored = quote!(let _ = #binding;);
                 all.save.extend(ignored.clone());
@@ -79,6 +84,7 @@ fn statements(fields: &Fields) -> Result<Statements, Error> {
             to.leave();
         });
         all.restore.extend(quote!(::servobench_base::state::#restore(#binding, from)?;));
+        all.make.extend(quote!(let #binding = ::servobench_base::state::Value::restored(from)?;));
         all.bindings.push(binding);
     }
     Ok(all)
@@ -92,17 +98,33 @@ fn pattern(fields: &Fields, bindings: &[Ident]) -> TokenStream {
     }
 }
 
+/// Bodies of `save`, `restore` and `restored`, which only a value has.
+struct Bodies {
+    save: TokenStream,
+    restore: TokenStream,
+    restored: Option<TokenStream>,
+}
+
 fn implementation(input: &DeriveInput) -> Result<TokenStream, Error> {
-    let (save, restore) = match &input.data {
-        Data::Struct(data) => {
-            let Statements { save, restore, bindings } = statements(&data.fields)?;
-            let pattern = pattern(&data.fields, &bindings);
-            (quote!(let Self #pattern = self; #save), quote!(let Self #pattern = self; #restore))
-        }
-        Data::Enum(data) => of_enum(data, mark(&input.attrs)? == Mark::Fixed)?,
+    let is_fixed = mark(&input.attrs)? == Mark::Fixed;
+    let Bodies { save, restore, restored } = match &input.data {
+        Data::Struct(data) => of_struct(&data.fields, is_fixed)?,
+        Data::Enum(data) => of_enum(data, is_fixed)?,
         Data::Union(data) => return Err(Error::new(data.union_token.span, "a union is not a state")),
     };
     let (name, (generics, arguments, bounds)) = (&input.ident, input.generics.split_for_impl());
+    let value = restored.map(|restored| {
+        quote! {
+            #[automatically_derived]
+            impl #generics ::servobench_base::state::Value for #name #arguments #bounds {
+                fn restored(
+                    from: &mut ::servobench_base::state::Reader<'_>,
+                ) -> ::core::result::Result<Self, ::servobench_base::state::Damaged> {
+                    #restored
+                }
+            }
+        }
+    });
     Ok(quote! {
         #[automatically_derived]
         impl #generics ::servobench_base::state::Stateful for #name #arguments #bounds {
@@ -112,40 +134,44 @@ fn implementation(input: &DeriveInput) -> Result<TokenStream, Error> {
             fn restore(
                 &mut self,
                 from: &mut ::servobench_base::state::Reader<'_>,
-            ) -> Result<(), ::servobench_base::state::Damaged> {
+            ) -> ::core::result::Result<(), ::servobench_base::state::Damaged> {
                 #restore
                 Ok(())
             }
         }
+        #value
     })
 }
 
-fn of_enum(data: &DataEnum, is_fixed: bool) -> Result<(TokenStream, TokenStream), Error> {
-    let (mut save, mut begin, mut restore) = (TokenStream::new(), TokenStream::new(), TokenStream::new());
+fn of_struct(fields: &Fields, is_fixed: bool) -> Result<Bodies, Error> {
+    let FieldCode { save, restore, make, bindings, is_value } = field_code(fields)?;
+    let pattern = pattern(fields, &bindings);
+    Ok(Bodies {
+        save: quote!(let Self #pattern = self; #save),
+        restore: quote!(let Self #pattern = self; #restore),
+        restored: (is_value && !is_fixed).then(|| quote!(#make Ok(Self #pattern))),
+    })
+}
+
+fn of_enum(data: &DataEnum, is_fixed: bool) -> Result<Bodies, Error> {
+    let [mut save, mut restore, mut restored] = [(); 3].map(|()| TokenStream::new());
     for (index, variant) in (0_u64..).zip(&data.variants) {
-        let fields = statements(&variant.fields)?;
+        let fields = field_code(&variant.fields)?;
+        if !fields.is_value && !is_fixed {
+            let hint = "an enum with parameters in it is `#[state(fixed)]`";
+            return Err(Error::new_spanned(variant, hint));
+        }
         let (name, pattern) = (&variant.ident, pattern(&variant.fields, &fields.bindings));
-        let (save_fields, restore_fields) = (fields.save, fields.restore);
+        let (save_fields, restore_fields, make_fields) = (fields.save, fields.restore, fields.make);
         save.extend(quote!(Self::#name #pattern => { to.word(#index); #save_fields }));
-        restore.extend(quote!(Self::#name #pattern => { #restore_fields }));
-        let is_it = quote!(matches!(self, Self::#name { .. }));
-        begin.extend(if is_fixed {
-            quote!(#index if #is_it => {})
-        } else {
-            let values = match &variant.fields {
-                Fields::Named(named) => {
-                    let names = named.named.iter().map(|field| &field.ident);
-                    quote!({ #(#names: ::core::default::Default::default()),* })
-                }
-                Fields::Unnamed(unnamed) => {
-                    let values = unnamed.unnamed.iter().map(|_| quote!(::core::default::Default::default()));
-                    quote!(( #(#values),* ))
-                }
-                Fields::Unit => quote!(),
-            };
-            quote!(#index => if !#is_it { *self = Self::#name #values; })
-        });
+        restore.extend(quote!((#index, Self::#name #pattern) => { #restore_fields }));
+        restored.extend(quote!(#index => { #make_fields Ok(Self::#name #pattern) }));
     }
-    let begin = quote!(match from.word()? { #begin _ => return Err(::servobench_base::state::Damaged), });
-    Ok((quote!(match self { #save }), quote!(#begin match self { #restore })))
+    let damaged = quote!(_ => return Err(::servobench_base::state::Damaged),);
+    let save = quote!(match self { #save });
+    if is_fixed {
+        return Ok(Bodies { save, restore: quote!(match (from.word()?, self) { #restore #damaged }), restored: None });
+    }
+    let restore = quote!(*self = ::servobench_base::state::Value::restored(from)?;);
+    Ok(Bodies { save, restore, restored: Some(quote!(match from.word()? { #restored #damaged })) })
 }

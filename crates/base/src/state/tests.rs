@@ -2,14 +2,11 @@ use super::{Damaged, Part, Stateful, Writer, restore, words};
 use std::string::String;
 use std::vec::Vec;
 
-#[derive(Debug, Clone, PartialEq, Default, Stateful)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 enum Way {
-    #[default]
     Rest,
     To(f64, Option<u8>),
-    Held {
-        since: i64,
-    },
+    Held { since: i64 },
 }
 
 #[derive(Debug, Clone, PartialEq, Stateful)]

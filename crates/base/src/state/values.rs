@@ -1,46 +1,36 @@
 //! States that are values: numbers, flags, and what is made of several states.
-use super::{Damaged, FixedForm, Part, Reader, Stateful, Writer};
+use super::{Damaged, FixedForm, Part, Reader, Stateful, Value, Writer};
 use core::convert::identity;
 
-impl Stateful for f64 {
-    fn save(&self, to: &mut dyn Writer) {
-        to.number(*self);
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        *self = from.number()?;
-        Ok(())
-    }
-}
-
-impl Stateful for bool {
-    fn save(&self, to: &mut dyn Writer) {
-        to.word((*self).into());
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        *self = match from.word()? {
-            0 => false,
-            1 => true,
-            _ => return Err(Damaged),
-        };
-        Ok(())
-    }
-}
-
-macro_rules! integers {
-    ($($type:ty, $to:expr, $from:expr;)*) => {$(
+/// Implements [`Stateful`] and [`Value`] of a type by what writes it and what reads it.
+macro_rules! values {
+    ($($type:ty: $save:expr, $restored:expr;)*) => {$(
         impl Stateful for $type {
             fn save(&self, to: &mut dyn Writer) {
-                to.word($to(*self));
+                $save(to, *self);
             }
 
             fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-                *self = $from(from.word()?).try_into().map_err(|_| Damaged)?;
+                *self = Self::restored(from)?;
                 Ok(())
             }
         }
+
+        impl Value for $type {
+            fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+                $restored(from)
+            }
+        }
     )*};
+}
+
+macro_rules! integers {
+    ($($type:ty: $to:expr, $from:expr;)*) => {
+        values! {$(
+            $type: |to: &mut dyn Writer, value| to.word($to(value)),
+                |from: &mut Reader<'_>| $from(from.word()?).try_into().map_err(|_| Damaged);
+        )*}
+    };
 }
 
 const fn signed(value: i64) -> u64 {
@@ -48,43 +38,25 @@ const fn signed(value: i64) -> u64 {
 }
 
 integers! {
-    u8, u64::from, identity;
-    u16, u64::from, identity;
-    u32, u64::from, identity;
-    usize, |value: usize| value as u64, identity;
-    i8, |value| signed(i64::from(value)), u64::cast_signed;
-    i16, |value| signed(i64::from(value)), u64::cast_signed;
-    i32, |value| signed(i64::from(value)), u64::cast_signed;
+    u8: u64::from, identity;
+    u16: u64::from, identity;
+    u32: u64::from, identity;
+    usize: |value: usize| value as u64, identity;
+    i8: |value| signed(i64::from(value)), u64::cast_signed;
+    i16: |value| signed(i64::from(value)), u64::cast_signed;
+    i32: |value| signed(i64::from(value)), u64::cast_signed;
 }
 
-impl Stateful for u64 {
-    fn save(&self, to: &mut dyn Writer) {
-        to.word(*self);
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        *self = from.word()?;
-        Ok(())
-    }
-}
-
-impl Stateful for i64 {
-    fn save(&self, to: &mut dyn Writer) {
-        to.word(signed(*self));
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        *self = from.word()?.cast_signed();
-        Ok(())
-    }
-}
-
-impl Stateful for () {
-    fn save(&self, _: &mut dyn Writer) {}
-
-    fn restore(&mut self, _: &mut Reader<'_>) -> Result<(), Damaged> {
-        Ok(())
-    }
+values! {
+    f64: |to: &mut dyn Writer, value| to.number(value), Reader::number;
+    u64: |to: &mut dyn Writer, value| to.word(value), Reader::word;
+    i64: |to: &mut dyn Writer, value| to.word(signed(value)), |from: &mut Reader<'_>| from.word().map(u64::cast_signed);
+    bool: |to: &mut dyn Writer, value: bool| to.word(value.into()), |from: &mut Reader<'_>| match from.word()? {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Damaged),
+    };
+    (): |_: &mut dyn Writer, ()| {}, |_: &mut Reader<'_>| Ok(());
 }
 
 macro_rules! tuples {
@@ -101,6 +73,12 @@ macro_rules! tuples {
             fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
                 $(self.$index.restore(from)?;)*
                 Ok(())
+            }
+        }
+
+        impl<$($name: Value),*> Value for ($($name,)*) {
+            fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+                Ok(($($name::restored(from)?,)*))
             }
         }
     };
@@ -122,19 +100,30 @@ impl<T: Stateful, const N: usize> Stateful for [T; N] {
     }
 }
 
-impl<T: Stateful + Default> Stateful for Option<T> {
+impl<T: Value, const N: usize> Value for [T; N] {
+    fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        let mut error = Ok(());
+        let all = core::array::from_fn(|_| T::restored(from).map_err(|damaged| error = Err(damaged)).ok());
+        error?;
+        // None is missing: each of them would have been an error.
+        Ok(all.map(|one: Option<T>| one.unwrap_or_else(|| unreachable!("restored"))))
+    }
+}
+
+impl<T: Value> Stateful for Option<T> {
     fn save(&self, to: &mut dyn Writer) {
         self.save_fixed(to);
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        let mut is_some = false;
-        is_some.restore(from)?;
-        if is_some {
-            return self.get_or_insert_default().restore(from);
-        }
-        *self = None;
+        *self = Self::restored(from)?;
         Ok(())
+    }
+}
+
+impl<T: Value> Value for Option<T> {
+    fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        if bool::restored(from)? { T::restored(from).map(Some) } else { Ok(None) }
     }
 }
 
@@ -172,13 +161,13 @@ impl<T: Stateful> FixedForm for [T] {
 
 #[cfg(feature = "alloc")]
 mod with_a_heap {
-    use super::{Damaged, FixedForm, Reader, Stateful, Writer};
+    use super::{Damaged, FixedForm, Reader, Stateful, Value, Writer};
     use alloc::boxed::Box;
     use alloc::collections::VecDeque;
     use alloc::string::String;
     use alloc::vec::Vec;
 
-    impl<T: Stateful + ?Sized> Stateful for Box<T> {
+    impl<T: Stateful> Stateful for Box<T> {
         fn save(&self, to: &mut dyn Writer) {
             (**self).save(to);
         }
@@ -188,17 +177,44 @@ mod with_a_heap {
         }
     }
 
-    impl<T: Stateful + Default> Stateful for Vec<T> {
-        fn save(&self, to: &mut dyn Writer) {
-            self[..].save_fixed(to);
-        }
-
-        fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-            let length = from.length()?;
-            self.resize_with(length, T::default);
-            self.iter_mut().try_for_each(|one| one.restore(from))
+    impl<T: Value> Value for Box<T> {
+        fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+            T::restored(from).map(Self::new)
         }
     }
+
+    macro_rules! lists {
+        ($($list:ident),*) => {$(
+            impl<T: Value> Stateful for $list<T> {
+                fn save(&self, to: &mut dyn Writer) {
+                    to.word(self.len() as u64);
+                    for one in self {
+                        one.save(to);
+                    }
+                }
+
+                fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+                    let length = from.length()?;
+                    self.clear();
+                    self.reserve(length);
+                    for _ in 0..length {
+                        self.extend([T::restored(from)?]);
+                    }
+                    Ok(())
+                }
+            }
+
+            impl<T: Value> Value for $list<T> {
+                fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+                    let mut list = Self::new();
+                    list.restore(from)?;
+                    Ok(list)
+                }
+            }
+        )*};
+    }
+
+    lists!(Vec, VecDeque);
 
     impl<T: Stateful> FixedForm for Vec<T> {
         fn save_fixed(&self, to: &mut dyn Writer) {
@@ -210,33 +226,23 @@ mod with_a_heap {
         }
     }
 
-    impl<T: Stateful + Default> Stateful for VecDeque<T> {
+    impl Stateful for String {
         fn save(&self, to: &mut dyn Writer) {
             to.word(self.len() as u64);
-            for one in self {
-                one.save(to);
+            for byte in self.bytes() {
+                to.word(byte.into());
             }
         }
 
         fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-            let length = from.length()?;
-            self.resize_with(length, T::default);
-            self.iter_mut().try_for_each(|one| one.restore(from))
+            *self = Self::restored(from)?;
+            Ok(())
         }
     }
 
-    impl Stateful for String {
-        fn save(&self, to: &mut dyn Writer) {
-            to.word(self.len() as u64);
-            self.bytes().for_each(|byte| to.word(byte.into()));
-        }
-
-        fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-            let mut bytes = Vec::new();
-            bytes.resize_with(from.length()?, || 0_u8);
-            bytes.iter_mut().try_for_each(|byte| byte.restore(from))?;
-            *self = Self::from_utf8(bytes).map_err(|_| Damaged)?;
-            Ok(())
+    impl Value for String {
+        fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+            Self::from_utf8(Vec::restored(from)?).map_err(|_| Damaged)
         }
     }
 }

@@ -23,7 +23,7 @@
 //! 33(1), 1997 (feedback of the voltage).
 use super::{MotorEstimate, Params as Loop};
 use crate::EffortLimits;
-use servobench_base::Dq;
+use servobench_base::{Dq, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{BANDWIDTH, RATIO};
 use servobench_config::{Bound, Measure, ParameterError, not_negative};
@@ -67,7 +67,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// What the feedback takes from the voltage (V), not above 0.
     pub correction: f64,

@@ -5,6 +5,7 @@
 //! its frame comes after all, the cycle begins anew with it: the clock follows the latest of the frames, and who comes no later
 //! is in time from then on.
 
+use servobench_base::Stateful;
 /// Rates of the clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Params {
@@ -30,7 +31,7 @@ pub enum CycleEvent {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
     /// Steps until the next cycle begins; none before the first frame.
     left: Option<u32>,

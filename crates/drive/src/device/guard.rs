@@ -7,15 +7,16 @@ use super::Params;
 use crate::Demand;
 use crate::modes::Moment;
 use crate::modes::stop::Ramp;
+use servobench_base::Stateful;
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct State {
     held: Option<Held>,
 }
 
 /// An axis that is kept from going on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Held {
     /// +1 for the positive end, −1 for the negative one.
     end: f64,

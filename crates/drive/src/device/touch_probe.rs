@@ -2,10 +2,11 @@
 //!
 //! The input is the home switch, met or left, and seen once per step: a position is late by a step at most. An index pulse has its own.
 use super::Params;
+use servobench_base::Stateful;
 use servobench_cia402::touch_probe::{ENABLED, Edge, Function};
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
     function: u16,
     /// Whether the input was active at the last step; `None` before the first one.

@@ -1,10 +1,10 @@
 //! What the loops said last.
 use crate::feedforward::MotorReference;
 use crate::{current, velocity};
-use servobench_base::{Dq, Setpoint};
+use servobench_base::{Dq, Setpoint, Stateful};
 
 /// What each loop said at its last turn, which is what a faster one and a recording see until the next.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Held {
     /// Load-side reference, delay-matched (axis coordinate).
     pub reference: Setpoint,

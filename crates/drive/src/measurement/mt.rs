@@ -11,6 +11,7 @@
 //! Source: Ohmae, Matsuda, Kamiyama, Tachikawa, *A microprocessor-controlled high-accuracy wide-range speed regulator for motor drives*,
 //! IEEE Transactions on Industrial Electronics 29(3), 1982. The bound without an edge: by hand.
 use super::Edge;
+use servobench_base::Stateful;
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{POSITION, TIME};
 use servobench_config::{ParameterError, positive};
@@ -35,7 +36,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Cycles so far.
     cycles: u64,

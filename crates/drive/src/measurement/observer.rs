@@ -21,6 +21,7 @@
 //! the effort); Brookner, *Tracking and Kalman Filtering Made Easy*, 1998, ch. 1 (gains of the fading
 //! memory; the variance is that of its prediction there, and here by hand of the corrected value).
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use servobench_base::Stateful;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{BANDWIDTH, RATIO};
 use servobench_config::{Bound, Measure, ParameterError, positive};
@@ -49,7 +50,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Measured position less the observed one (rad or m).
     pub behind: f64,

@@ -34,7 +34,7 @@ use super::ramp::{Ramp, Steepness};
 use super::{Answer, Moment};
 use crate::Demand;
 use search::{Finding, Search};
-use servobench_base::{ParamError, Setpoint, finite, positive};
+use servobench_base::{ParamError, Setpoint, Stateful, finite, positive};
 use servobench_cia402::ControlBit;
 
 pub use leg::{Direction, Event, Leg, Speed, Switch};
@@ -76,7 +76,7 @@ impl Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     phase: Phase,
     /// Bit 4 of the last controlword.

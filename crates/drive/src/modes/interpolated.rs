@@ -43,7 +43,7 @@ use super::ramp::{Ramp, Steepness};
 use super::{Answer, Moment};
 use crate::Demand;
 use course::{Course, HELD, Pace, Step, next_knot};
-use servobench_base::{ParamError, Setpoint, limit};
+use servobench_base::{ParamError, Setpoint, Stateful, limit};
 use servobench_cia402::ControlBit;
 use servobench_cia402::interpolated::{BufferError, SubMode, TimePeriod};
 use thiserror::Error;
@@ -79,7 +79,7 @@ impl Params {
 }
 
 /// All that a snapshot must hold, beside the buffer.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     phase: Phase,
     /// Bit 4 at the last step.

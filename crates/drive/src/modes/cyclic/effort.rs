@@ -3,6 +3,7 @@ use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
+use servobench_base::Stateful;
 
 /// How the drive interpolates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,7 +13,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     effort: Linear,
     progress: Progress,

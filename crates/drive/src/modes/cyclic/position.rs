@@ -18,7 +18,7 @@ use crate::Demand;
 use crate::device::CycleEvent;
 use crate::modes::reach::Reach;
 use crate::modes::{Answer, Moment};
-use servobench_base::{ParamError, Setpoint, limit};
+use servobench_base::{ParamError, Setpoint, Stateful, limit};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 
 /// How the drive interpolates.
@@ -49,7 +49,7 @@ impl Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// The last targets, the newest last: as many as the interpolation needs.
     points: [Sample; 4],

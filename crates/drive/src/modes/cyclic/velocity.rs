@@ -4,7 +4,7 @@ use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// How the drive interpolates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     velocity: Linear,
     effort_offset: Linear,

@@ -3,6 +3,7 @@
 use super::slopes::Slopes;
 use crate::Demand;
 use crate::modes::{Answer, Moment};
+use servobench_base::Stateful;
 
 /// The slope.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// Effort of the next step.
     effort: f64,

@@ -32,7 +32,7 @@ use super::way::Way;
 use crate::Demand;
 use crate::device::{Dwell, Window};
 use crate::modes::{Answer, Moment};
-use servobench_base::{ParamError, Setpoint, non_negative};
+use servobench_base::{ParamError, Setpoint, Stateful, non_negative};
 use servobench_cia402::ControlBit;
 use servobench_motion::online::Target;
 use set_point::SetPoint;
@@ -75,7 +75,7 @@ fn asks(now: &Moment) -> bool {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     way: Option<Way>,
     /// Where the axis is held without a way.

@@ -14,7 +14,7 @@ use super::way::Way;
 use crate::Demand;
 use crate::device::{Dwell, Window};
 use crate::modes::{Answer, Moment};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
 
 /// Highest velocity (m/s or rad/s) that a way is planned with when there is no limit.
@@ -34,7 +34,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// Velocity of the next step, on linear ramps.
     velocity: f64,
