@@ -58,6 +58,38 @@ pub trait Value: Stateful + Sized {
     fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged>;
 }
 
+/// Implements [`Stateful`] and [`Value`] of a type by another value: what it is saved as, and what makes it of that, or nothing.
+///
+/// ```
+/// #[derive(Debug, PartialEq)]
+/// struct Even(u32);
+///
+/// servobench_base::saved_as!(Even: u32, |even: &Even| even.0 / 2, |half: u32| half.checked_mul(2).map(Self));
+/// ```
+#[macro_export]
+macro_rules! saved_as {
+    ($type:ty: $value:ty, $save:expr, $make:expr) => {
+        impl $crate::state::Stateful for $type {
+            fn save(&self, to: &mut dyn $crate::state::Writer) {
+                let value: $value = ($save)(self);
+                $crate::state::Stateful::save(&value, to);
+            }
+
+            fn restore(&mut self, from: &mut $crate::state::Reader<'_>) -> Result<(), $crate::state::Damaged> {
+                *self = $crate::state::Value::restored(from)?;
+                Ok(())
+            }
+        }
+
+        impl $crate::state::Value for $type {
+            fn restored(from: &mut $crate::state::Reader<'_>) -> Result<Self, $crate::state::Damaged> {
+                let value: $value = $crate::state::Value::restored(from)?;
+                ($make)(value).ok_or($crate::state::Damaged)
+            }
+        }
+    };
+}
+
 /// An option or a list whose form the parameters decide.
 pub trait FixedForm {
     /// See [`Stateful::save`].

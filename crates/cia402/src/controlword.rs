@@ -12,6 +12,7 @@
 //!
 //! While bit 7 is set, no other command is given.
 
+use servobench_base::Stateful;
 /// A bit of the controlword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
@@ -116,7 +117,7 @@ impl Command {
 }
 
 /// The controlword (6040h). Any sixteen bits may arrive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub struct Controlword(u16);
 
 impl Controlword {

@@ -13,6 +13,7 @@
 //! Sources: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020); *CANopen Programmer's Manual*, 95-00271-000 rev. 7
 //! (2012), pp. 209–218, 2010h to 2013h; IEC 61800-7-201, interpolated position mode.
 mod segment_command;
+use servobench_base::Stateful;
 pub mod serial;
 mod sub_mode;
 
@@ -23,7 +24,7 @@ pub use sub_mode::{SettingError, SubMode, TimePeriod};
 pub const CAPACITY: usize = 32;
 
 /// A point of a move in the units of the drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub struct Point {
     /// Position (counts), or with `is_relative` the way from the point before; for the first point of a move from the position
     /// at which it is started.

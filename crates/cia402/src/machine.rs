@@ -14,6 +14,7 @@ use crate::option_code::{
 use crate::state::PowerState;
 use crate::statusword::{StatusBit, Statusword};
 use crate::transitions::{Cause, Causes, Transition, set_off};
+use servobench_base::Stateful;
 
 /// The option codes of a drive; those of [`Default`] are the profile's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,7 +32,7 @@ pub struct PowerParams {
 }
 
 /// What the machine remembers from step to step; [`Default`] is the drive after power-on (transition 0).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct PowerMemory {
     /// State of the drive.
     state: PowerState,

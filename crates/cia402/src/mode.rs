@@ -1,7 +1,8 @@
 //! Modes of operation (6060h, 6061h).
 
+use servobench_base::Stateful;
 /// A mode of operation that this profile describes here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 #[repr(i8)]
 pub enum Mode {
     /// The drive plans a move to each target position (pp).

@@ -1,10 +1,11 @@
 //! How the drive function ends: the option codes (605Ah to 605Eh).
 //!
 //! Codes below zero are the manufacturer's, those above the listed ones reserved: both are refused.
+use servobench_base::Stateful;
 use thiserror::Error;
 
 /// How the axis is braked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Deceleration {
     /// On the slow-down ramp, the deceleration of the mode of operation (6084h).
     SlowDownRamp,

@@ -1,8 +1,9 @@
 //! The states of the power drive system (IEC 61800-7-201, finite state automaton).
 use core::fmt;
+use servobench_base::Stateful;
 
 /// A state of the power drive system, as the statusword (6041h) tells it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum PowerState {
     /// Initialisation and self-test; nothing is commanded yet.
     #[default]

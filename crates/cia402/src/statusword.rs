@@ -11,6 +11,7 @@
 //! | Fault reaction active | 004Fh | `0x 1111` |
 //! | Fault | 004Fh | `0x 1000` |
 use crate::PowerState;
+use servobench_base::Stateful;
 
 /// A bit of the statusword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -57,7 +58,7 @@ impl StatusBit {
 }
 
 /// The statusword (6041h): a state and the bits beside it. Any sixteen bits may arrive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub struct Statusword(u16);
 
 /// Bits 6 and 3–0: they tell a state by which bit 5 is not given.

@@ -1,9 +1,9 @@
 //! What the mode of operation asks of the loops, and how much effort they may make of it.
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// What the loops are to do at a tick. Positions and velocities are in the axis coordinate (m or rad), efforts in the
 /// motor's (N·m or N).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Demand {
     /// The motor carries no current.
     Off,
@@ -29,7 +29,7 @@ pub enum Demand {
 
 /// The largest efforts that the loops may ask for beside the drive's own limits, magnitudes in the motor's coordinate (N·m or N);
 /// may be infinite.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct EffortLimits {
     /// In positive direction.
     pub forward: f64,
@@ -73,7 +73,7 @@ impl EffortLimits {
 }
 
 /// What is fed forward beside a set-point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Offsets {
     /// To the velocity loop (m/s or rad/s).
     pub velocity: f64,

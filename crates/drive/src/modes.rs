@@ -11,13 +11,13 @@ mod reach;
 pub mod stop;
 
 use crate::Demand;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_cia402::Controlword;
 
 pub use ramp::Steepness;
 
 /// What a mode sees at a step of the drive.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Moment {
     /// What the master sends.
     pub targets: Targets,
@@ -31,7 +31,7 @@ pub struct Moment {
 }
 
 /// What the master sends.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Targets {
     /// With the bits that a mode gives a meaning of its own.
     pub controlword: Controlword,
@@ -60,7 +60,7 @@ pub struct Targets {
 }
 
 /// What the drive measures.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Actual {
     /// Position, the home offset included.
     pub position: f64,

@@ -107,7 +107,7 @@ pub struct Phases {
 }
 
 /// What was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Finding {
     /// The DC link is too high.
     OverVoltage,
@@ -144,7 +144,7 @@ const LEAST: f64 = 0.25;
 const OF_LOST: f64 = 0.5;
 
 /// Course of the speed while the current brakes, from turn to turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Braked {
     /// Where it turned last, and the farthest that it came from there.
     turn: f64,
@@ -153,7 +153,7 @@ struct Braked {
 }
 
 /// Speed that was gained and lost against the current, forgotten by and by.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Swings {
     now: Option<Braked>,
     gained: f64,

@@ -1,11 +1,11 @@
 //! What a move may not exceed, and the order of the profile that respects it.
 use crate::PlanError;
-use servobench_base::{ParamError, positive};
+use servobench_base::{ParamError, Stateful, positive};
 use servobench_config::Kind::Axis;
 use servobench_config::quantities::{ACCELERATION, JERK, SNAP, VELOCITY};
 
 /// Order of a rest-to-rest profile: the derivative of position that is piecewise constant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Stateful)]
 pub enum Order {
     /// Trapezoidal velocity: acceleration switches, jerk is not limited.
     Second,

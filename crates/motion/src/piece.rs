@@ -1,12 +1,12 @@
 //! One polynomial of a profile.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// The polynomial that holds at one time of a [`Profile`](crate::Profile) and for a while after it.
 ///
 /// Whoever asks for set-points in the order of time keeps it as long as it [`holds`](Self::holds), instead of having
 /// it looked up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same bit for bit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Piece {
     pub(crate) anchor: Setpoint,
     /// Where the polynomial is anchored and how far it goes (s from `origin`, in the direction of `sign`).

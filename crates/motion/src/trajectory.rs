@@ -1,10 +1,10 @@
 //! A way through time whose highest derivative is constant piece by piece.
 use crate::online::Stretch;
 use crate::{Order, Piece, Segment};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// Up to `N` segments from a first state on, in the axis unit (m or rad) and seconds from the start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Trajectory<const N: usize> {
     order: Order,
     /// Starts of the segments (s): sums of the lengths, which looking a set-point up needs at once.

@@ -4,7 +4,7 @@ use crate::engine::EngineName;
 use crate::fmu::FmuModel;
 use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
-use servobench_base::{ParamError, Setpoint, Severity, finite, positive};
+use servobench_base::{ParamError, Setpoint, Severity, Stateful, finite, positive};
 use servobench_fmi::FmuMistake;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -13,7 +13,7 @@ use thiserror::Error;
 ///
 /// The motor's are in the motor's own coordinate (rad and rad/s for a rotary motor, m and m/s for a linear one), those
 /// of all other bodies in the axis coordinate (m or rad).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct BodyState {
     /// Position (m or rad).
     pub position: f64,

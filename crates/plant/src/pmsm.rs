@@ -46,7 +46,7 @@ use maps::{Forms, Maps};
 pub(crate) use open_phase::OpenPhase;
 pub use phases::PhaseParameter;
 pub(crate) use segment::Equations;
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, Stateful, wide_registers};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{FLUX_LINKAGE, INDUCTANCE, RATIO, RESISTANCE};
 use servobench_config::{not_negative, positive};
@@ -85,7 +85,7 @@ pub struct Params {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Stator current in the rotor frame (A, peak).
     pub current: Dq,
@@ -166,7 +166,7 @@ impl Input {
 }
 
 /// Mean powers over a tick (W): `electrical = copper + iron + stored + air_gap`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Power {
     /// Into the terminals.
     pub electrical: f64,

@@ -7,19 +7,26 @@ use crate::sensor::{CurrentSensor, CurrentSensorState};
 use crate::source::IdealSource;
 use crate::wiring::Wiring;
 use crate::{inverter, pmsm};
-use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand};
+use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand, Stateful};
 use synchronous::Synchronous;
 
 /// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 pub struct PowerStage(Stage);
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 enum Stage {
     /// Inverter and synchronous motor.
     Synchronous(Synchronous),
     /// Ideal source: effort = gain · output, |output| ≤ limit.
-    Ideal { gain: f64, limit: f64 },
+    Ideal {
+        #[state(constant)]
+        gain: f64,
+        #[state(constant)]
+        limit: f64,
+    },
     /// Off, or a motor that follows its set-point: no effort.
     Off,
 }

@@ -16,7 +16,7 @@
 //! and the arc takes its energy within the tick, counted with the copper loss. Source: Clarke's transformation (Krause, *Analysis of
 //! Electric Machinery*, 3rd ed., ch. 3); constancy of flux linkages at a sudden change, ch. 1.
 use crate::pmsm;
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Rotation, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::not_negative;
 use servobench_config::quantities::TIME;
@@ -106,8 +106,9 @@ impl Wiring {
 }
 
 /// A cable at work: all that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Cable {
+    #[state(constant)]
     wiring: Wiring,
     /// Ticks so far.
     tick: u64,

@@ -48,7 +48,7 @@ fn mark(attributes: &[Attribute]) -> Result<Mark, Error> {
     Ok(mark)
 }
 
-/// The code that saves, restores and makes some fields, each of which is bound to a reference of its name.
+/// The code that saves, restores and makes some fields, each of which is bound to a name.
 #[derive(Default)]
 struct FieldCode {
     save: TokenStream,
@@ -62,8 +62,9 @@ struct FieldCode {
 fn field_code(fields: &Fields) -> Result<FieldCode, Error> {
     let mut all = FieldCode { is_value: true, ..FieldCode::default() };
     for (index, field) in fields.iter().enumerate() {
-        let binding = field.ident.clone().unwrap_or_else(|| format_ident!("field_{index}"));
         let name = field.ident.as_ref().map_or_else(|| index.to_string(), ToString::to_string);
+        // A field may have the name of an argument.
+        let binding = format_ident!("field_{name}");
         let mark = mark(&field.attrs)?;
         all.is_value &= matches!(mark, Mark::None | Mark::Derived);
         let (part, save, restore) = match mark {
@@ -92,7 +93,10 @@ fn field_code(fields: &Fields) -> Result<FieldCode, Error> {
 
 fn pattern(fields: &Fields, bindings: &[Ident]) -> TokenStream {
     match fields {
-        Fields::Named(_) => quote!({ #(#bindings),* }),
+        Fields::Named(named) => {
+            let names = named.named.iter().map(|field| &field.ident);
+            quote!({ #(#names: #bindings),* })
+        }
         Fields::Unnamed(_) => quote!(( #(#bindings),* )),
         Fields::Unit => quote!(),
     }

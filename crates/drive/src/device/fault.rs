@@ -1,9 +1,10 @@
 //! What sends the drive into its fault reaction.
 use crate::supervision::Finding;
+use servobench_base::Stateful;
 use servobench_cia402::ErrorCode;
 
 /// A fault, with the code that the profile gives it (603Fh; IEC 61800-7-201, error codes).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Fault {
     /// The power was gone while the drive function was enabled.
     MainsMissing,

@@ -2,10 +2,11 @@
 use super::{CycleEvent, Params};
 use crate::modes::interpolated::Buffer;
 use crate::modes::{Answer, Moment, cyclic, homing, interpolated, profile};
+use servobench_base::Stateful;
 use servobench_cia402::Mode;
 
 /// A mode, by its abbreviation, and its state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) enum Running {
     Pp(profile::position::State),
     Pv(profile::velocity::State),

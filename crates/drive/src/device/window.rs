@@ -1,5 +1,5 @@
 //! Conditions that have to last: windows with a time.
-use servobench_base::{ParamError, limit, non_negative};
+use servobench_base::{ParamError, Stateful, limit, non_negative};
 
 /// How near a value must be, or how far it may be, and for how long.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ impl Window {
 }
 
 /// For how many steps a condition has held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Dwell {
     steps: u32,
 }

@@ -3,6 +3,7 @@
 //! A target that comes with a frame is reached at the end of the cycle that begins with it. What goes with it, the offsets,
 //! goes linearly to its value in the same time. A cycle that begins without a new frame goes on with the velocity of the one
 //! before it, or with the same velocity or effort target.
+use servobench_base::Stateful;
 pub mod effort;
 pub mod position;
 pub mod velocity;
@@ -10,7 +11,7 @@ pub mod velocity;
 use crate::device::CycleEvent;
 
 /// A value that goes linearly to each of its targets within a cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Linear {
     from: f64,
     to: f64,
@@ -37,7 +38,7 @@ impl Linear {
 }
 
 /// How far a cycle has gone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 struct Progress {
     steps: u32,
 }

@@ -85,7 +85,7 @@ pub struct State {
 }
 
 /// Why a search failed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Failure {
     /// This limit switch came.
     Limit(Switch),
@@ -93,7 +93,7 @@ pub enum Failure {
     Motion,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 enum Phase {
     /// Not started, or interrupted.
     Idle,

@@ -88,7 +88,7 @@ pub struct State {
     ramp: Ramp,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 enum Phase {
     /// Before the first step.
     TakingOver,
@@ -104,7 +104,7 @@ enum Phase {
 }
 
 /// Why a move was not started.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum StartRefused {
     /// Errors of the buffer are latched.
     #[error("errors {errors:#04x} of the trajectory buffer are latched (2012h): clear them first")]

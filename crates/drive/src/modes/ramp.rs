@@ -1,6 +1,6 @@
 //! From one velocity to another within an acceleration and a jerk: legs of a search, and stops.
 use super::Moment;
-use servobench_base::{ParamError, Setpoint, positive};
+use servobench_base::{ParamError, Setpoint, Stateful, positive};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 use servobench_motion::{Order, PlanError};
 
@@ -23,7 +23,7 @@ impl Steepness {
 }
 
 /// The ramp under way, and how far it is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct Ramp {
     way: Option<Transition>,
     /// Velocity that it leads to.

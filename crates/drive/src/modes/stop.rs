@@ -12,10 +12,10 @@
 //! Where a position loop was closed it stays closed and holds the axis at the end; where none was, the velocity loop brakes.
 //! At the current or the voltage limit the velocity loop is asked for standstill at once, and whatever limits it brakes.
 use crate::{Demand, Offsets};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// A ramp to standstill.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Ramp {
     from: Setpoint,
     duration: f64,

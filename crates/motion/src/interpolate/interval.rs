@@ -3,10 +3,10 @@ use super::Mode;
 use super::polynomial::Polynomial;
 use crate::PlanError;
 use crate::limits::in_range;
-use servobench_base::{ParamError, Setpoint, positive};
+use servobench_base::{ParamError, Setpoint, Stateful, positive};
 
 /// What the slow task commands at one of its ticks.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Sample {
     /// Position (m or rad).
     pub x: f64,

@@ -12,14 +12,14 @@ use super::{DirectionalLimits, Effort, RampLimits, Target, turning};
 use crate::limits::within_range;
 use crate::stretch::LONGEST;
 use crate::{Order, Piece, PlanError, Segment, Trajectory};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// Stretches at most: those of a plan to a stop, at which there is neither a second way home nor a cruise, and those of one from
 /// rest, before which nothing is led back.
 const STRETCHES: usize = ladder::STRETCHES + third::FASTEST;
 
 /// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Transition {
     way: Trajectory<STRETCHES>,
     excess: f64,

@@ -14,7 +14,7 @@
 //! ```
 //! and with P alone it is exact: u² falls in a line. Inverter and motor have u(k) during the tick. Source: Mohan, Undeland & Robbins, *Power
 //! Electronics*, ch. 5 (rectifier with a capacitor), ch. 14 (dissipation of regenerated energy).
-use servobench_base::ParamError;
+use servobench_base::{ParamError, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{CAPACITANCE, FREQUENCY, RATIO, RESISTANCE, TIME, VOLTAGE};
 use servobench_config::{Bound, Measure, not_negative, positive};
@@ -83,7 +83,7 @@ pub struct Brake {
 }
 
 /// All that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct LinkState {
     /// Voltage of the capacitor (V).
     pub voltage: f64,
@@ -94,7 +94,7 @@ pub struct LinkState {
 }
 
 /// Mean powers over a tick (W).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct LinkPower {
     /// From the mains.
     pub source: f64,

@@ -22,7 +22,7 @@ use super::modulation::duties;
 use super::params::Params;
 use super::tick::{Input, Ripple, Tick};
 use crate::pmsm::{self, Equations, Span, Sums, Winding};
-use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, wide_registers};
+use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, Stateful, wide_registers};
 
 /// How carrier and base tick go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ pub(crate) struct Switching {
 }
 
 /// Where the bridge is; all that a snapshot must hold beside the current.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Bridge {
     /// Ticks since the period began.
     tick: u32,

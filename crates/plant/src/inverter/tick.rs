@@ -1,6 +1,6 @@
 //! A tick of an inverter and the winding on it, however its voltage is made.
 use crate::pmsm;
-use servobench_base::{AlphaBeta, Rotation};
+use servobench_base::{AlphaBeta, Rotation, Stateful};
 
 /// What acts from tick k to k+1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ pub(crate) struct Tick {
 }
 
 /// Length of the current vector over a tick, the ripple of an inverter that switches included (A); zero with one that is averaged.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Ripple {
     /// Largest at the edges of the switches and the ends of the tick.
     pub peak: f64,

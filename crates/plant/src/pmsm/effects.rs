@@ -5,7 +5,7 @@ use super::temperature::ThermalSteps;
 use super::varying::Varying;
 use super::winding::{Span, Sums, Winding};
 use super::{Cogging, FluxHarmonic, FluxMap, IronLoss, Output, Params, State, Temperature, Temperatures, Ticks, iron};
-use servobench_base::{Dq, ParamError};
+use servobench_base::{Dq, ParamError, Stateful};
 
 /// The effects of a motor. None is switched on by default.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,21 +75,28 @@ pub struct Travel {
 /// electrical = copper + iron + stored + air gap
 /// ```
 /// The energy of the magnets goes into `stored`, so that what goes in is what comes out, whatever is switched on.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct RealMotor {
+    #[state(constant)]
     effects: Effects,
     /// The motor as its data sheet has it.
+    #[state(constant)]
     params: Params,
+    #[state(constant)]
     phases: PhaseMatrix,
+    #[state(fixed)]
     warming: Option<Warming>,
     /// Length of a tick (s).
+    #[state(constant)]
     h: f64,
 }
 
 /// Two bodies under way.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 struct Warming {
+    #[state(constant)]
     model: Temperature,
+    #[state(constant)]
     steps: ThermalSteps,
     now: Temperatures,
 }

@@ -10,7 +10,7 @@
 //! advanced exactly, and resistance and flux linkage follow at the next tick. How much later than the temperature they are, h over
 //! a thermal time constant of seconds, is below 1e-4 of what they change. What a flux linkage that changes induces is left out.
 use super::Params;
-use servobench_base::ParamError;
+use servobench_base::{ParamError, Stateful};
 use servobench_config::Bound::Within;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{HEAT_CAPACITY, PER_KELVIN, TEMPERATURE, THERMAL_RESISTANCE};
@@ -54,7 +54,7 @@ pub const CLASS_F: f64 = 155.0;
 pub const COPPER: f64 = 0.003_93;
 
 /// Temperatures in °C.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Temperatures {
     /// Winding.
     pub winding: f64,

@@ -7,7 +7,7 @@ use crate::sensor::CurrentSensorState;
 use crate::wiring::{Cable, Wiring, WiringParameter};
 use crate::{inverter, pmsm};
 use real::RealInverter;
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, ParamError, Stateful};
 use std::sync::Arc;
 
 /// Inverter, motor and current sensors.
@@ -15,8 +15,9 @@ use std::sync::Arc;
 /// ```text
 /// tick k:  measure (rotor, current) → inverter (voltage over the tick) → motor (current at k+1, mean effort, powers)
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Synchronous {
+    #[state(constant)]
     motor: Arc<pmsm::Ticks>,
     state: pmsm::State,
     /// DC-link voltage (V).
@@ -24,6 +25,7 @@ pub(super) struct Synchronous {
     /// Motor speed a tick ago (rad/s), to tell the mean over the coming tick.
     last_speed: f64,
     /// Rotor at this tick.
+    #[state(derived)]
     rotor: KnownRotation,
     /// Whether the inverter gives less voltage than it is asked for.
     shortens: bool,
@@ -32,12 +34,16 @@ pub(super) struct Synchronous {
     /// Mean powers of the motor over the tick, where they are wanted.
     power: Option<pmsm::Power>,
     /// What the motor does beside its equations.
+    #[state(fixed)]
     effects: Option<Box<pmsm::RealMotor>>,
     /// What inverter and link do beside giving the voltage that they are asked for.
+    #[state(fixed)]
     inverter: Option<Box<RealInverter>>,
     /// The current sensors, where they err.
+    #[state(fixed)]
     sensor: Option<Box<CurrentSensorState>>,
     /// The cable, where it is not as it should be.
+    #[state(fixed)]
     cable: Option<Box<Cable>>,
 }
 

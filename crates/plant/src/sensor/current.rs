@@ -18,7 +18,7 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::noise::Noise;
 use super::turn;
-use servobench_base::{AlphaBeta, Countdown, Divider, Dq, ElectricalAngle, ParamError, Rotation};
+use servobench_base::{AlphaBeta, Countdown, Divider, Dq, ElectricalAngle, ParamError, Rotation, Stateful};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{CURRENT_NOISE, CURRENT_OF_A_PHASE, RATIO, TIME};
 use servobench_config::{Bound, Measure, any, not_negative, positive};
@@ -119,10 +119,13 @@ impl CurrentSensor {
 }
 
 /// The sensors at work: all that a snapshot must hold.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(crate) struct State {
+    #[state(constant)]
     params: CurrentSensor,
+    #[state(constant)]
     noise: Noise,
+    #[state(constant)]
     every: Divider,
     turn: Countdown,
     /// Samples so far.

@@ -6,8 +6,9 @@
 //! s is what the increments are taken of, with all errors before them. Between two ticks it is a line, which is exact at constant speed;
 //! an acceleration a moves the edge by up to a·h²/8 of position: of second order in the tick.
 
+use servobench_base::Stateful;
 /// The last edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Edge {
     /// How long ago it was (s).
     pub age: f64,
@@ -16,7 +17,7 @@ pub struct Edge {
 }
 
 /// Times edges; all that a snapshot must hold.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct Timing {
     /// Position at the last tick, and the increment that was read of it.
     last: Option<(f64, f64)>,

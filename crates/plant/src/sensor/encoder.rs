@@ -18,7 +18,7 @@ use super::noise::Noise;
 use super::signals::{Evaluation, Signals};
 use super::turn;
 use crate::mechanics::BodyState;
-use servobench_base::{ElectricalAngle, ParamError};
+use servobench_base::{ElectricalAngle, ParamError, Stateful};
 use servobench_config::Kind::{Axis, Plain};
 use servobench_config::quantities::{POSITION, RATIO, TIME};
 use servobench_config::{Bound, Measure, any, not_negative, positive};
@@ -168,24 +168,33 @@ impl Encoder {
 }
 
 /// An encoder at work: all that a snapshot must hold.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct EncoderState {
+    #[state(constant)]
     encoder: Encoder,
+    #[state(fixed)]
     erring: Option<Box<Erring>>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 struct Erring {
+    #[state(constant)]
     errors: EncoderErrors,
+    #[state(constant)]
     noise: Noise,
+    #[state(fixed)]
     past: Option<Past>,
+    #[state(fixed)]
     evaluation: Option<Evaluation>,
     timing: Option<Timing>,
+    #[state(constant)]
     gives_velocity: bool,
     /// What the drive adds to the position for its commutation.
+    #[state(constant)]
     to_rotor: f64,
     /// Readings so far.
     taken: u64,
+    #[state(constant)]
     h: f64,
 }
 

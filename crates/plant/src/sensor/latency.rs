@@ -3,17 +3,21 @@
 //! Between two ticks the position is the cubic of Hermite through both positions and velocities: of fourth order in the tick, and
 //! exact under constant acceleration and constant jerk. Before the first tick the body is taken to have moved as it moves then.
 use crate::mechanics::BodyState;
+use servobench_base::Stateful;
 
 /// The last states of a body: all that a snapshot must hold.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Past {
     /// From the oldest on, in a ring.
     states: Vec<BodyState>,
     newest: usize,
     is_begun: bool,
     /// Whole ticks, and share of a tick, that it looks back.
+    #[state(constant)]
     ticks: usize,
+    #[state(constant)]
     share: f64,
+    #[state(constant)]
     h: f64,
 }
 

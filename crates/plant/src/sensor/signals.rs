@@ -19,7 +19,7 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::turn;
 use core::f64::consts::TAU;
-use servobench_base::ParamError;
+use servobench_base::{ParamError, Stateful};
 
 servobench_config::choices! {
     /// A signal of a sine–cosine encoder.
@@ -85,12 +85,15 @@ impl Signals {
 }
 
 /// The evaluation of the signals: all that a snapshot must hold.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Evaluation {
+    #[state(constant)]
     signals: Signals,
     /// Periods per position.
+    #[state(constant)]
     per_period: f64,
     /// Sine and cosine of the phase error.
+    #[state(constant)]
     skew: (f64, f64),
     /// Position read last, in periods.
     last: f64,

@@ -1,9 +1,10 @@
 //! A leg of a search: in which direction, how fast, and until when.
 use crate::modes::Actual;
 use core::fmt;
+use servobench_base::Stateful;
 
 /// A switch at the axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Switch {
     /// At the negative end of the axis, on from there outwards.
     NegativeLimit,
@@ -36,7 +37,7 @@ impl Switch {
 }
 
 /// A direction along the axis; positions grow to the right.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Direction {
     /// To the left.
     Negative,

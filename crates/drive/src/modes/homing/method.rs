@@ -8,6 +8,7 @@
 //! met at the speed for the switch, as the drawing of the profile has it, and then passed at that for zero: where it was met in the
 //! direction in which it is sought, the axis goes back first. So what is found does not depend on where the axis started.
 use super::leg::{Direction, Event, Leg, Speed, Switch};
+use servobench_base::Stateful;
 use thiserror::Error;
 
 /// A homing method of the profile (6098h).
@@ -20,6 +21,8 @@ pub struct Method {
     turns_at_limit: bool,
 }
 
+servobench_base::saved_as!(Method: i8, Method::number, |number| Self::from_number(number).ok());
+
 /// A value of 6098h that is no method here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("homing method (6098h) must be one of 1 to 14, 17 to 30, 33, 34, 35 and 37, got {number}")]
@@ -29,7 +32,7 @@ pub struct UnknownMethod {
 }
 
 /// Where the axis is as the search begins, or begins anew.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Start {
     /// The switch of the method is off.
     Off,

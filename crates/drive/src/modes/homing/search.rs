@@ -3,9 +3,10 @@ use super::Params;
 use super::leg::{Direction, Event, Leg, Switch};
 use super::method::{Method, Start};
 use crate::modes::{Actual, Moment};
+use servobench_base::Stateful;
 
 /// Where a search is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) struct Search {
     method: Method,
     start: Start,

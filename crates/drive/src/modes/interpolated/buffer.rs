@@ -1,9 +1,10 @@
 //! The trajectory buffer: 32 points, what went wrong with them, and the two words in which a master reads that.
+use servobench_base::Stateful;
 use servobench_cia402::interpolated::{BufferError, CAPACITY, Point, SegmentCommand};
 use thiserror::Error;
 
 /// A point on its way out of the buffer, or a place from which the next relative one counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) enum Entry {
     Point(Point),
     Base(i32),
@@ -36,7 +37,7 @@ pub enum Refusal {
 }
 
 /// The buffer. It outlives the moves: points are added before one is started, and while it runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct Buffer {
     entries: [Entry; CAPACITY],
     first: usize,

@@ -13,14 +13,14 @@
 use super::Params;
 use super::buffer::{Buffer, Entry};
 use crate::modes::reach::Reach;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_cia402::interpolated::Point;
 
 /// Unit of a drive's velocity (counts/s).
 const VELOCITY_UNIT: f64 = 0.1;
 
 /// A point with its position made absolute.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Knot {
     /// Position (counts); relative points may leave the 32 bits of a counter.
     pub(super) counts: i64,
@@ -41,7 +41,7 @@ pub(super) fn next_knot(buffer: &mut Buffer, mut origin: i64) -> Option<Knot> {
 }
 
 /// The segment under way.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Course {
     /// State at the beginning of the segment, and the derivatives that hold for all of it.
     start: Setpoint,
@@ -67,7 +67,7 @@ pub(super) enum Step {
 }
 
 /// How long segments of constant time last in the end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) enum Pace {
     /// As long as the points say.
     Given,

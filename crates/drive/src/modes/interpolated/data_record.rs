@@ -3,6 +3,7 @@
 //! The write of the highest sub-index that the sub-mode uses adds the point: its position (1), in sub-mode −2 its time (2), in
 //! −3 its velocity (3).
 use super::buffer::{Buffer, Refusal};
+use servobench_base::Stateful;
 use servobench_cia402::interpolated::{Point, SubMode, TimePeriod};
 use thiserror::Error;
 
@@ -32,7 +33,7 @@ pub enum RecordError {
 }
 
 /// The data record (60C1h): what was written to it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct DataRecord {
     position: i32,
     time_ms: u8,

@@ -64,7 +64,7 @@ impl Params {
 }
 
 /// Bit 4 of the last controlword and bit 12 of the statusword.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 struct Handshake {
     asks: bool,
     acknowledges: bool,

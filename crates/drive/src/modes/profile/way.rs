@@ -1,10 +1,10 @@
 //! A planned way that is gone step by step.
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Piece;
 use servobench_motion::online::Transition;
 
 /// A planned way and how far it has been gone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Way {
     pub(super) transition: Transition,
     /// The part of it that is being gone.

@@ -7,7 +7,7 @@
 use super::Synchronous;
 use crate::inverter::{self, Averaged, Bridge, LinkParams, LinkPower, LinkState, Modulation, Ripple, Switching};
 use crate::pmsm::{self, Winding as _};
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Stateful};
 use std::sync::Arc;
 
 /// Largest turn of the rotor in a tick (rad, electrical). One that turns further has diverged, and its windings, which are followed in
@@ -15,10 +15,12 @@ use std::sync::Arc;
 const MOST_TURN: f64 = 1024.0;
 
 /// An inverter on its link, and what they did in the last tick.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 pub(super) struct RealInverter {
     modulator: Modulator,
-    link: Option<(LinkParams, LinkState)>,
+    #[state(fixed)]
+    link: Option<Link>,
     /// Mean loss of the devices over the tick (W).
     loss: f64,
     /// Mean powers of the link over the tick (W).
@@ -27,10 +29,19 @@ pub(super) struct RealInverter {
     ripple: Ripple,
 }
 
-#[derive(Debug, Clone)]
+/// A link at work.
+#[derive(Debug, Clone, Stateful)]
+struct Link {
+    #[state(constant)]
+    params: LinkParams,
+    state: LinkState,
+}
+
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 enum Modulator {
-    Averaged(Arc<Averaged>),
-    Switching(Arc<Switching>, Bridge),
+    Averaged(#[state(constant)] Arc<Averaged>),
+    Switching(#[state(constant)] Arc<Switching>, Bridge),
 }
 
 impl RealInverter {
@@ -53,7 +64,7 @@ impl RealInverter {
             }
         };
         let is_real = !inverter.is_ideal() || link.is_some();
-        let link = link.map(|link| (*link, link.at_first()));
+        let link = link.map(|params| Link { params: *params, state: params.at_first() });
         let (link_power, ripple) = (LinkPower::default(), Ripple::default());
         Ok(is_real.then_some(Self { modulator, link, loss: 0.0, link_power, ripple }))
     }
@@ -76,13 +87,13 @@ impl RealInverter {
 
     /// Voltage of the link without load (V).
     pub(super) fn link_voltage(&self) -> Option<f64> {
-        self.link.as_ref().map(|(params, _)| params.voltage)
+        self.link.as_ref().map(|link| link.params.voltage)
     }
 
     /// The link supplies what the motor takes, `power` (W), and the devices, over a tick of `h` (s). Its voltage from now on is returned,
     /// if it changes.
     fn supply(&mut self, power: f64, h: f64) -> Option<f64> {
-        let (params, state) = self.link.as_mut()?;
+        let Link { params, state } = self.link.as_mut()?;
         self.link_power = params.step(state, power + self.loss, h);
         Some(state.voltage)
     }

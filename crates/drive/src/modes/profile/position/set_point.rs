@@ -1,12 +1,12 @@
 //! One set-point: the profile of the frame that gave it, and the ways by that profile.
 use super::Params;
 use crate::modes::Targets;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::PlanError;
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition, passing_velocity};
 
 /// A target with the profile that leads to it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct SetPoint {
     pub(super) x: f64,
     pub(super) velocity: f64,
