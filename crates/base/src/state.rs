@@ -165,13 +165,28 @@ impl<F: FnMut(u64)> Writer for Words<F> {
 
 /// The words of a saved state, one after the other.
 #[derive(Debug, Clone)]
-pub struct Reader<'a>(&'a [u64]);
+pub struct Reader<'a> {
+    words: &'a [u64],
+    is_moved: bool,
+}
 
 impl<'a> Reader<'a> {
     /// From the first of `words` on.
     #[must_use]
     pub const fn new(words: &'a [u64]) -> Self {
-        Self(words)
+        Self { words, is_moved: false }
+    }
+
+    /// From the first of `words` on, in which numbers were changed after they had been saved.
+    #[must_use]
+    pub const fn moved(words: &'a [u64]) -> Self {
+        Self { words, is_moved: true }
+    }
+
+    /// True where numbers were changed: a state that would not do it in its next step computes again what it derives from them.
+    #[must_use]
+    pub const fn is_moved(&self) -> bool {
+        self.is_moved
     }
 
     /// The next word.
@@ -179,8 +194,8 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// [`Damaged`] at the end.
     pub fn word(&mut self) -> Result<u64, Damaged> {
-        let (first, rest) = self.0.split_first().ok_or(Damaged)?;
-        self.0 = rest;
+        let (first, rest) = self.words.split_first().ok_or(Damaged)?;
+        self.words = rest;
         Ok(*first)
     }
 
@@ -198,7 +213,7 @@ impl<'a> Reader<'a> {
     /// [`Damaged`] where there are fewer words than that.
     pub fn length(&mut self) -> Result<usize, Damaged> {
         let length = self.word()?;
-        usize::try_from(length).ok().filter(|length| *length <= self.0.len()).ok_or(Damaged)
+        usize::try_from(length).ok().filter(|length| *length <= self.words.len()).ok_or(Damaged)
     }
 
     /// The end.
@@ -206,7 +221,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// [`Damaged`] where there are further words.
     pub const fn end(&self) -> Result<(), Damaged> {
-        if self.0.is_empty() { Ok(()) } else { Err(Damaged) }
+        if self.words.is_empty() { Ok(()) } else { Err(Damaged) }
     }
 }
 

@@ -20,7 +20,8 @@ use crate::mechanics::{
     Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model, check_states,
 };
 use nalgebra::DMatrix;
-use servobench_base::wide_registers;
+use servobench_base::state::{Damaged, FixedForm as _, Part, Reader, Writer};
+use servobench_base::{Stateful, wide_registers};
 use std::sync::Arc;
 
 const NAME: EngineName = EngineName::Exact;
@@ -224,7 +225,64 @@ impl<const W: usize> ExactChain<W> {
     }
 }
 
+/// Stretches, velocities, derivatives of the base and the position of the motor are the state; the bodies are derived from them, but
+/// for the roundings on the way, which is why they are saved.
+impl<const W: usize> Stateful for ExactChain<W> {
+    fn save(&self, to: &mut dyn Writer) {
+        let count = self.bodies.len();
+        for (index, factor) in self.factors[..self.states].iter().enumerate() {
+            let name =
+                ["stretch", "velocity", "base"][usize::from(index + 1 >= count) + usize::from(index + 1 >= 2 * count)];
+            to.enter(Part::field(name));
+            to.number(*factor);
+            to.leave();
+        }
+        to.enter(Part::field("position"));
+        to.number(self.bodies[0].position);
+        to.leave();
+        to.enter(Part::derived("bodies"));
+        self.bodies.save_fixed(to);
+        to.leave();
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        for factor in &mut self.factors[..self.states] {
+            *factor = from.number()?;
+        }
+        let position = from.number()?;
+        self.bodies.restore_fixed(from)?;
+        if from.is_moved() {
+            self.derive_bodies(position);
+        }
+        Ok(())
+    }
+}
+
+impl<const W: usize> ExactChain<W> {
+    /// The bodies of this state, with the motor at `position` (its own coordinate).
+    fn derive_bodies(&mut self, position: f64) {
+        let (stretches, velocities) = self.factors.split_at(self.bodies.len() - 1);
+        let mut axis_position = self.terms[0].transmission * position;
+        for (i, (body, terms)) in self.bodies.iter_mut().zip(&self.terms).enumerate() {
+            if i > 0 {
+                axis_position -= stretches[i - 1];
+            }
+            *body = BodyState { position: axis_position * terms.per_axis, velocity: velocities[i] * terms.per_travel };
+        }
+        self.bodies[0].position = position;
+    }
+}
+
 impl<const W: usize> Mechanics for ExactChain<W> {
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        Stateful::save(self, to);
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        Ok(Stateful::restore(self, from)?)
+    }
+
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }
@@ -331,10 +389,40 @@ mod tests {
     use super::*;
     use crate::chain::{Body, Link};
     use crate::friction::{DryFriction, Friction};
+    use servobench_base::state::words;
 
     fn body(inertia: f64, friction: Friction) -> Body {
         let coordinate = servobench_base::Coordinate::Linear;
         Body { name: "body", coordinate, inertia, transmission: 1.0, friction, bias: 0.1 }
+    }
+
+    /// Numbers that nobody moved derive the bodies that were saved with them, but for roundings.
+    #[test]
+    fn bodies_follow_from_the_moved_numbers() {
+        let bodies =
+            [0.3, 0.7, 1.1].map(|inertia| Body { transmission: 0.5 + inertia, ..body(inertia, Friction::NONE) });
+        let chain = Chain::new(bodies.to_vec(), vec![Link { stiffness: 3e4, damping: 2.0 }; 2]).unwrap();
+        let model = Model::Chain(chain.clone());
+        let setup = MechanicsSetup { model, drive: Drive::Effort, step: 1.0 / 12_000.0, initial: vec![] };
+        let mut mechanics = ExactChain::<8>::new(chain, &setup);
+        for _ in 0..2000 {
+            let actuation = Actuation::Effort(20.0);
+            mechanics.advance(&Input { actuation, motor_disturbance: 1.0, load_disturbance: -2.0 }).unwrap();
+        }
+        let mut saved = Vec::new();
+        Mechanics::save(&mut mechanics, &mut words(|word| saved.push(word))).unwrap();
+        let bodies = mechanics.bodies.clone();
+        Mechanics::restore(&mut mechanics, &mut Reader::new(&saved)).unwrap();
+        assert_eq!(mechanics.bodies, bodies);
+        Mechanics::restore(&mut mechanics, &mut Reader::moved(&saved)).unwrap();
+        for (one, other) in mechanics.bodies.iter().zip(&bodies) {
+            // Three sums and a product.
+            let is_near = |a: f64, b: f64| (a - b).abs() <= 8.0 * f64::EPSILON * b.abs();
+            assert!(
+                is_near(one.position, other.position) && is_near(one.velocity, other.velocity),
+                "{one:?} {other:?}"
+            );
+        }
     }
 
     /// One to four bodies, with dry friction and without: what a processor with wide registers gives and what any other gives are the

@@ -4,6 +4,7 @@ use crate::engine::EngineName;
 use crate::fmu::FmuModel;
 use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
+use servobench_base::state::{Damaged, Reader, Writer};
 use servobench_base::{ParamError, Setpoint, Severity, Stateful, finite, positive};
 use servobench_fmi::FmuMistake;
 use std::path::PathBuf;
@@ -136,6 +137,22 @@ pub trait Mechanics: Send {
     /// The same mechanics at the same tick; `None` where the engine cannot copy it.
     fn copy(&self) -> Option<Box<dyn Mechanics>> {
         None
+    }
+
+    /// Writes the state at the present tick.
+    ///
+    /// # Errors
+    /// [`MechanicsError`], also where the engine cannot.
+    fn save(&mut self, _: &mut dyn Writer) -> Result<(), MechanicsError> {
+        Err(MechanicsError::NoWayBack)
+    }
+
+    /// Takes the state that [`save`](Self::save) of mechanics of the same setup has written.
+    ///
+    /// # Errors
+    /// [`MechanicsError`], also of numbers that are not a state of them; they must not be used then but to restore another.
+    fn restore(&mut self, _: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        Err(MechanicsError::NoWayBack)
     }
 
     /// Whether it can [`mark`](Self::mark) where it is.
@@ -334,6 +351,9 @@ pub enum MechanicsError {
     /// The mechanics have no mark to go back to, or cannot go back.
     #[error("engine `mechanics` failed: it cannot go back to where it was")]
     NoWayBack,
+    /// A state that is to be restored is of other mechanics.
+    #[error(transparent)]
+    Damaged(#[from] Damaged),
     /// The engine's library failed.
     #[error("engine `{engine}` failed: {message}")]
     Native {
