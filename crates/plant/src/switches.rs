@@ -36,6 +36,15 @@ pub struct SwitchReading {
     pub index: Option<f64>,
 }
 
+impl SwitchReading {
+    /// The inputs of a drive that counts in this `direction` of the axis, −1 or 1: the ends are the other way round for one that counts
+    /// against it.
+    #[must_use]
+    pub const fn in_direction(self, direction: f64) -> Self {
+        if direction < 0.0 { Self { negative: self.positive, positive: self.negative, ..self } } else { self }
+    }
+}
+
 /// A point of the axis at which a switch, or the index pulse, is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SwitchPoint {

@@ -5,7 +5,7 @@ mod objections;
 pub(crate) mod plant;
 
 use crate::axis::Axis;
-use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Shaft, Source, State};
+use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Mounting, Shaft, Source, State};
 use crate::coupled::{self, ConnectionDelay, Coupled, FmuDoubt, FmuOpener, NoFmus};
 use crate::disturbance::Disturbances;
 use crate::error::{BuildError, check_length, check_ticks};
@@ -177,8 +177,7 @@ impl Bench {
             },
             mechanics,
             prescribed: matches!(scenario.actuator, Actuator::Prescribed),
-            transmission: scenario.axis.transmission,
-            direction,
+            mounting: Mounting { transmission: scenario.axis.transmission, direction },
             disturbances,
             end_stops: plant::end_stops(scenario)?,
             switches: plant::switches(scenario)?,

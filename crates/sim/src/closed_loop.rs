@@ -1,23 +1,19 @@
 //! The closed loop, in execution order.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+mod control;
+
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
 use crate::loose_sensors::LooseSensors;
-use crate::network::{Measurement, Network, Prompt};
+use crate::network::{Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
+pub(crate) use control::{Control, EncoderInput, Mounting};
 use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Tick};
-use servobench_drive::measurement::Edge;
-use servobench_drive::unwrap::Unwrap;
-use servobench_drive::velocity::Cut;
-use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
-use servobench_plant::{
-    self as plant, Actuation, BodyState, EncoderState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Reading,
-    Switches,
-};
+use servobench_drive::{Demand, EffortLimits};
+use servobench_plant::{Actuation, BodyState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches};
 use servobench_scenario::DisturbedBody;
-use servobench_signals::Instant;
-use servobench_signals::PerLimit;
+use servobench_signals::{Instant, PerLimit};
 use servobench_trace::Recorder;
 
 /// All that a tick needs and leaves changed.
@@ -25,11 +21,7 @@ pub(crate) struct ClosedLoop {
     pub(crate) base_rate: Rate,
     /// Whether the motor follows the set-point exactly.
     pub(crate) prescribed: bool,
-    /// Axis coordinate per motor coordinate.
-    pub(crate) transmission: f64,
-    /// −1 for a motor that is mounted the other way round: motor, encoders and drive then have coordinates against those of the
-    /// mechanics; otherwise 1.
-    pub(crate) direction: f64,
+    pub(crate) mounting: Mounting,
     pub(crate) disturbances: Disturbances,
     /// What the load meets at the ends of its travel.
     pub(crate) end_stops: Option<EndStops>,
@@ -73,56 +65,6 @@ pub(crate) enum Source {
     Network(Box<Network>, f64),
 }
 
-/// The firmware and the sensors it is wired to.
-#[derive(Clone)]
-pub(crate) struct Control {
-    pub(crate) params: drive::Params,
-    pub(crate) state: drive::State,
-    pub(crate) motor_encoder: EncoderInput,
-    /// The encoder on the load, when it closes the position loop.
-    pub(crate) load_encoder: Option<EncoderInput>,
-}
-
-/// An encoder, and how the drive counts it on where it begins again.
-#[derive(Clone)]
-pub(crate) struct EncoderInput {
-    pub(crate) encoder: EncoderState,
-    pub(crate) unwrap: Option<Unwrap>,
-}
-
-impl EncoderInput {
-    #[inline(always)]
-    pub(crate) fn read(&mut self, body: BodyState) -> Reading {
-        let reading = self.encoder.read(body);
-        match &mut self.unwrap {
-            None => reading,
-            Some(unwrap) => Reading { position: unwrap.position(reading.position), ..reading },
-        }
-    }
-}
-
-/// References, currents and active limits of the loops come to `now`, in the `direction` of the axis; `cuts_velocity`: the drive does, the
-/// master does.
-#[inline(always)]
-fn show(params: &drive::Params, state: &drive::State, direction: f64, cuts_velocity: [bool; 2], now: &mut Instant) {
-    let held = state.held();
-    now.velocity_reference = direction * held.velocity_reference;
-    now.effort_reference = held.effort.effort;
-    now.current_reference = held.current_reference;
-    now.voltage_reference = held.current.computed;
-    now.measured_current = held.current.current;
-    if params.blocks.measurement.is_some() {
-        now.measured_velocity = direction * state.velocity(params);
-    }
-    now.binds = PerLimit {
-        voltage: held.current.saturated,
-        current: held.effort.cut == Some(Cut::Available),
-        effort: held.effort.cut == Some(Cut::Effort),
-        speed: held.speed_is_cut | cuts_velocity[0],
-        master: cuts_velocity[1],
-    };
-}
-
 /// Position and its derivatives.
 #[inline(always)]
 const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
@@ -149,7 +91,7 @@ impl ClosedLoop {
         now.binds = PerLimit::default();
         let shaft = self.sample(external, now);
         self.account(shaft.position, now);
-        let motor = self.as_mounted(shaft);
+        let motor = self.mounting.seen(shaft);
         let mut command = self.control(k, external, motor, now, recorder);
         self.ask(k, external, now);
         if let Some(Controller::Voltage(voltage)) = external.controller {
@@ -163,7 +105,7 @@ impl ClosedLoop {
             Some(Controller::Effort(effort)) => effort,
             Some(Controller::Voltage(_)) | None => self.state.power.advance(command, motor, self.base_rate.period()),
         };
-        self.state.shaft = Shaft { effort: self.direction * now.effort, position: shaft.position };
+        self.state.shaft = Shaft { effort: self.mounting.direction * now.effort, position: shaft.position };
         now.voltage = self.state.power.voltage();
         now.binds.voltage |= self.state.power.shortens_voltage();
         now.motor_disturbance = self.disturbances.effort_at(DisturbedBody::Motor, k) + external.motor_effort;
@@ -178,17 +120,11 @@ impl ClosedLoop {
         let measured = external.measured.as_ref().map(<[BodyState; 2]>::as_slice);
         let bodies = measured.unwrap_or_else(|| self.mechanics.bodies());
         let own = bodies[0];
-        now.motor =
-            BodyState { position: self.transmission * own.position, velocity: self.transmission * own.velocity };
+        let r = self.mounting.transmission;
+        now.motor = BodyState { position: r * own.position, velocity: r * own.velocity };
         now.load = if bodies.len() == 1 { now.motor } else { bodies[bodies.len() - 1] };
         now.table = if bodies.len() == 3 { bodies[1] } else { BodyState::default() };
         own
-    }
-
-    /// A body of the mechanics as a motor, or an encoder, sees it that is mounted on it.
-    #[inline(always)]
-    fn as_mounted(&self, BodyState { position, velocity }: BodyState) -> BodyState {
-        BodyState { position: self.direction * position, velocity: self.direction * velocity }
     }
 
     /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
@@ -218,10 +154,10 @@ impl ClosedLoop {
         // Until the program begins it stays at its beginning.
         let since = self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)));
         let upcoming = self.state.upcoming.take();
-        let (direction, load) = (self.direction, self.as_mounted(now.load));
+        let bodies = [motor, self.mounting.seen(now.load)];
         let Some(control) = &mut self.state.control else {
             if let Some(sensors) = &mut self.state.sensors {
-                sensors.read([motor, load], (self.transmission, direction), &mut self.state.power, now);
+                sensors.read(bodies, self.mounting, &mut self.state.power, now);
             }
             if let Source::Program(program) = &mut self.state.source {
                 now.setpoint = external.setpoint.or(upcoming).unwrap_or_else(|| program.at(since));
@@ -229,35 +165,8 @@ impl ClosedLoop {
             (now.reference, now.motor_reference) = (now.setpoint.x, now.setpoint.x);
             return PowerCommand::Off;
         };
-        let reading = control.motor_encoder.read(motor);
-        now.alarms.motor_encoder = reading.error;
-        if control.motor_encoder.encoder.errs() {
-            now.measured_position[0] = direction * self.transmission * reading.position;
-        }
-        let sensors = Sensors {
-            motor_position: reading.position,
-            rotor_position: reading.to_rotor.map(|further| reading.position + further),
-            motor_velocity: reading.velocity,
-            motor_edge: reading.edge.map(|plant::Edge { age, offset }| Edge { age, offset }),
-            feedback: match &mut control.load_encoder {
-                None => Feedback::Motor,
-                Some(input) => {
-                    let Reading { position, error, .. } = input.read(load);
-                    now.alarms.load_encoder = error;
-                    if input.encoder.errs() {
-                        now.measured_position[1] = direction * position;
-                    }
-                    Feedback::Load(position)
-                }
-            },
-            current: self.state.power.measured_current(motor),
-            dc_link: now.dc_link,
-            winding: now.temperatures.winding,
-            known_rotation: self.state.power.rotation(),
-        };
-        let Control { params, state, .. } = control;
-        let mut cuts_velocity = [false; 2];
-        let command = match &mut self.state.source {
+        let sensors = control.measure(bodies, self.mounting, &mut self.state.power, now);
+        match &mut self.state.source {
             Source::Program(program) => {
                 // As numbers, which stay in registers: a copy would have to wait until they are stored.
                 let [x, v, a, j, s] = match (&external.setpoint, &upcoming) {
@@ -265,46 +174,28 @@ impl ClosedLoop {
                     (Some(setpoint), _) | (None, Some(setpoint)) => numbers(setpoint),
                 };
                 let demand = Demand::position(Setpoint { x, v, a, j, s });
-                let command = drive::step(params, state, &demand, EffortLimits::NONE, &sensors);
+                let command = control.step(&demand, EffortLimits::NONE, &sensors);
                 let setpoint = &mut now.setpoint;
                 (setpoint.x, setpoint.v, setpoint.a, setpoint.j, setpoint.s) = (x, v, a, j, s);
-                let (reference, motor_reference) = state.references(params);
+                let (reference, motor_reference) = control.state.references(&control.params);
                 (now.reference, now.motor_reference) = (reference.x, motor_reference.position);
+                control.show(self.mounting.direction, [false; 2], now);
                 command
             }
             Source::Network(network, _) => {
-                let mut switches = self.switches.read(now.load.position, self.state.motor_before, motor.position);
-                if direction < 0.0 {
-                    core::mem::swap(&mut switches.negative, &mut switches.positive);
-                }
-                self.state.motor_before = motor.position;
-                let measure = || Measurement {
-                    position: sensors.closing_position(),
-                    velocity: state.velocity(params),
-                    effort: state.held().effort.effort,
-                    effort_is_cut: state.held().effort.cut.is_some(),
-                    following_error: state.following_error(params, &sensors),
-                    is_overloaded: state.is_overloaded(params),
-                    encoder_errors: [now.alarms.motor_encoder, now.alarms.load_encoder],
-                    finding: state.finding(),
-                    switches,
-                };
+                let before = std::mem::replace(&mut self.state.motor_before, motor.position);
+                let switches =
+                    self.switches.read(now.load.position, before, motor.position).in_direction(self.mounting.direction);
                 let t = self.base_rate.time(Tick(k));
                 let prompt = Prompt { t, program: self.state.begun.map(|_| since), setpoint: external.setpoint };
+                let measure = || control.measurement(&sensors, now, switches);
                 let (demand, limits) = network.step(k, &prompt, switches.index, measure, recorder);
-                let command = drive::step(params, state, demand, limits, &sensors);
-                now.setpoint = network.setpoint(now.motor.position);
-                network.tell(now);
-                cuts_velocity = network.cuts_velocity();
-                (now.reference, now.motor_reference) = match network.reference(t) {
-                    Some((reference, motor)) => (reference.x, motor.position),
-                    None => (now.load.position, now.motor.position),
-                };
+                let command = control.step(demand, limits, &sensors);
+                network.show(t, now);
+                control.show(self.mounting.direction, network.cuts_velocity(), now);
                 command
             }
-        };
-        show(params, state, direction, cuts_velocity, now);
-        command
+        }
     }
 
     /// request(k): what the task wants at tick `k` comes to `now`.
@@ -324,10 +215,10 @@ impl ClosedLoop {
 
     /// Reads the sensors of an FMU in place of the drive, at the bodies that `now` has of the tick that comes.
     pub(crate) fn look_at_sensors(&mut self, now: &mut Instant) {
-        let [motor, load] = [self.as_mounted(self.mechanics.bodies()[0]), self.as_mounted(now.load)];
+        let [motor, load] = [self.mounting.seen(self.mechanics.bodies()[0]), self.mounting.seen(now.load)];
         let State { sensors, power, .. } = &mut self.state;
         if let Some(sensors) = sensors {
-            sensors.look_ahead([motor, load], (self.transmission, self.direction), power, now);
+            sensors.look_ahead([motor, load], self.mounting, power, now);
         }
     }
 
@@ -352,7 +243,7 @@ impl ClosedLoop {
         let actuation = if self.prescribed {
             Actuation::Motion(now.setpoint)
         } else {
-            Actuation::Effort(self.direction * now.effort)
+            Actuation::Effort(self.mounting.direction * now.effort)
         };
         self.mechanics.advance(&Input {
             actuation,

@@ -1,5 +1,5 @@
 //! The sensors of an axis whose drive an FMU replaces: they are read for the FMU.
-use crate::closed_loop::EncoderInput;
+use crate::closed_loop::{EncoderInput, Mounting};
 use servobench_plant::{BodyState, PowerStage};
 use servobench_signals::Instant;
 
@@ -24,11 +24,11 @@ impl LooseSensors {
     }
 
     /// Reads the tick that comes, if that has not been done: what the sensors say comes to `now`. `motor` (its own coordinate) and `load` are
-    /// as mounted, `transmission` and `direction` those of the loop.
+    /// as mounted.
     pub(crate) fn look_ahead(
         &mut self,
         [motor, load]: [BodyState; 2],
-        (transmission, direction): (f64, f64),
+        Mounting { transmission, direction }: Mounting,
         power: &mut PowerStage,
         now: &mut Instant,
     ) {
@@ -49,11 +49,11 @@ impl LooseSensors {
     pub(crate) fn read(
         &mut self,
         bodies: [BodyState; 2],
-        ratios: (f64, f64),
+        mounting: Mounting,
         power: &mut PowerStage,
         now: &mut Instant,
     ) {
-        self.look_ahead(bodies, ratios, power, now);
+        self.look_ahead(bodies, mounting, power, now);
         self.is_read = false;
     }
 }

@@ -300,7 +300,7 @@ impl Network {
     }
 
     /// The set-point that the loops follow, so long after the drive's last step, with the motor at `position`.
-    pub(crate) fn setpoint(&self, position: f64) -> Setpoint {
+    fn setpoint(&self, position: f64) -> Setpoint {
         let since = f64::from(self.drive_turn.since(self.drive_every)) * self.tick;
         match self.demand {
             Demand::Position { setpoint, .. } => self.along(setpoint.after(since)),
@@ -319,7 +319,7 @@ impl Network {
 
     /// Where load and motor are to be: where the motion task wanted them, as much later as the way to the loops takes; what
     /// the drive itself wants where it finds its own way; `None` where nothing is to be followed.
-    pub(crate) fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
+    fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
         let reference = self.reference.at(t);
         let (_, drive) = &self.drive;
         let follows = matches!(
@@ -386,13 +386,18 @@ impl Network {
         self.failure.take()
     }
 
-    /// Brings what goes over the bus to `now`: the set-point of the motion task, what the master makes of it, and the actual
-    /// position as the master reads it.
-    pub(crate) fn tell(&self, now: &mut Instant) {
+    /// Brings to `now`, which is at `t` (s): set-point and references, what goes over the bus, and the actual position as the master
+    /// reads it.
+    pub(crate) fn show(&mut self, t: f64, now: &mut Instant) {
         let (params, state) = &self.link;
         let put_out = state.output(params);
+        now.setpoint = self.setpoint(now.motor.position);
         (now.task, now.bus_position) = (self.asked, self.bus_position);
         (now.put_out, now.put_out_effort) = (put_out.setpoint, put_out.torque);
+        (now.reference, now.motor_reference) = match self.reference(t) {
+            Some((reference, motor)) => (reference.x, motor.position),
+            None => (now.load.position, now.motor.position),
+        };
     }
 
     /// Notes what is known at the end only.
