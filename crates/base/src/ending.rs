@@ -1,7 +1,8 @@
 //! How a move ends.
 
+use servobench_base::Stateful;
 /// How a move ends, which says whether the axis is to arrive at its target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Ending {
     /// At rest at its target.

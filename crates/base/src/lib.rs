@@ -3,8 +3,8 @@
 //! `no_std`; depends on nothing of servobench. Plain `f64` in SI, the unit in the doc of every item.
 #![cfg_attr(not(test), no_std)]
 
-#[cfg(feature = "alloc")]
-extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 // So that the derived code names this crate as every other crate does.
 extern crate self as servobench_base;
 

@@ -1,8 +1,9 @@
 //! Parameters are checked where they enter; the error names the field, the value and the bound.
+use servobench_base::Stateful;
 use thiserror::Error;
 
 /// A parameter outside its bound.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 #[error("`{name}` must be {bound}, got {value}")]
 pub struct ParamError<N = &'static str> {
     /// Which parameter: a name, or the identifier of its owner.

@@ -32,6 +32,8 @@
 //! ```
 //!
 //! Restoring is in place: parameters, tables and plans stay where they are.
+#[cfg(feature = "std")]
+mod texts;
 mod values;
 
 pub use servobench_state_derive::Stateful;

@@ -22,9 +22,10 @@
 //! # Ok::<(), servobench_cia402::units::UnitError>(())
 //! ```
 use crate::units::UnitError;
+use servobench_base::Stateful;
 
 /// The range of a position counter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub struct Counter {
     bits: u32,
     signed: bool,
@@ -134,7 +135,7 @@ impl Counter {
 /// The absolute position behind a counter.
 ///
 /// 2⁶³ readings of the widest counter, each half the range further, stay within the 127 bits of the position.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct Unwrapped {
     counter: Counter,
     reading: i128,

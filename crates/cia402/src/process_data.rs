@@ -3,9 +3,10 @@
 //! Positions, velocities and accelerations are in the user units that the [factor group](crate::units) defines, torques
 //! in thousandths of the rated torque (6076h).
 use crate::{Controlword, Statusword};
+use servobench_base::Stateful;
 
 /// What the master sends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Commands {
     /// 6040h.
     pub controlword: Controlword,
@@ -46,7 +47,7 @@ pub struct Commands {
 }
 
 /// A point in the interpolation data record (60C1h). What the sub-mode (60C0h) does not use is not mapped and not written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct InterpolationData {
     /// Position (60C1h.1, counts).
     pub position: i32,
@@ -57,7 +58,7 @@ pub struct InterpolationData {
 }
 
 /// What the drive sends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Actuals {
     /// 6041h.
     pub statusword: Statusword,

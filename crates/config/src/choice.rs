@@ -97,6 +97,7 @@ macro_rules! choices {
     };
     (
         $(#[doc = $doc:literal])+
+        $(#[derive($($derived:ident),+)])?
         $visibility:vis enum $type:ident named $kind:ident $(default $default:ident)? {
             $(
                 $(#[doc = $meaning:literal])+
@@ -105,7 +106,7 @@ macro_rules! choices {
         }
     ) => {
         $(#[doc = $doc])+
-        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[derive(Debug, Clone, Copy, PartialEq $($(, $derived)+)?)]
         $visibility enum $type {
             $(
                 $(#[doc = $meaning])+
@@ -127,6 +128,7 @@ macro_rules! choices {
             $(#[doc = $doc])+
             ///
             /// The alternatives without their parameters.
+            $(#[derive($($derived),+)])?
             $visibility enum $kind $(default $default)? {
                 $( $(#[doc = $meaning])+ $variant = $name, )+
             }

@@ -7,8 +7,10 @@ use servobench_base::Stateful;
 /// Where the drive is: all that a snapshot must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Unwrap {
+    #[state(constant)]
     range: f64,
     last: Option<f64>,
+    #[state(derived)]
     ranges: f64,
 }
 

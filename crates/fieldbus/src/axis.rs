@@ -2,11 +2,12 @@
 //!
 //! Positions and velocities are in the axis unit (m or rad), efforts in the motor's (N·m or N).
 use crate::{Fault, Interpolation, ProbeFeedback, TouchProbe};
+use servobench_base::Stateful;
 use servobench_cia402::InterpolationData;
 use servobench_motion::interpolate::Sample;
 
 /// What the motion task wants of the axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct AxisCommand {
     /// Whether the axis is to be powered.
     pub power: bool,
@@ -32,7 +33,7 @@ impl AxisCommand {
 }
 
 /// What a powered axis does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Task {
     /// Follows set-points, one per cycle.
     Follow(Sample),
@@ -48,7 +49,7 @@ pub enum Task {
 }
 
 /// A profile that the drive generates itself, in a mode of its own. Velocities and accelerations that are zero are left to the drive.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum ProfileCommand {
     /// To a position, at rest (pp). Another number is another set-point; it begins where the last one ends.
     Position {
@@ -78,7 +79,7 @@ pub enum ProfileCommand {
 }
 
 /// A point on its way to the buffer of a drive, by one of the objects that lead there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub enum TrajectoryPoint {
     /// The eight bytes of the move segment command (2010h): a point, or a command to the buffer.
     MoveSegment([u8; 8]),
@@ -87,7 +88,7 @@ pub enum TrajectoryPoint {
 }
 
 /// What the motion task learns of the axis.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct AxisFeedback {
     /// Actual position.
     pub position: f64,
@@ -126,7 +127,7 @@ impl AxisFeedback {
 }
 
 /// How far the drive is on a way of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ProfileFeedback {
     /// Number of the last set-point that it has acknowledged.
     pub acknowledged: u32,
@@ -141,7 +142,7 @@ pub struct ProfileFeedback {
 }
 
 /// How far the power of an axis is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum Power {
     /// The motor carries no current.
     #[default]
@@ -153,7 +154,7 @@ pub enum Power {
 }
 
 /// How far homing is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum Homing {
     /// Not asked for.
     #[default]
@@ -167,7 +168,7 @@ pub enum Homing {
 }
 
 /// Limit and reference switches of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Switches {
     /// Negative end.
     pub negative_limit: bool,

@@ -32,7 +32,7 @@ mod pipe;
 use crate::FieldbusError;
 use core::ops::Range;
 use pipe::Pipe;
-use servobench_base::{Divider, Tick};
+use servobench_base::{Divider, Stateful, Tick};
 use servobench_cia402::{Actuals, Commands};
 
 /// Something that goes wrong in some cycles.
@@ -121,7 +121,7 @@ impl<'a> Params<'a> {
 }
 
 /// What is on the wire, and when the next cycle happens.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     next: Option<Tick>,
     number: u64,

@@ -1,9 +1,10 @@
 //! Why an axis is not available.
 use core::fmt;
+use servobench_base::Stateful;
 use servobench_cia402::ErrorCode;
 
 /// Why an axis is not available: a fault of the drive, or one of the link to it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Fault {
     /// The drive's own, with its code (603Fh); 0 when it gives none.
     Drive(u16),
@@ -32,7 +33,7 @@ impl fmt::Display for Fault {
 }
 
 /// A fault of the link between motion task and drive. It holds until a reset, and as long as its cause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum LinkFault {
     /// The drive is silent, or did not do what it was told, for longer than the drive time-out.
     DriveTimeout,

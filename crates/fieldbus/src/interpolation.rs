@@ -1,8 +1,9 @@
 //! How the interpolation fares, with the numbers of the block `RM_AxisSpline` of REXYGEN (REX Controls, function block
 //! reference, output `State`).
 
+use servobench_base::Stateful;
 /// State of the interpolation between two cycles of the motion task.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 #[repr(i8)]
 pub enum Interpolation {
     /// Disabled: what is put out is what the axis does by itself: the position that the drive follows, without a position loop the

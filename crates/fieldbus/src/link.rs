@@ -69,7 +69,7 @@ use homing::Procedure;
 use position::Position;
 use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
-use servobench_base::{Setpoint, Tick};
+use servobench_base::{Setpoint, Stateful, Tick};
 use servobench_cia402::{Actuals, Commands, ControlBit, Mode, StatusBit};
 use servobench_motion::interpolate::{Command, Sample};
 use stream::Stream;
@@ -89,7 +89,7 @@ pub struct Input<'a> {
 }
 
 /// All that a snapshot of a link must hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     command: AxisCommand,
     /// Number of the last command that was read.

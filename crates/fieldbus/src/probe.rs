@@ -1,8 +1,10 @@
 //! The touch probe of an axis: what is asked for, and what is answered.
+use servobench_base::Stateful;
 use servobench_cia402::touch_probe::{Edge, Function};
 
 servobench_config::choices! {
     /// What has the drive latch the position of the axis.
+    #[derive(Stateful)]
     pub enum ProbeTrigger {
         /// the home switch is met
         HomeSwitchMet = "home-switch-met",
@@ -29,7 +31,7 @@ impl ProbeTrigger {
 }
 
 /// A question for the position of the axis at a trigger.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct TouchProbe {
     /// Its number, from 1: another one is another question.
     pub number: u32,
@@ -38,7 +40,7 @@ pub struct TouchProbe {
 }
 
 /// The answer to a question for the position at a trigger.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ProbeFeedback {
     /// Number of the question.
     pub number: u32,

@@ -25,7 +25,7 @@
 //! ```
 use crate::bus::below;
 use core::ops::Range;
-use servobench_base::{Divider, Tick};
+use servobench_base::{Divider, Stateful, Tick};
 
 /// Something that goes wrong in some cycles of the motion task.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +112,7 @@ impl<'a> Params<'a> {
 }
 
 /// Which cycle is next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct State {
     number: u64,
     due: u64,

@@ -1,9 +1,9 @@
 //! Why a move cannot be planned.
-use servobench_base::ParamError;
+use servobench_base::{ParamError, Stateful};
 use thiserror::Error;
 
 /// A request that is refused, with what would be accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum PlanError {
     /// A distance, limit or time that is no number of the right sign.
     #[error(transparent)]

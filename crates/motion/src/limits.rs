@@ -60,7 +60,7 @@ servobench_config::parameters! {
 ///
 /// A profile of order n uses the first n of them and ignores the others. `f64::INFINITY` means "no limit" for all but
 /// the n-th, which the profile needs as its amplitude.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Limits {
     /// Velocity (m/s or rad/s).
     pub velocity: f64,

@@ -64,7 +64,7 @@ mod watch;
 
 use crate::limits::{in_range, within_range};
 use crate::{Limits, Order, PlanError};
-use servobench_base::{ParamError, finite, positive};
+use servobench_base::{ParamError, Stateful, finite, positive};
 
 pub use passing::{braking_velocity, passing_velocity};
 pub(crate) use path::Stretch;
@@ -84,7 +84,7 @@ servobench_config::choices! {
 }
 
 /// Where a transition ends, with neither acceleration nor jerk.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Target {
     /// At a position (m or rad), passed at a velocity (m/s or rad/s), zero for a stop there.
     Position {

@@ -3,10 +3,10 @@ use crate::boxes;
 use crate::request::Request;
 use crate::sampled::Run;
 use crate::{Limits, Order, Piece, PlanError, Segment, Segments, optimal, segment};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 
 /// A rest-to-rest move from 0 to [`distance`](Self::distance), in the axis unit (m or rad) and seconds from its start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Profile {
     order: Order,
     distance: f64,
@@ -27,7 +27,7 @@ pub struct Profile {
 }
 
 /// The boxes of a move that is a step through boxes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Boxes {
     /// Lengths in `unit`; zero beyond the order.
     pub(crate) lengths: [f64; 4],

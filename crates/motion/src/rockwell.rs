@@ -20,10 +20,10 @@ use crate::limits::in_range;
 use crate::online::Stretch;
 use crate::root::increasing;
 use crate::{Order, PlanError, Trajectory};
-use servobench_base::{ParamError, Setpoint, finite, positive};
+use servobench_base::{ParamError, Setpoint, Stateful, finite, positive};
 
 /// How a move says its jerk.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Jerk {
     /// As a value (m/s³ or rad/s³).
     Value(f64),
@@ -45,6 +45,7 @@ pub enum Jerk {
 
 servobench_config::choices! {
     /// Shape of the velocity over time.
+    #[derive(Stateful)]
     pub enum Shape named ShapeKind {
         /// acceleration as rectangular as `maximum_jerk` allows
         Trapezoid = "trapezoid",
@@ -59,7 +60,7 @@ servobench_config::choices! {
 }
 
 /// Operands of a move, in the axis unit (m or rad).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Move {
     /// Distance; its sign is the direction.
     pub distance: f64,
@@ -74,7 +75,7 @@ pub struct Move {
 }
 
 /// Largest jerk that an axis is configured for (m/s³ or rad/s³).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct MaximumJerk {
     /// Of accelerations.
     pub acceleration: f64,

@@ -44,6 +44,7 @@
 //! Of all 4000 requests, of orders 2 to 4, 3991 are proven to have no shorter move by any shape. A long move is seldom proven, and
 //! is within five samples of the continuous optimum.
 mod cascade;
+use servobench_base::Stateful;
 #[cfg(feature = "std")]
 mod half;
 #[cfg(feature = "std")]
@@ -74,7 +75,7 @@ servobench_config::choices! {
 }
 
 /// Samples in a row in which the highest derivative is the same.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Run {
     /// Acceleration, jerk or snap by order (SI), with the sign of the direction.
     pub value: f64,

@@ -1,13 +1,13 @@
 //! Set-points in the order of time, without a search at each.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::plan::Plan;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Piece;
 
 /// What holds of a [`Plan`] at one time and for a while after it.
 ///
 /// Nothing is allocated after the first look-up.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct Reader {
     /// The polynomial of the first part, which has no delay: the only one, unless the plan is shaped.
     first: Piece,

@@ -32,7 +32,7 @@ use activity::{Activity, HomingWait};
 use obstacle::HomingSteps;
 use parameters::Supervision;
 use queue::Queue;
-use servobench_base::{ParamError, Request, Setpoint};
+use servobench_base::{ParamError, Request, Setpoint, Stateful};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task, TouchProbe};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
@@ -46,7 +46,7 @@ pub use queue::MOST_BUFFERED;
 pub(crate) use supervision::PowerRequest;
 
 /// An axis with its parameters, its state and its commands.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct Axis {
     /// The limits as the program has set them.
     params: AxisParams,

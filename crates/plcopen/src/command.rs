@@ -2,11 +2,12 @@
 use crate::blocks::BlockName;
 use crate::error::BlockError;
 use crate::params::AxisParams;
-use servobench_base::{finite, positive};
+use servobench_base::{Stateful, finite, positive};
 use servobench_motion::Limits;
 
 servobench_config::choices! {
     /// How a command follows those before it (MC_BUFFER_MODE).
+    #[derive(Stateful)]
     pub enum BufferMode default Aborting {
         /// the active motion is aborted
         Aborting = "aborting",
@@ -51,6 +52,7 @@ impl BufferMode {
 
 servobench_config::choices! {
     /// Direction of rotation (MC_DIRECTION).
+    #[derive(Stateful)]
     pub enum Direction default Shortest {
         /// upwards
         Positive = "positive",
@@ -77,7 +79,7 @@ impl Direction {
 }
 
 /// Velocity and its derivatives as a block limits them, magnitudes in the axis unit (m or rad).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Dynamics {
     /// Velocity (m/s or rad/s); `None` where the block has no such input.
     pub velocity: Option<f64>,
@@ -125,7 +127,7 @@ impl Dynamics {
 }
 
 /// Where a motion leads, in the unit of the axis as the program sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Goal {
     /// To a position.
     Absolute {
@@ -174,7 +176,7 @@ pub enum Goal {
 }
 
 /// What the position counts from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Reference {
     /// From what the drive looks for, which has this position (m or rad).
     Search(f64),
@@ -186,7 +188,7 @@ pub enum Reference {
 
 /// How an obstacle is looked for, and what counts as one: the axis gives the effort, within its tolerance, and is slower than the
 /// velocity for so long.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Obstacle {
     /// Which way: positive or negative.
     pub direction: Direction,
@@ -242,7 +244,7 @@ impl Obstacle {
 }
 
 /// What a course that a block gives leads to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub enum Ending {
     /// To rest.
     AtRest,
@@ -251,7 +253,7 @@ pub enum Ending {
 }
 
 /// A command as the axis takes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Command {
     /// The block.
     pub block: BlockName,

@@ -5,13 +5,14 @@
 use crate::blocks::BlockName;
 use crate::parameter::AxisParameter;
 use crate::state::AxisState;
+use servobench_base::Stateful;
 use servobench_config::Choice as _;
 use servobench_fieldbus::Fault;
 use servobench_motion::PlanError;
 use thiserror::Error;
 
 /// The output ErrorID.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 #[repr(u16)]
 pub enum ErrorId {
     /// No error.
@@ -132,7 +133,7 @@ impl ErrorId {
 }
 
 /// A call that is refused, or a command that failed.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum BlockError {
     /// An input is not a number, or has the wrong sign.
     #[error("{block}: `{input}` must be {bound}, got {value}: correct the input")]
@@ -296,7 +297,7 @@ impl BlockError {
 }
 
 /// An error of the axis: it leads to ErrorStop.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum AxisError {
     /// The drive or its link reports a fault.
     #[error("{fault}: remove its cause and call MC_Reset")]

@@ -47,7 +47,7 @@
 //!
 //! [`Profile4th`](crate::Profile4th) has an axis follow it. The crate `structured-text` has the block as code for a PLC, which computes
 //! the same to the last bit: a change here is one there.
-use servobench_base::{ParamError, Setpoint, non_negative, positive};
+use servobench_base::{ParamError, Setpoint, Stateful, non_negative, positive};
 use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 
@@ -135,7 +135,7 @@ pub struct Output {
 }
 
 /// What the block keeps from sample to sample.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// `ENstart` and `GenStart` of the sample before.
     is_enabled: bool,
@@ -205,7 +205,7 @@ impl State {
 }
 
 /// A move on its way.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Course {
     profile: Profile,
     base: f64,

@@ -379,7 +379,7 @@ pub enum OutputType {
 macro_rules! inputs {
     ($(#[$meta:meta])* pub struct $name:ident on $trigger:ident {}) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[derive(Debug, Clone, Copy, PartialEq, servobench_base::Stateful)]
         pub struct $name {
             #[doc = $crate::interface::inputs!(@doc $trigger)]
             pub $trigger: bool,
@@ -401,7 +401,7 @@ macro_rules! inputs {
         }
     ) => {
         $(#[$meta])*
-        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[derive(Debug, Clone, Copy, PartialEq, servobench_base::Stateful)]
         pub struct $name {
             #[doc = $crate::interface::inputs!(@doc $trigger)]
             pub $trigger: bool,

@@ -2,9 +2,10 @@
 use crate::axis::MOST_BUFFERED;
 use crate::blocks::BlockName;
 use crate::error::BlockError;
+use servobench_base::Stateful;
 
 /// The number of a command, counted from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub struct CommandId(u32);
 
 impl CommandId {
@@ -13,7 +14,7 @@ impl CommandId {
 }
 
 /// What became of a command.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum Progress {
     /// Waits for those before it.
     Buffered,
@@ -37,7 +38,7 @@ const MOST_OPEN: usize = MOST_BUFFERED + 3;
 const REMEMBERED: usize = 64;
 
 /// A command and what became of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Entry {
     id: CommandId,
     /// The block that gave it.
@@ -49,7 +50,7 @@ struct Entry {
 
 /// All commands that wait or run, and the last 64 that ended. A block that is not called while 64 others end hears that its own
 /// was aborted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Ledger {
     last: u32,
     open: [Option<Entry>; MOST_OPEN],

@@ -53,7 +53,7 @@ macro_rules! list_inputs {
 macro_rules! list_outputs {
     ($( $variant:ident $name:literal $type:ident $meaning:literal; )+) => {
         /// An output of function blocks.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, servobench_base::Stateful)]
         pub enum Output {
             $( #[doc = concat!("`", $name, "`: ", $meaning, ".")] $variant, )+
         }
@@ -79,7 +79,7 @@ macro_rules! list_outputs {
 macro_rules! list_blocks {
     ($( $variant:ident: $block:ty, $name:literal $($command:ident)?, $meaning:literal; )+) => {
         /// A function block: of the standard, but for `Profile4th` and `MAM`.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, servobench_base::Stateful)]
         pub enum BlockName {
             $( #[doc = concat!("`", $name, "`: ", $meaning, ".")] $variant, )+
         }

@@ -1,11 +1,13 @@
 //! The parameters of an axis that blocks read and write: the list of PLCopen part 1, version 2.0 (section 3.20, table of parameters).
 //!
 //! The axis has one limit for acceleration and deceleration: both parameters of a kind show it, and that of the acceleration sets it.
+use servobench_base::Stateful;
 use servobench_config::quantities::{ACCELERATION, JERK, POSITION, VELOCITY};
 use servobench_config::{Kind::Axis, Measure, any, positive};
 
 servobench_config::choices! {
     /// A number among the parameters of the axis.
+    #[derive(Stateful)]
     pub enum AxisParameter {
         /// CommandedPosition (1), read-only
         CommandedPosition = "commanded-position",
@@ -40,6 +42,7 @@ servobench_config::choices! {
 
 servobench_config::choices! {
     /// A BOOL among the parameters of the axis.
+    #[derive(Stateful)]
     pub enum AxisBoolParameter {
         /// EnableLimitPos (4): whether the positive software limit holds
         EnablePositiveLimit = "enable-limit-pos",

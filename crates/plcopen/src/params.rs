@@ -1,10 +1,11 @@
 //! What an axis is told once.
 use crate::axis::MOST_BUFFERED;
-use servobench_base::{ParamError, limit, positive};
+use servobench_base::{ParamError, Stateful, limit, positive};
 use servobench_motion::Limits;
 
 servobench_config::choices! {
     /// From which velocity the acceleration of a velocity command counts, so that the drive is at the next velocity a cycle later.
+    #[derive(Stateful)]
     pub enum RampStart default SetPoint {
         /// the velocity of the set-point before: what the drive has when it obeys
         SetPoint = "set-point",
@@ -14,7 +15,7 @@ servobench_config::choices! {
 }
 
 /// Parameters of an axis, in the axis unit (m or rad); constant while it runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct AxisParams {
     /// Time of a PLC cycle (s).
     pub cycle_time: f64,

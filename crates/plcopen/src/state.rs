@@ -1,8 +1,9 @@
 //! The states of an axis (PLCopen part 1, version 2.0, figure 2.1).
 use core::fmt;
+use servobench_base::Stateful;
 
 /// A state of the axis. Synchronized Motion is that of blocks for several axes, which are not here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum AxisState {
     /// Not powered, without an error.
     #[default]

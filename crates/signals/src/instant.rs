@@ -1,11 +1,11 @@
 //! All that is known at one tick.
-use servobench_base::{Dq, Request, RequestKind, Setpoint};
+use servobench_base::{Dq, Request, RequestKind, Setpoint, Stateful};
 use servobench_plant::BodyState;
 use servobench_plant::inverter::{LinkPower, Ripple};
 use servobench_plant::pmsm::{Power, Temperatures};
 
 /// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Stateful)]
 pub struct Instant {
     /// Request of the task to the load, where it is for a position or a velocity.
     pub request: Setpoint,
@@ -102,7 +102,7 @@ impl Instant {
 }
 
 /// What hardware says of itself.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Stateful)]
 pub struct Alarms {
     /// The DC link has less than half of its voltage.
     pub collapsed_link: bool,
@@ -113,7 +113,7 @@ pub struct Alarms {
 }
 
 /// Something for each limit that is watched.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct PerLimit<T> {
     /// Voltage limit, which the current loop keeps to or the inverter enforces.
     pub voltage: T,

@@ -1,6 +1,7 @@
 //! Watches what hardware says of itself: nothing goes wrong in silence, whether a drive looks at it or not.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
+use servobench_base::Stateful;
 use servobench_signals::Alarms;
 use servobench_trace::{Event, Recorder};
 
@@ -12,7 +13,7 @@ const WORDS: [(&str, &str); 3] = [
 ];
 
 /// All of them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct AlarmWatch {
     watches: [Watch; 3],
     last: Alarms,

@@ -9,7 +9,7 @@ use crate::network::{Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
 pub(crate) use control::{Control, EncoderInput, Mounting};
-use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Tick};
+use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Stateful, Tick};
 use servobench_drive::{Demand, EffortLimits};
 use servobench_plant::{Actuation, BodyState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches};
 use servobench_scenario::DisturbedBody;
@@ -32,15 +32,17 @@ pub(crate) struct ClosedLoop {
 }
 
 /// What changes from tick to tick, the mechanics apart.
-#[derive(Clone)]
+#[derive(Clone, Stateful)]
 pub(crate) struct State {
     pub(crate) source: Source,
     /// The tick at which the program began.
     pub(crate) begun: Option<u64>,
     /// The program's set-point of the tick that comes, if somebody has asked for it.
     pub(crate) upcoming: Option<Setpoint>,
+    #[state(fixed)]
     pub(crate) control: Option<Control>,
     /// The sensors, where an FMU replaces the drive.
+    #[state(fixed)]
     pub(crate) sensors: Option<LooseSensors>,
     pub(crate) power: PowerStage,
     /// Where the motor was at the last tick.
@@ -50,19 +52,20 @@ pub(crate) struct State {
 }
 
 /// The effort on the motor over a tick, and where the motor was when the tick began (its own coordinate).
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Stateful)]
 pub(crate) struct Shaft {
     pub(crate) effort: f64,
     pub(crate) position: f64,
 }
 
 /// Where the loops have their demand from.
-#[derive(Clone)]
+#[derive(Clone, Stateful)]
+#[state(fixed)]
 pub(crate) enum Source {
     /// Every tick has its set-point.
     Program(Box<Program>),
     /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
-    Network(Box<Network>, f64),
+    Network(Box<Network>, #[state(constant)] f64),
 }
 
 /// Position and its derivatives.

@@ -1,9 +1,9 @@
 //! What acts on an axis from outside the loop.
-use servobench_base::{Dq, Setpoint};
+use servobench_base::{Dq, Setpoint, Stateful};
 use servobench_plant::BodyState;
 
 /// What comes from outside, held over a tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct External {
     /// Whether the program of the scenario may run: it begins with the first tick at which it may, and runs once.
     pub start: bool,
@@ -20,7 +20,7 @@ pub struct External {
 }
 
 /// What an external controller gives.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Controller {
     /// Effort of the motor (its own coordinate, N·m or N), instead of drive and motor.
     Effort(f64),

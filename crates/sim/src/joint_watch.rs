@@ -1,6 +1,7 @@
 //! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
+use servobench_base::Stateful;
 use servobench_metrics::Incident;
 use servobench_plant::JointLimit;
 use servobench_trace::{Event, Recorder};
@@ -9,7 +10,7 @@ use servobench_trace::{Event, Recorder};
 const MECHANICS: &str = "mechanics";
 
 /// All of them, in the order of the mechanics.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct JointWatch {
     watches: Vec<Watch>,
     /// Whether one of them bound at the last tick.

@@ -1,5 +1,6 @@
 //! Watches the limits that bind: nothing is cut in silence, and what goes from limit to limit is noted.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
+use servobench_base::Stateful;
 use servobench_signals::PerLimit;
 use servobench_trace::{Event, LimitReversals, Recorder};
 
@@ -7,7 +8,7 @@ use servobench_trace::{Event, LimitReversals, Recorder};
 const MOST_EVENTS: usize = 100;
 
 /// One limit: whether it binds, since when, and how often it did since the last row.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct Watch {
     since: Option<f64>,
     bound_ticks: u32,
@@ -19,7 +20,7 @@ pub(crate) struct Watch {
 }
 
 /// All limits.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct LimitWatch {
     watches: PerLimit<Watch>,
     /// Whether one of them bound at the last tick.

@@ -1,14 +1,17 @@
 //! The sensors of an axis whose drive an FMU replaces: they are read for the FMU.
 use crate::closed_loop::{EncoderInput, Mounting};
+use servobench_base::Stateful;
 use servobench_plant::{BodyState, PowerStage};
 use servobench_signals::Instant;
 
 /// Encoders and current sensors that no firmware reads.
-#[derive(Clone)]
+#[derive(Clone, Stateful)]
 pub(crate) struct LooseSensors {
     pub(crate) motor_encoder: EncoderInput,
+    #[state(fixed)]
     pub(crate) load_encoder: Option<EncoderInput>,
     /// Whether the currents are measured: by voltage control of a synchronous motor.
+    #[state(constant)]
     pub(crate) has_current: bool,
     /// Whether the tick that comes has been read already.
     is_read: bool,

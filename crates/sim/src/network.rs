@@ -27,7 +27,7 @@ use plc::Plc;
 use program_cursor::ProgramCursor;
 use reference::DelayedReference;
 use requests::Requests;
-use servobench_base::{Countdown, Divider, Request, Setpoint, Tick};
+use servobench_base::{Countdown, Divider, Request, Setpoint, Stateful, Tick};
 use servobench_cia402::{Commands, Mode, PowerState};
 use servobench_drive::modes::interpolated::serial::Port;
 use servobench_drive::supervision::Finding;
@@ -43,23 +43,28 @@ use servobench_trace::Recorder;
 use signals::Signals;
 
 /// From the motion task to the bus interface of the drive.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(crate) struct Network {
     task: MotionTask,
     /// Model of the axis that the motion task feeds forward with.
+    #[state(constant)]
     model: feedforward::Params,
     /// Axis coordinate per motor coordinate, as the master knows it.
+    #[state(constant)]
     transmission: f64,
     mailbox: Mailbox,
-    link: (link::Params, link::State),
-    drive: (device::Params, device::State),
+    link: Stepped<link::Params, link::State>,
+    drive: Stepped<device::Params, device::State>,
     /// The serial interface of the drive.
     serial: Port,
-    bus: (bus::Params<'static>, bus::State),
+    bus: Stepped<bus::Params<'static>, bus::State>,
+    #[state(constant)]
     faults: Vec<BusFault>,
     /// When the motion task runs.
-    turns: (task::Params<'static>, task::State),
+    turns: Stepped<task::Params<'static>, task::State>,
+    #[state(constant)]
     task_faults: Vec<TaskFault>,
+    #[state(constant)]
     drive_every: Divider,
     drive_turn: Countdown,
     /// What has arrived at the drive since its last step.
@@ -74,19 +79,32 @@ pub(crate) struct Network {
     failure: Option<String>,
     bus_position: f64,
     /// −1 where the drive counts against the axis, otherwise 1.
+    #[state(constant)]
     direction: f64,
     /// Length of an increment of the encoder that closes the position loop (its own coordinate).
+    #[state(constant)]
     increment: f64,
     /// The same per axis coordinate, for the index pulse of the motor.
+    #[state(constant)]
     index_increment: f64,
     /// Where the last index pulse was since the drive's last step.
     index: Option<i64>,
+    #[state(constant)]
     tick: f64,
     signals: Signals,
 }
 
+/// Parameters, and the state that goes on by them.
+#[derive(Debug, Clone, Stateful)]
+struct Stepped<P, S> {
+    #[state(constant)]
+    params: P,
+    state: S,
+}
+
 /// What commands the axis.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 enum MotionTask {
     /// The moves of `[[program]]`.
     Moves(Box<ProgramCursor>),
@@ -201,7 +219,7 @@ impl Network {
         if let Some(pulse) = pulse {
             self.index = Some(counts(pulse / self.index_increment));
         }
-        let (params, state) = &mut self.bus;
+        let Stepped { params, state } = &mut self.bus;
         if let Some(cycle) = bus::step(&params.with_faults(&self.faults), state, Tick(k)) {
             self.step_bus(&cycle, prompt, recorder);
         }
@@ -212,7 +230,7 @@ impl Network {
     }
 
     fn step_drive(&mut self, t: f64, measurement: &Measurement, recorder: &mut Recorder) {
-        let (params, state) = &mut self.drive;
+        let Stepped { params, state } = &mut self.drive;
         let frame = self.frame.take();
         let measured = device::Measured {
             increments: counts(measurement.position / self.increment),
@@ -237,11 +255,13 @@ impl Network {
 
     fn step_bus(&mut self, cycle: &bus::Cycle, prompt: &Prompt, recorder: &mut Recorder) {
         let origin = self.origin();
-        let (params, state) = &mut self.link;
-        let (wire, frames) = &mut self.bus;
-        let actuals = frames.to_master(wire, cycle, self.drive.1.actuals(&self.drive.0));
+        let Stepped { params, state } = &mut self.link;
+        let Stepped { params: wire, state: frames } = &mut self.bus;
+        let actuals = frames.to_master(wire, cycle, self.drive.state.actuals(&self.drive.params));
         let mut torn = None;
-        while let Some(turn) = task::step(&self.turns.0.with_faults(&self.task_faults), &mut self.turns.1, cycle.due) {
+        while let Some(turn) =
+            task::step(&self.turns.params.with_faults(&self.task_faults), &mut self.turns.state, cycle.due)
+        {
             let now = match (prompt.setpoint, prompt.program) {
                 _ if cycle.master_stopped => continue,
                 (Some(setpoint), _) => Now::Follow(setpoint),
@@ -255,7 +275,7 @@ impl Network {
             });
             if let MotionTask::DriveProfile(way) = &mut self.task
                 && let Some(message) = way.message()
-                && let Err(error) = self.serial.receive(self.drive.1.trajectory_buffer(), &message)
+                && let Err(error) = self.serial.receive(self.drive.state.trajectory_buffer(), &message)
             {
                 self.failure = Some(format!("the serial interface of the drive: {error}"));
             }
@@ -321,7 +341,7 @@ impl Network {
     /// the drive itself wants where it finds its own way; `None` where nothing is to be followed.
     fn reference(&mut self, t: f64) -> Option<(Setpoint, feedforward::MotorReference)> {
         let reference = self.reference.at(t);
-        let (_, drive) = &self.drive;
+        let drive = &self.drive.state;
         let follows = matches!(
             drive.mode(),
             Some(Mode::CyclicSynchronousPosition | Mode::CyclicSynchronousVelocity | Mode::ProfileVelocity)
@@ -343,7 +363,7 @@ impl Network {
     /// follow, or the link brings the axis to rest or waits for samples.
     pub(crate) fn request(&mut self, t: f64) -> Request {
         let request = self.requests.at(t);
-        let (drive, link) = (&self.drive.1, &self.link.1);
+        let (drive, link) = (&self.drive.state, &self.link.state);
         let follows = drive.power() == PowerState::OperationEnabled
             && link.fault().is_none()
             && !matches!(link.interpolation(), Interpolation::Wait | Interpolation::Underflow);
@@ -358,13 +378,13 @@ impl Network {
 
     /// Where the axis has its zero once it is homed, in the coordinate of the machine.
     fn origin(&self) -> f64 {
-        let (params, state) = &self.drive;
+        let Stepped { params, state } = &self.drive;
         self.direction * params.units.metres_or_radians(state.origin())
     }
 
     /// The states of link, drive and axis.
     pub(crate) fn states(&self) -> States {
-        let (drive, link) = (&self.drive.1, &self.link.1);
+        let (drive, link) = (&self.drive.state, &self.link.state);
         States {
             drive: Some(drive.power()),
             drive_fault: drive.fault().map_or(0, device::Fault::code),
@@ -378,7 +398,7 @@ impl Network {
 
     /// True where the drive cuts the velocity that it is sent, and the master what it sends.
     pub(crate) const fn cuts_velocity(&self) -> [bool; 2] {
-        [self.drive.1.cuts_velocity(), self.link.1.is_limited()]
+        [self.drive.state.cuts_velocity(), self.link.state.is_limited()]
     }
 
     /// Why the motion task gave up, once.
@@ -389,7 +409,7 @@ impl Network {
     /// Brings to `now`, which is at `t` (s): set-point and references, what goes over the bus, and the actual position as the master
     /// reads it.
     pub(crate) fn show(&mut self, t: f64, now: &mut Instant) {
-        let (params, state) = &self.link;
+        let Stepped { params, state } = &self.link;
         let put_out = state.output(params);
         now.setpoint = self.setpoint(now.motor.position);
         (now.task, now.bus_position) = (self.asked, self.bus_position);
@@ -402,8 +422,8 @@ impl Network {
 
     /// Notes what is known at the end only.
     pub(crate) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
-        let of_bus = (&self.bus.0, &self.bus.1, &self.faults[..]);
-        concerned::note(of_bus, (&self.turns.0, &self.turns.1, &self.task_faults), self.tick, recorder);
+        let of_bus = (&self.bus.params, &self.bus.state, &self.faults[..]);
+        concerned::note(of_bus, (&self.turns.params, &self.turns.state, &self.task_faults), self.tick, recorder);
         match &mut self.task {
             MotionTask::Moves(moves) => moves.moves(delay).for_each(|made| recorder.note_move(made)),
             MotionTask::DriveProfile(way) => way.note(delay, recorder),

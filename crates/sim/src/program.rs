@@ -6,7 +6,7 @@ mod fine;
 use crate::error::{BuildError, check_length};
 use described::kind;
 use fine::Fine;
-use servobench_base::{RequestKind, Setpoint};
+use servobench_base::{RequestKind, Setpoint, Stateful};
 use servobench_cia402::interpolated::SubMode;
 use servobench_cia402::units::Object;
 use servobench_metrics::DisplayUnit;
@@ -40,27 +40,32 @@ struct Planned {
 }
 
 /// Moves and pauses, one after the other, as the drive sees them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct Program {
     course: Course,
+    #[state(constant)]
     end: f64,
     /// Between the course and the drive.
+    #[state(fixed)]
     fine: Option<Fine>,
     /// The course as the task wants it: where the set-point is interpolated, so much later, and otherwise the set-point itself.
+    #[state(fixed)]
     requested: Option<Course>,
     /// In which its positions are told.
+    #[state(constant)]
     unit: DisplayUnit,
 }
 
 /// Moves one after the other.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 struct Course {
+    #[state(constant)]
     moves: Vec<Planned>,
     now: Now,
 }
 
 /// What the last query found; the next one is most likely the same.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 struct Now {
     /// Index of the move, its start (s) and where it starts from; the move is over when the next one starts (s).
     index: usize,

@@ -1,12 +1,13 @@
 //! Notes which kind of request the task makes, when that changes.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use servobench_base::RequestKind;
+use servobench_base::{RequestKind, Stateful};
 use servobench_metrics::REQUEST_KIND;
 use servobench_trace::{Recorder, SignalId};
 
 /// The kind of request that was noted last.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(crate) struct RequestWatch {
+    #[state(constant)]
     id: SignalId,
     noted: Option<RequestKind>,
 }

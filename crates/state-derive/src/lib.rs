@@ -2,11 +2,11 @@
 //!
 //! Every field is saved and restored in the order of the declaration, unless it is marked; a field of a type that is not a state does
 //! not compile. A variant of an enum is written by its index.
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 use syn::parse::Parser as _;
 use syn::punctuated::Punctuated;
-use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Token, parse_macro_input};
+use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Token, WhereClause, parse_macro_input, parse_quote};
 
 /// See the module `servobench_base::state`.
 #[proc_macro_derive(Stateful, attributes(state))]
@@ -116,11 +116,13 @@ fn implementation(input: &DeriveInput) -> Result<TokenStream, Error> {
         Data::Enum(data) => of_enum(data, is_fixed)?,
         Data::Union(data) => return Err(Error::new(data.union_token.span, "a union is not a state")),
     };
-    let (name, (generics, arguments, bounds)) = (&input.ident, input.generics.split_for_impl());
+    let (name, (generics, arguments, _)) = (&input.ident, input.generics.split_for_impl());
+    let bounds = bounds(input, &quote!(Stateful))?;
+    let value_bounds = self::bounds(input, &quote!(Value))?;
     let value = restored.map(|restored| {
         quote! {
             #[automatically_derived]
-            impl #generics ::servobench_base::state::Value for #name #arguments #bounds {
+            impl #generics ::servobench_base::state::Value for #name #arguments #value_bounds {
                 fn restored(
                     from: &mut ::servobench_base::state::Reader<'_>,
                 ) -> ::core::result::Result<Self, ::servobench_base::state::Damaged> {
@@ -145,6 +147,37 @@ fn implementation(input: &DeriveInput) -> Result<TokenStream, Error> {
         }
         #value
     })
+}
+
+/// The where clause of the type, and that every field whose type depends on a parameter of it is a state, or a value.
+fn bounds(input: &DeriveInput, kind: &TokenStream) -> Result<Option<WhereClause>, Error> {
+    let parameters: Vec<String> = input.generics.type_params().map(|parameter| parameter.ident.to_string()).collect();
+    let mut generics = input.generics.clone();
+    if let (Data::Struct(data), false) = (&input.data, parameters.is_empty()) {
+        for field in &data.fields {
+            let (kind, of_type) = match mark(&field.attrs)? {
+                Mark::Constant => continue,
+                Mark::Fixed => (quote!(FixedForm), &field.ty),
+                Mark::None | Mark::Derived => (kind.clone(), &field.ty),
+            };
+            let names =
+                |token: TokenTree| matches!(token, TokenTree::Ident(ident) if parameters.contains(&ident.to_string()));
+            if flat(quote!(#of_type)).into_iter().any(names) {
+                let bound = parse_quote!(#of_type: ::servobench_base::state::#kind);
+                generics.make_where_clause().predicates.push(bound);
+            }
+        }
+    }
+    Ok(generics.where_clause)
+}
+
+/// The tokens within all groups.
+fn flat(tokens: TokenStream) -> Vec<TokenTree> {
+    let within = |token| match token {
+        TokenTree::Group(group) => flat(group.stream()),
+        other => vec![other],
+    };
+    tokens.into_iter().flat_map(within).collect()
 }
 
 fn of_struct(fields: &Fields, is_fixed: bool) -> Result<Bodies, Error> {

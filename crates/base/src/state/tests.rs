@@ -52,6 +52,11 @@ fn a_restored_state_has_every_bit_and_its_own_parameters() {
     restore(&mut other, &words).unwrap();
     assert_eq!(other.corner.to_bits(), 7.0_f64.to_bits());
     assert_eq!(saved(&other), words);
+    for value in [i128::MIN, -1, 1 << 64, i128::MAX] {
+        let mut other = 0_i128;
+        restore(&mut other, &saved(&value)).unwrap();
+        assert_eq!(other, value);
+    }
     let held = Way::Held { since: -4 };
     let mut way = Way::Rest;
     restore(&mut way, &saved(&held)).unwrap();
@@ -102,7 +107,7 @@ fn numbers_have_the_names_of_their_fields() {
     assert_eq!(names.all, ["memory", "memory", "(output)", "way.0", "inner.0"]);
 }
 
-#[cfg(feature = "alloc")]
+#[cfg(feature = "std")]
 #[test]
 fn lists_grow_and_shrink_and_hostile_lengths_are_refused() {
     use std::string::ToString;
@@ -114,4 +119,17 @@ fn lists_grow_and_shrink_and_hostile_lengths_are_refused() {
     let mut text = String::new();
     restore(&mut text, &saved(&"späte".to_string())).unwrap();
     assert_eq!(text, "späte");
+}
+
+#[cfg(feature = "std")]
+#[test]
+fn texts_of_errors_are_kept_once_and_not_without_end() {
+    let mut one: &'static str = "velocity";
+    let words = saved(&one);
+    restore(&mut one, &words).unwrap();
+    let first = one.as_ptr();
+    restore(&mut one, &words).unwrap();
+    assert!(one == "velocity" && one.as_ptr() == first);
+    let long: &'static str = Box::leak("x".repeat(1 << 17).into());
+    assert_eq!(restore(&mut one, &saved(&long)), Err(Damaged));
 }

@@ -37,6 +37,16 @@ const fn signed(value: i64) -> u64 {
     value.cast_unsigned()
 }
 
+/// Lower and upper half.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "halves")]
+const fn halves(value: i128) -> [u64; 2] {
+    [value as u64, (value >> 64) as u64]
+}
+
+fn whole([lower, upper]: [u64; 2]) -> i128 {
+    (u128::from(upper) << 64 | u128::from(lower)).cast_signed()
+}
+
 integers! {
     u8: u64::from, identity;
     u16: u64::from, identity;
@@ -51,6 +61,8 @@ values! {
     f64: |to: &mut dyn Writer, value| to.number(value), Reader::number;
     u64: |to: &mut dyn Writer, value| to.word(value), Reader::word;
     i64: |to: &mut dyn Writer, value| to.word(signed(value)), |from: &mut Reader<'_>| from.word().map(u64::cast_signed);
+    i128: |to: &mut dyn Writer, value: i128| for half in halves(value) { to.word(half) },
+        |from: &mut Reader<'_>| Ok(whole([from.word()?, from.word()?]));
     bool: |to: &mut dyn Writer, value: bool| to.word(value.into()), |from: &mut Reader<'_>| match from.word()? {
         0 => Ok(false),
         1 => Ok(true),
@@ -159,13 +171,40 @@ impl<T: Stateful> FixedForm for [T] {
     }
 }
 
-#[cfg(feature = "alloc")]
+/// A name or a bound in an error. Without the feature `std` a state with one is not restored.
+impl Stateful for &'static str {
+    fn save(&self, to: &mut dyn Writer) {
+        to.word(self.len() as u64);
+        for byte in self.bytes() {
+            to.word(byte.into());
+        }
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        *self = Self::restored(from)?;
+        Ok(())
+    }
+}
+
+impl Value for &'static str {
+    #[cfg(feature = "std")]
+    fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        super::texts::kept(&std::string::String::restored(from)?)
+    }
+
+    #[cfg(not(feature = "std"))]
+    fn restored(_: &mut Reader<'_>) -> Result<Self, Damaged> {
+        Err(Damaged)
+    }
+}
+
+#[cfg(feature = "std")]
 mod with_a_heap {
     use super::{Damaged, FixedForm, Reader, Stateful, Value, Writer};
-    use alloc::boxed::Box;
-    use alloc::collections::VecDeque;
-    use alloc::string::String;
-    use alloc::vec::Vec;
+    use std::boxed::Box;
+    use std::collections::VecDeque;
+    use std::string::String;
+    use std::vec::Vec;
 
     impl<T: Stateful> Stateful for Box<T> {
         fn save(&self, to: &mut dyn Writer) {

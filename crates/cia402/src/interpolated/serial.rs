@@ -13,6 +13,7 @@
 //!
 //! Source: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020), "PVT moves via binary serial".
 use super::Point;
+use servobench_base::Stateful;
 use thiserror::Error;
 
 /// The trajectory buffer's parameter.
@@ -41,7 +42,7 @@ pub enum Record {
 }
 
 /// What is written to a parameter: a word and the values behind it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub struct Words {
     word: u16,
     values: [i32; 2],
@@ -49,7 +50,7 @@ pub struct Words {
 }
 
 /// A message to the serial interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Message {
     /// Writes a parameter.
     Write {

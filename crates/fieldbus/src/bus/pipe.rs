@@ -1,10 +1,11 @@
 //! Frames under way in one direction.
 
+use servobench_base::Stateful;
 /// Frames that a pipe holds at most.
 const LENGTH: usize = 16;
 
 /// A frame per cycle goes in, another comes out.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Pipe<T> {
     frames: [Option<T>; LENGTH],
     /// Where the next one goes in.

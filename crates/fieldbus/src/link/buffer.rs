@@ -22,6 +22,7 @@
 //! A mode predicts by what it uses. Those that use the velocity go on along the parabola of the last sample, the others along
 //! the straight line through the last two.
 use core::array::from_fn;
+use servobench_base::Stateful;
 use servobench_motion::interpolate::{Command, Interval, Mode, Sample};
 
 /// Samples that may be there before they are needed.
@@ -90,7 +91,7 @@ pub(crate) enum Reading {
 }
 
 /// The samples and the interval that is read.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Buffer {
     /// The last samples that were shifted in, the newest at the end; those predicted are the last ones.
     window: [Sample; POINTS],

@@ -13,7 +13,7 @@
 //! That difference is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is at
 //! most what is read plus that of the recovery. A stop is the same kind of transition, to standstill. What torque differs by
 //! fades linearly over the same time.
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Order;
 use servobench_motion::interpolate::Command;
 use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
@@ -41,7 +41,7 @@ impl Recovery {
 }
 
 /// A transition that is under way.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct ProfileCommand {
     transition: Transition,
     /// Torque at its start, zero at its end (N·m or N).
@@ -72,7 +72,7 @@ impl ProfileCommand {
 }
 
 /// What is put out.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) enum Course {
     /// At rest at a position.
     Rest(f64),

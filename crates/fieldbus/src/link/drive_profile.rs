@@ -5,10 +5,11 @@
 use super::frame::set_target;
 use super::{Params, State};
 use crate::{LinkFault, ProfileCommand, ProfileFeedback, TrajectoryPoint};
+use servobench_base::Stateful;
 use servobench_cia402::{Actuals, Mode, StatusBit};
 
 /// What a link remembers of it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct DriveProfile {
     /// Whether the command is one that was not there at the last step.
     pub(super) has_news: bool,

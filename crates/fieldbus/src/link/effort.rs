@@ -4,10 +4,11 @@
 //! predicted.
 use super::buffer::{PREDICTED, Timing};
 use crate::Interpolation;
+use servobench_base::Stateful;
 
 /// The largest effort that the drive is told. One that is lifted or raised acts until the set-points from before are behind: an axis
 /// that is held by its limit would push with all it has.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(crate) struct Limit {
     /// The limit that acts (N·m or N), and when it was asked for last (base ticks).
     held: Option<(f64, u64)>,
@@ -26,7 +27,7 @@ impl Limit {
 }
 
 /// From one effort to another (N·m or N).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Ramp {
     from: f64,
     to: f64,

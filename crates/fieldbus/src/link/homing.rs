@@ -16,10 +16,11 @@
 //! A motion task that asks for something else meanwhile takes bit 4 back. The mode stays until the drive is known to rest: it may find
 //! its reference before it learns of the change, and its positions then count from another zero than those it would be sent.
 use crate::Homing;
+use servobench_base::Stateful;
 use servobench_cia402::{StatusBit, Statusword};
 
 /// How far it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) enum Procedure {
     /// Not asked for, or waiting for the mode.
     Idle,

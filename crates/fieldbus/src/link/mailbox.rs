@@ -12,11 +12,11 @@
 //! assert_eq!(mailbox.written(), 1);
 //! ```
 use crate::{AxisCommand, Task};
-use servobench_base::Tick;
+use servobench_base::{Stateful, Tick};
 use servobench_motion::interpolate::Sample;
 
 /// The command of the motion task with the cycle that it belongs to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Mailbox {
     /// Number of writings that were begun.
     begun: u64,

@@ -1,5 +1,6 @@
 //! Where the axis is, by a counter that wraps.
 use super::units::{Scale, reading};
+use servobench_base::Stateful;
 use servobench_cia402::Actuals;
 use servobench_cia402::counter::Unwrapped;
 use servobench_cia402::units::UnitError;
@@ -8,7 +9,7 @@ use servobench_cia402::units::UnitError;
 const SPAN: usize = 4;
 
 /// A reading of the actual position and of what the drive's loops follow (counts).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Reading {
     actual: i128,
     followed: i128,
@@ -17,7 +18,7 @@ struct Reading {
 }
 
 /// Position and velocity from one reading to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Position {
     unwrapped: Unwrapped,
     counts: i128,

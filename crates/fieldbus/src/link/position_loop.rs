@@ -68,7 +68,7 @@
 //!
 //! [`Settings::answer_age`]: super::Settings::answer_age
 use crate::FieldbusError;
-use servobench_base::{Setpoint, non_negative, positive};
+use servobench_base::{Setpoint, Stateful, non_negative, positive};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 
 /// Set-points that are kept: of as many cycles as a frame may be on its way, there and back, and of two for the age.
@@ -128,7 +128,7 @@ pub(crate) struct Law {
 }
 
 /// A set-point that was put out.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct PutOut {
     /// When (base ticks).
     tick: u64,
@@ -137,7 +137,7 @@ struct PutOut {
 }
 
 /// The set-points that were put out, and what the axis is off by.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct PositionLoop {
     kept: [PutOut; KEPT],
     newest: usize,

@@ -10,6 +10,7 @@
 //! | no power | Disable operation (605Ch says how it brakes), Shutdown | 0006h |
 //! | quick stop | Quick stop where the drive function is enabled, Disable voltage elsewhere | 0002h |
 //! | fault reset | Fault reset until Fault is left or the time is over | the same, by the fault bit |
+use servobench_base::Stateful;
 use servobench_cia402::{Command, Controlword, Next, PowerState, StatusBit, Statusword, keeping, towards};
 
 servobench_config::choices! {
@@ -31,7 +32,7 @@ pub(crate) enum Wanted {
 }
 
 /// What the sequencer remembers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) struct Sequencer {
     /// The last state that the statusword told.
     state: PowerState,

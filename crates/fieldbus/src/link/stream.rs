@@ -2,7 +2,7 @@
 use super::buffer::{Buffer, Reading, Taken, Timing};
 use super::course::{Course, Recovery};
 use crate::Interpolation;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::interpolate::{Command, Sample};
 
 /// What a stream needs to know, constant during a run.
@@ -42,7 +42,7 @@ pub(crate) enum Post {
 }
 
 /// What is put out and where it comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Stream {
     buffer: Buffer,
     course: Course,

@@ -5,16 +5,17 @@
 use super::Params;
 use super::position::Position;
 use crate::{ProbeFeedback, TouchProbe};
+use servobench_base::Stateful;
 use servobench_cia402::{Actuals, touch_probe};
 
 /// What a link remembers of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct Probe {
     number: u32,
     phase: Phase,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 enum Phase {
     /// Nothing is asked for.
     #[default]

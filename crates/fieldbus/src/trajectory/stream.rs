@@ -11,6 +11,7 @@ use super::points::{PointEncoding, PointTransfer, Unsendable};
 use super::words::SentPoint;
 use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
 use alloc::vec::Vec;
+use servobench_base::Stateful;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand};
 
@@ -43,10 +44,12 @@ impl Timing {
 }
 
 /// Sends tables to the buffer of a drive, one after the other.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct Stream {
+    #[state(constant)]
     encoding: PointEncoding,
     /// When each begins (s), and its points.
+    #[state(constant)]
     tables: Vec<(f64, Vec<Point>)>,
     table: usize,
     /// Points of all tables that were sent, as the drive numbers them.
@@ -62,11 +65,12 @@ pub struct Stream {
     message: Option<Message>,
     /// In which of the last 64 cycles a point was sent; the last one is the lowest bit.
     recent: u64,
+    #[state(constant)]
     timing: Timing,
 }
 
 /// How far a table is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 enum Stage {
     /// The serial interface is to be told the mode.
     Setting,

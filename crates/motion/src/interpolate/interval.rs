@@ -35,7 +35,7 @@ impl Sample {
 }
 
 /// What the fast task reads.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Command {
     /// Position and its derivatives; jerk and snap are the derivatives of the acceleration within the interval.
     pub setpoint: Setpoint,
@@ -44,7 +44,7 @@ pub struct Command {
 }
 
 /// The polynomials of one interval, found once and read as often as needed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Interval {
     x: Polynomial,
     v: Polynomial,

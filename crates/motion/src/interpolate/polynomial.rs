@@ -1,8 +1,9 @@
 //! Polynomials of the fraction u of an interval.
 use super::Sample;
+use servobench_base::Stateful;
 
 /// `c[0] + c[1]·u + … + c[5]·u⁵`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Polynomial([f64; 6]);
 
 impl Polynomial {

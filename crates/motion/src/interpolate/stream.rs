@@ -2,11 +2,14 @@
 use super::interval::checked_period;
 use super::{Command, Interval, Mode, Sample};
 use crate::PlanError;
+use servobench_base::Stateful;
 
 /// Takes slow samples and gives commands within the newest complete interval; its size is fixed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Interpolator {
+    #[state(constant)]
     mode: Mode,
+    #[state(constant)]
     period: f64,
     /// The last six samples, the newest at the end.
     window: [Sample; 6],

@@ -13,10 +13,10 @@
 use crate::PlanError;
 use crate::limits::in_range;
 use crate::pvt::{Knot, checked};
-use servobench_base::{ParamError, finite, positive};
+use servobench_base::{ParamError, Stateful, finite, positive};
 
 /// The instants at which commands can be sent.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Clock {
     first: f64,
     period: f64,

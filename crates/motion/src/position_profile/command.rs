@@ -1,7 +1,8 @@
 //! What the drive is told.
 
+use servobench_base::Stateful;
 /// A command of the profile velocity mode: from `t` on go to `velocity` with `acceleration`, then stay there.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Command {
     /// Time at which it is sent (s).
     pub t: f64,
@@ -12,7 +13,7 @@ pub struct Command {
 }
 
 /// A straight line of velocity: what a drive makes of a [`Command`] that it gets at `begin` and has obeyed after `length`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct VelocityRamp {
     /// When it begins (s).
     pub begin: f64,

@@ -11,7 +11,7 @@
 use super::Command;
 use crate::PlanError;
 use crate::limits::{RANGE, in_range};
-use servobench_base::{ParamError, positive};
+use servobench_base::{ParamError, Stateful, positive};
 
 /// Shares of the grid, up to 1/2.
 const GRID: u32 = 64;
@@ -40,7 +40,7 @@ impl Demand {
 }
 
 /// The share α of a segment at either end in which the velocity of plateaus changes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum PlateauShare {
     /// This one, above 0 and up to 1/2, which leaves no plateau.
     Given(f64),

@@ -1,9 +1,10 @@
 //! A point of a table in SI.
 use crate::PlanError;
 use crate::limits::RANGE;
+use servobench_base::Stateful;
 
 /// Where to be at what time, and how fast.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Knot {
     /// Time (s), later than that of the point before by at least 1e-30 s.
     pub t: f64,

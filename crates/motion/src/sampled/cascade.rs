@@ -2,7 +2,7 @@
 use super::Run;
 use crate::limits::in_range;
 use crate::{Order, PlanError};
-use servobench_base::{Setpoint, positive};
+use servobench_base::{Setpoint, Stateful, positive};
 
 /// A chain of integrators, each of which adds the value that the next one had at the sample before.
 ///
@@ -18,7 +18,7 @@ use servobench_base::{Setpoint, positive};
 /// cascade.settle(1.0);
 /// # Ok::<(), servobench_motion::PlanError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Cascade {
     order: Order,
     sample_time: f64,

@@ -8,12 +8,12 @@ use crate::command::{BufferMode, Command, Reference};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::Homing;
 use servobench_motion::online::Target;
 
 /// What the axis is doing.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) enum Activity {
     /// Nothing.
     Rest,
@@ -32,7 +32,7 @@ pub(super) enum Activity {
 }
 
 /// A command on its planned way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Moving {
     pub(super) id: CommandId,
     pub(super) command: Command,
@@ -46,7 +46,7 @@ pub(super) struct Moving {
 }
 
 /// A command to an effort.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct EffortRamp {
     pub(super) id: CommandId,
     pub(super) command: Command,
@@ -57,7 +57,7 @@ pub(super) struct EffortRamp {
 }
 
 /// A reference run of the drive.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct HomingWait {
     pub(super) id: CommandId,
     pub(super) command: Command,
@@ -67,14 +67,14 @@ pub(super) struct HomingWait {
 }
 
 /// A command that brings the axis to rest when the drive has ended its reference run, and with it counts from one zero.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Leaving {
     pub(super) id: CommandId,
     pub(super) command: Command,
 }
 
 /// A command whose set-points its block gives.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Led {
     pub(super) id: CommandId,
     pub(super) command: Command,

@@ -3,12 +3,12 @@
 //! Acceleration is for a speed that grows, Deceleration for one that falls. An axis that has to turn round does both in the same
 //! direction: [`Transition::plan_ramps`] says how both are kept.
 use crate::command::Dynamics;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
 use servobench_motion::{Limits, Order, PlanError};
 
 /// The factors of MC_SetOverride.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Override {
     pub(crate) velocity: f64,
     pub(crate) acceleration: f64,
@@ -20,7 +20,7 @@ impl Override {
 }
 
 /// What a way may not exceed, magnitudes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Bounds {
     pub(crate) velocity: f64,
     pub(crate) acceleration: f64,

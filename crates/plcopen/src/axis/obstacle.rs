@@ -11,7 +11,7 @@ use crate::command::{Command, Obstacle};
 use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::AxisFeedback;
 use servobench_motion::PlanError;
 use servobench_motion::online::Target;
@@ -20,7 +20,7 @@ use servobench_motion::online::Target;
 const ROUNDING: f64 = 1e-9;
 
 /// A search under way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Search {
     pub(super) id: CommandId,
     pub(super) command: Command,
@@ -39,7 +39,7 @@ pub(super) struct Search {
 }
 
 /// What the steps of homing have left: the axis stays in Homing until a block ends it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct HomingSteps {
     /// Effort with which the axis stays at the obstacle.
     effort_limit: Option<f64>,

@@ -11,12 +11,12 @@ use crate::command::finite_input;
 use crate::error::{AxisError, BlockError};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
 use crate::state::AxisState;
-use servobench_base::positive;
+use servobench_base::{Stateful, positive};
 use servobench_motion::Limits;
 use servobench_motion::online::Target;
 
 /// What a program has set.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Supervision {
     /// Limits of the position, as the program sees it: the negative and the positive one.
     software_limits: [f64; 2],

@@ -1,12 +1,13 @@
 //! The commands that wait.
 use crate::command::Command;
 use crate::ledger::CommandId;
+use servobench_base::Stateful;
 
 /// Most commands that an axis can hold behind the active one.
 pub const MOST_BUFFERED: usize = 8;
 
 /// The commands that wait, in the order in which they were given.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Queue {
     waiting: [Option<(CommandId, Command)>; MOST_BUFFERED],
     count: usize,

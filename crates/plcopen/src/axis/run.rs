@@ -1,6 +1,6 @@
 //! A planned way under way.
 use super::bounds::Bounds;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Target, Transition};
 use servobench_motion::{Piece, PlanError};
 
@@ -9,7 +9,7 @@ use servobench_motion::{Piece, PlanError};
 const ROUNDING: f64 = 1e-9;
 
 /// A way and how much of it is behind.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Run {
     way: Transition,
     piece: Piece,

@@ -9,11 +9,11 @@ use crate::command::{Command, Dynamics, finite_input};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::Target;
 
 /// A relative motion on top of the activity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Superimposed {
     pub(super) id: CommandId,
     pub(super) command: Command,

@@ -10,14 +10,14 @@ use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::{AxisError, BlockError};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::Target;
 
 /// A commanded velocity below this part of the limit is rounding, not motion in a direction.
 const CREEP: f64 = 1e-6;
 
 /// What MC_Power asks for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) struct PowerRequest {
     pub(crate) enable: bool,
     pub(crate) positive: bool,
@@ -31,7 +31,7 @@ impl Default for PowerRequest {
 }
 
 /// How far a reset is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) enum Reset {
     /// Not asked for.
     #[default]

@@ -8,11 +8,12 @@
 use super::Axis;
 use crate::ledger::CommandId;
 use crate::params::RampStart;
+use servobench_base::Stateful;
 use servobench_fieldbus::ProfileCommand;
 use servobench_motion::position_profile::VelocityRamp;
 
 /// What the drive is told, and was told before.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct VelocityCommands {
     /// Velocity of the set-point before (m/s or rad/s).
     before: f64,

@@ -24,12 +24,13 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Ending};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{inputs, like, limit, optional, outputs, required};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
 use servobench_motion::{Limits, PlanError, Trajectory};
 
 servobench_config::choices! {
     /// What the position of a move is.
+    #[derive(Stateful)]
     pub enum MoveType default Absolute {
         /// the position to move to
         Absolute = "absolute",
@@ -39,7 +40,7 @@ servobench_config::choices! {
 }
 
 /// From rest to rest by a trapezoid or an S-curve.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct AxisMove {
     leading: Leading,
     way: Way,
@@ -83,7 +84,7 @@ inputs! {
 
 outputs! {
     /// Outputs of [`AxisMove`]: the bits of its motion control tag.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
     pub struct AxisMoveOutputs {
         /// EN.
         enabled: bool = MoveEnabled,
@@ -206,7 +207,7 @@ const fn maximum(limits: &Limits) -> MaximumJerk {
 }
 
 /// A move on its way.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 struct Way {
     asked: Option<(Move, MoveType, MaximumJerk)>,
     origin: f64,

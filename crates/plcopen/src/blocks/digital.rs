@@ -8,21 +8,22 @@ use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
 use crate::error::BlockError;
 use crate::interface::{inputs, required};
+use servobench_base::Stateful;
 
 /// Reads a digital input, as it is wired.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ReadDigitalInput {
     error: Option<BlockError>,
 }
 
 /// Reads a digital output: what it was last set to.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ReadDigitalOutput {
     error: Option<BlockError>,
 }
 
 /// Sets a digital output.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct WriteDigitalOutput {
     execution: Execution,
 }

@@ -14,6 +14,7 @@
 //! - A window that is passed between two cycles is TRUE for one.
 //! - Positions that jump (MC_SetPosition, homing) pass nothing.
 mod cam;
+use servobench_base::Stateful;
 
 use super::outputs::FunctionBlock;
 use super::profile::{Memory, check_room};
@@ -86,7 +87,7 @@ pub struct TrackOptions {
 }
 
 /// Switches digital outputs by the position; `M` has the memory for the switches.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct DigitalCamSwitch<M> {
     memory: M,
     /// Outputs that the block has.

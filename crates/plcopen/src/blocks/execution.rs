@@ -2,9 +2,10 @@
 use crate::axis::Axis;
 use crate::error::{BlockError, ErrorId};
 use crate::ledger::{CommandId, Progress};
+use servobench_base::Stateful;
 
 /// What a block with Execute has to say in a cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum Report {
     /// Nothing.
     #[default]
@@ -47,14 +48,14 @@ impl Report {
 }
 
 /// What an instance remembers of its Execute.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(crate) struct Execution {
     execute: bool,
     phase: Phase,
     error: Option<BlockError>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 enum Phase {
     #[default]
     Idle,

@@ -7,11 +7,12 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::BlockError;
 use crate::interface::{inputs, limit_if_any, required_for};
+use servobench_base::Stateful;
 
 /// Brakes the motion of `MC_MoveSuperimposed` and leaves the one below alone; what was covered stays.
 ///
 /// Done at once where nothing is on top. A new `MC_MoveSuperimposed` takes over from it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HaltSuperimposed {
     execution: Execution,
 }

@@ -6,22 +6,23 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal, Reference};
 use crate::error::BlockError;
 use crate::interface::{buffer_mode, inputs, or};
+use servobench_base::Stateful;
 
 /// Has the drive look for its reference, by the method that it is set to.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Home {
     execution: Execution,
 }
 
 /// Gives the position at which the axis stands, without a motion: its reference from then on.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HomeDirect {
     execution: Execution,
 }
 
 /// Takes the position of the drive's encoder, which is an absolute one, for that of the axis: without a motion, and without what
 /// MC_SetPosition or MC_HomeDirect added to it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HomeAbsolute {
     execution: Execution,
 }

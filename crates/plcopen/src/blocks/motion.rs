@@ -6,6 +6,7 @@ use crate::blocks::BlockName;
 use crate::command::Command;
 use crate::error::BlockError;
 use crate::interface::BlockInputs;
+use servobench_base::Stateful;
 
 /// The inputs of a block that gives one motion command.
 pub trait MotionInputs: Copy + PartialEq + for<'i> BlockInputs<'i> {
@@ -27,7 +28,7 @@ pub trait MotionInputs: Copy + PartialEq + for<'i> BlockInputs<'i> {
 }
 
 /// A block that gives one motion command.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct MotionBlock<I> {
     execution: Execution,
     /// The inputs that act, where they may change.

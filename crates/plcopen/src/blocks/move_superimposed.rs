@@ -6,13 +6,14 @@ use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{flag, inputs, like, limit, limit_if_any, outputs, required};
+use servobench_base::Stateful;
 use servobench_motion::Limits;
 
 /// By a distance on top of the motion below, which goes on; at Standstill on its own.
 ///
 /// A command that aborts the motion below aborts this one too; buffered and blended ones leave it alone, and lead to where they
 /// lead plus the distance. A second one replaces the first and counts from where that one is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct MoveSuperimposed {
     execution: Execution,
     /// The inputs that act.

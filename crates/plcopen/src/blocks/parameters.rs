@@ -8,23 +8,24 @@ use crate::blocks::{BlockName, Input};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{inputs, outputs, required};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
+use servobench_base::Stateful;
 
 /// Reads a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadParameter;
 
 /// Reads a BOOL.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadBoolParameter;
 
 /// Writes a number.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct WriteParameter {
     execution: Execution,
 }
 
 /// Writes a BOOL.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct WriteBoolParameter {
     execution: Execution,
 }

@@ -15,7 +15,7 @@ use crate::command::{BufferMode, Ending};
 use crate::error::BlockError;
 use crate::interface::{BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, buffer_mode, or, required};
 use crate::params::AxisParams;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::position_profile::{
     Clock, ClockedPlateaus, ClockedSpline, PlateauShare, Plateaus, Spline, VelocityRamp,
 };
@@ -32,7 +32,7 @@ pub struct TimePosition<'a> {
 }
 
 /// How the axis goes from position to position.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Follow {
     /// At a constant velocity in each segment, but for this share of its time at either end, above 0 up to 1/2; `None` for the share that
     /// takes the smallest part of the velocity and the acceleration of the axis.
@@ -44,7 +44,7 @@ pub enum Follow {
 }
 
 /// Along a table of positions, which it keeps in the memory `K` and `S`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct PositionProfile<K, S> {
     leading: Leading,
     way: Way<K, S>,
@@ -203,7 +203,7 @@ impl crate::program::New for PositionProfile<alloc::vec::Vec<Knot>, alloc::vec::
 }
 
 /// A table on its way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 struct Way<K, S> {
     knots: K,
     scratch: S,

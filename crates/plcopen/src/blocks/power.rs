@@ -4,9 +4,10 @@ use crate::axis::{Axis, PowerRequest};
 use crate::blocks::{BlockName, Input};
 use crate::error::ErrorId;
 use crate::interface::{flag, inputs, outputs};
+use servobench_base::Stateful;
 
 /// Powers the axis while Enable is TRUE.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Power;
 
 inputs! {

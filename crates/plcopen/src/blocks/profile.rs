@@ -23,12 +23,12 @@ use crate::error::BlockError;
 use crate::interface::{BlockInput, Tables, Values, or};
 use crate::ledger::{CommandId, Progress};
 use crate::state::AxisState;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::position_profile::VelocityRamp;
 use servobench_motion::{Limits, PlanError};
 
 /// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Pair {
     /// Time since the pair before, or since the start (s): positive, but for the first pair, and those of accelerations that jump.
     pub delta_time: f64,
@@ -189,7 +189,7 @@ pub(super) struct Call {
 }
 
 /// Execute and the command that leads the axis.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub(super) struct Leading {
     pub(super) execution: Execution,
     id: Option<CommandId>,

@@ -28,11 +28,11 @@ use crate::interface::{
     BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, flag, limit, or, outputs, required, required_for,
 };
 use crate::ledger::{CommandId, Progress};
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::{Limits, Order};
 
 /// Follows the generator of order 4.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct Profile4th {
     generator: generator::State,
     id: Option<CommandId>,

@@ -8,25 +8,26 @@ use crate::error::{AxisError, ErrorId};
 use crate::interface::{Recorded as _, inputs};
 use crate::state::AxisState;
 use core::marker::PhantomData;
+use servobench_base::Stateful;
 
 /// The state of the axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadStatus;
 
 /// The error for which the axis is in ErrorStop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadAxisError;
 
 /// The actual position.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualPosition;
 
 /// The actual velocity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualVelocity;
 
 /// The actual effort.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualTorque;
 
 inputs! {

@@ -5,10 +5,11 @@ use crate::axis::Axis;
 use crate::blocks::BlockName;
 use crate::error::ErrorId;
 use crate::interface::outputs;
+use servobench_base::Stateful;
 use servobench_fieldbus::{Fault, LinkFault, Power};
 
 /// What the axis says of itself beside its motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadAxisInfo;
 
 outputs! {

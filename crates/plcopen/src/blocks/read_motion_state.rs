@@ -5,11 +5,12 @@ use crate::axis::Axis;
 use crate::blocks::BlockName;
 use crate::error::ErrorId;
 use crate::interface::outputs;
+use servobench_base::Stateful;
 
 /// How the axis moves: as the set-points say, or as it actually does where it follows none (in homing and by a torque).
 ///
 /// A change of velocity within a cycle that is a millionth of what the acceleration limit allows is rounding: the velocity is constant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ReadMotionState {
     /// Velocity of the cycle before; `None` before the first one.
     velocity: Option<f64>,

@@ -5,9 +5,10 @@ use crate::axis::Axis;
 use crate::blocks::BlockName;
 use crate::error::BlockError;
 use crate::interface::inputs;
+use servobench_base::Stateful;
 
 /// Takes the error of the axis away, once its cause is gone and the axis at rest.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Reset {
     execution: Execution,
 }

@@ -4,12 +4,13 @@ use crate::axis::{Axis, Override};
 use crate::blocks::{BlockName, Input};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{inputs, or, outputs};
+use servobench_base::Stateful;
 
 /// Scales velocity, acceleration and jerk of all commands but MC_Stop and MC_Halt while Enable is TRUE; the factors stay when it
 /// falls. A command that runs is planned anew from where it is, so that nothing jumps.
 ///
 /// A lower acceleration or jerk needs a longer way to brake: set near a target, the axis passes it and comes back.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct SetOverride {
     error: Option<BlockError>,
 }

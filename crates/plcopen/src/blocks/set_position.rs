@@ -5,10 +5,11 @@ use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
 use crate::error::BlockError;
 use crate::interface::{flag, inputs, required};
+use servobench_base::Stateful;
 
 /// Shifts what the program sees as position, actual and commanded alike, without a motion; commands that run go on to where they
 /// lead. Refused in Homing, which sets the position itself. ExecutionMode is left out: it is always immediately.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct SetPosition {
     execution: Execution,
 }

@@ -8,6 +8,7 @@ use crate::command::{BufferMode, Command, Dynamics, Goal};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{braking, buffer_mode, inputs, limit_if_any, outputs};
 use crate::ledger::CommandId;
+use servobench_base::Stateful;
 use servobench_motion::Limits;
 
 /// To rest; another command may take the axis on the way.
@@ -52,7 +53,7 @@ impl MotionInputs for HaltInputs {
 }
 
 /// To rest; the axis takes no other command until Execute is FALSE and it stands still.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Stop {
     execution: Execution,
     /// The command while Execute is TRUE.

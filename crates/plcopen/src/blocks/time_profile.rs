@@ -14,18 +14,18 @@ use crate::error::BlockError;
 use crate::interface::{
     BlockInput, BlockInputs, FromValues as _, Tables, Trigger, Values, buffer_mode, command_outputs, or, required,
 };
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Limits;
 
 /// Along a table of velocities, which it keeps in the memory `M`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct VelocityProfile<M> {
     leading: Leading,
     sequence: Sequence<M>,
 }
 
 /// Along a table of accelerations, which it keeps in the memory `M`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct AccelerationProfile<M> {
     leading: Leading,
     sequence: Sequence<M>,
@@ -223,14 +223,14 @@ impl<M: Memory<Pair>> FunctionBlock for AccelerationProfile<M> {
 }
 
 /// What the values of a table are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 enum Quantity {
     Velocity,
     Acceleration,
 }
 
 /// A table on its way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Stateful)]
 struct Sequence<M> {
     /// The pairs after scaling are the first `count`.
     memory: M,
@@ -241,7 +241,7 @@ struct Sequence<M> {
 }
 
 /// The pair to which the way leads now, and where and when it began.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Place {
     next: usize,
     anchor: Setpoint,

@@ -7,13 +7,14 @@ use crate::axis::{Axis, Probed};
 use crate::blocks::{BlockName, Input};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{inputs, optional, outputs, required};
+use servobench_base::Stateful;
 use servobench_fieldbus::ProbeTrigger;
 
 /// Records the position at the first trigger.
 ///
 /// A trigger outside the window does not count: the drive is asked for the next one, and one that comes on the way there and back is
 /// missed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct TouchProbe {
     execution: Execution,
     /// Number of what the drive is asked for, while it is.
@@ -23,7 +24,7 @@ pub struct TouchProbe {
 }
 
 /// Ends what an MC_TouchProbe waits for.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct AbortTrigger {
     execution: Execution,
 }

@@ -1,6 +1,7 @@
 //! When something happens in a program.
 use crate::blocks::Output;
 use alloc::vec::Vec;
+use servobench_base::Stateful;
 
 /// How far after its time a cycle may be by rounding (s).
 const ROUNDING: f64 = 1e-9;
@@ -28,7 +29,7 @@ pub enum Condition {
 }
 
 /// What conditions are about, in a cycle.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Situation {
     /// Time (s).
     pub(super) t: f64,

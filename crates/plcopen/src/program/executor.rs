@@ -8,7 +8,7 @@ use crate::params::AxisParams;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
-use servobench_base::{Coordinate, ParamError, Setpoint};
+use servobench_base::{Coordinate, ParamError, Setpoint, Stateful};
 use servobench_fieldbus::{AxisCommand, AxisFeedback};
 
 /// Hears what happens in a program; calls and outputs are named by their indices.
@@ -24,10 +24,12 @@ pub trait Listener {
 }
 
 /// The calls of a program, and the axis that they command.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct Executor {
     axis: Axis,
+    #[state(fixed)]
     calls: Vec<RunningCall>,
+    #[state(constant)]
     names: Vec<String>,
     situation: Situation,
     motions: Vec<Motion>,

@@ -6,13 +6,13 @@ use crate::error::BlockError;
 use crate::interface::BlockInputs as _;
 use alloc::boxed::Box;
 use core::fmt;
+use servobench_base::Stateful;
+use servobench_base::state::{Damaged, Reader, Writer};
 
-/// An instance of a block, and its inputs.
-pub(crate) trait Instance: fmt::Debug + Send + Sync {
-    /// Takes other inputs.
-    fn load(&mut self, inputs: Inputs);
-    /// One call with Execute or Enable as `trigger`; fills `values` with the outputs, TRUE is 1.
-    fn step(&mut self, axis: &mut Axis, trigger: bool, values: &mut [f64]);
+/// An instance of a block.
+pub(crate) trait Instance: fmt::Debug + Stateful + Send + Sync {
+    /// One call with these inputs and Execute or Enable as `trigger`; fills `values` with the outputs, TRUE is 1.
+    fn step(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool, values: &mut [f64]);
     /// What its error is.
     fn error(&self) -> Option<&BlockError>;
     /// The same block in the same state.
@@ -22,6 +22,16 @@ pub(crate) trait Instance: fmt::Debug + Send + Sync {
 impl Clone for Box<dyn Instance> {
     fn clone(&self) -> Self {
         self.copy()
+    }
+}
+
+impl Stateful for Box<dyn Instance> {
+    fn save(&self, to: &mut dyn Writer) {
+        (**self).save(to);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        (**self).restore(from)
     }
 }
 
@@ -38,23 +48,19 @@ impl<B: FunctionBlock + Default> New for B {
 }
 
 /// A new instance of block `B`.
-pub(crate) fn called<B: New + Clone + fmt::Debug + Send + Sync + 'static>(inputs: &Inputs) -> Box<dyn Instance> {
-    Box::new(Called { block: B::new_for(inputs), inputs: inputs.clone() })
+pub(crate) fn called<B: New + Clone + Stateful + fmt::Debug + Send + Sync + 'static>(
+    inputs: &Inputs,
+) -> Box<dyn Instance> {
+    Box::new(Called(B::new_for(inputs)))
 }
 
-#[derive(Debug, Clone)]
-struct Called<B> {
-    block: B,
-    inputs: Inputs,
-}
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
+struct Called<B>(B);
 
-impl<B: FunctionBlock + Clone + fmt::Debug + Send + Sync + 'static> Instance for Called<B> {
-    fn load(&mut self, inputs: Inputs) {
-        self.inputs = inputs;
-    }
-
-    fn step(&mut self, axis: &mut Axis, trigger: bool, values: &mut [f64]) {
-        let outputs = self.block.step(axis, &B::Inputs::read(&self.inputs, trigger));
+impl<B: FunctionBlock + Clone + Stateful + fmt::Debug + Send + Sync + 'static> Instance for Called<B> {
+    fn step(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool, values: &mut [f64]) {
+        let outputs = self.0.step(axis, &B::Inputs::read(inputs, trigger));
         let mut places = values.iter_mut();
         outputs.each(|value| {
             if let Some(place) = places.next() {
@@ -64,7 +70,7 @@ impl<B: FunctionBlock + Clone + fmt::Debug + Send + Sync + 'static> Instance for
     }
 
     fn error(&self) -> Option<&BlockError> {
-        self.block.error()
+        self.0.error()
     }
 
     fn copy(&self) -> Box<dyn Instance> {

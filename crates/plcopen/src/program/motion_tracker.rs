@@ -1,8 +1,8 @@
 //! The motions that blocks have the axis make.
-use servobench_base::{Ending, Setpoint};
+use servobench_base::{Ending, Setpoint, Stateful};
 
 /// A motion that a block had the axis make.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Motion {
     /// Index of its call.
     pub call: usize,
@@ -21,7 +21,7 @@ pub struct Motion {
 }
 
 /// A motion that is being made.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Stateful)]
 pub(super) struct MotionTracker {
     start: f64,
     from: f64,

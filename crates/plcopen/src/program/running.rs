@@ -3,16 +3,15 @@ use super::condition::{Condition, Situation};
 use super::executor::Listener;
 use super::instance::Instance;
 use super::motion_tracker::{Motion, MotionTracker};
-use super::{Call, Update};
+use super::{Call, Inputs, Update};
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Output};
 use crate::interface::Trigger;
 use alloc::boxed::Box;
-use alloc::collections::VecDeque;
 use alloc::string::{String, ToString as _};
 use alloc::vec::Vec;
 use alloc::{format, vec};
-use servobench_base::{Ending, Setpoint};
+use servobench_base::{Ending, Setpoint, Stateful};
 use thiserror::Error;
 
 /// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
@@ -65,21 +64,35 @@ pub struct Overdue {
 
 /// A call in a run.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state that a cycle asks for, and they are independent")]
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct RunningCall {
     /// Where it stands in the program.
+    #[state(constant)]
     index: usize,
+    #[state(constant)]
     pub(super) name: String,
     /// Unit of positions, for messages.
+    #[state(constant)]
     unit: &'static str,
+    #[state(constant)]
     block: BlockName,
     instance: Box<dyn Instance>,
+    #[state(constant)]
     start: Condition,
+    #[state(constant)]
     stop: Option<Condition>,
+    #[state(constant)]
     timeout: f64,
-    updates: VecDeque<Update>,
+    /// Inputs of the first execution, and what they become.
+    #[state(constant)]
+    inputs: Inputs,
+    #[state(constant)]
+    updates: Vec<Update>,
+    /// Updates so far.
+    updated: usize,
     /// When Execute or Enable became TRUE.
     started: Option<f64>,
+    #[state(constant)]
     is_optional: bool,
     /// When it first ended in Error (s), ErrorID, and the error in words.
     error: Option<(f64, u16, String)>,
@@ -107,7 +120,9 @@ impl RunningCall {
             start: call.start,
             stop: call.stop,
             timeout: call.timeout,
-            updates: call.updates.iter().cloned().collect(),
+            inputs: call.inputs.clone(),
+            updates: call.updates.clone(),
+            updated: 0,
             started: None,
             is_optional: call.is_optional,
             error: None,
@@ -141,7 +156,9 @@ impl RunningCall {
             self.told = Some(self.trigger);
             listener.on_trigger(t, self.index, self.trigger);
         }
-        self.instance.step(axis, self.trigger, &mut self.values);
+        let last = self.updated.checked_sub(1).and_then(|last| self.updates.get(last));
+        let inputs = last.map_or(&self.inputs, |update| &update.inputs);
+        self.instance.step(axis, inputs, self.trigger, &mut self.values);
         for (place, output) in self.block.outputs().iter().enumerate() {
             self.tell(place, *output, situation, listener);
         }
@@ -166,8 +183,8 @@ impl RunningCall {
                     (self.trigger, self.is_over) = (false, true);
                     return;
                 }
-                while let Some(update) = self.updates.pop_front_if(|update| situation.holds(update.when, started)) {
-                    self.instance.load(update.inputs);
+                while self.updates.get(self.updated).is_some_and(|update| situation.holds(update.when, started)) {
+                    self.updated += 1;
                 }
             }
         }

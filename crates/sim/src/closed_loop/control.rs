@@ -1,7 +1,7 @@
 //! The firmware with the sensors it is wired to.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::network::Measurement;
-use servobench_base::PowerCommand;
+use servobench_base::{PowerCommand, Stateful};
 use servobench_drive::measurement::Edge;
 use servobench_drive::unwrap::Unwrap;
 use servobench_drive::velocity::Cut;
@@ -10,19 +10,22 @@ use servobench_plant::{self as plant, BodyState, EncoderState, PowerStage, Readi
 use servobench_signals::{Instant, PerLimit};
 
 /// The firmware and the sensors it is wired to.
-#[derive(Clone)]
+#[derive(Clone, Stateful)]
 pub(crate) struct Control {
+    #[state(constant)]
     pub(crate) params: drive::Params,
     pub(crate) state: drive::State,
     pub(crate) motor_encoder: EncoderInput,
     /// The encoder on the load, when it closes the position loop.
+    #[state(fixed)]
     pub(crate) load_encoder: Option<EncoderInput>,
 }
 
 /// An encoder, and how the drive counts it on where it begins again.
-#[derive(Clone)]
+#[derive(Clone, Stateful)]
 pub(crate) struct EncoderInput {
     pub(crate) encoder: EncoderState,
+    #[state(fixed)]
     pub(crate) unwrap: Option<Unwrap>,
 }
 

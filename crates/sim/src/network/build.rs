@@ -7,7 +7,7 @@ use super::requests::Requests;
 use super::signals::Signals;
 use super::tables::Tables;
 use super::units::{Counted, DriveUnits, units};
-use super::{MotionTask, Network};
+use super::{MotionTask, Network, Stepped};
 use crate::error::BuildError;
 use crate::program::Program;
 use servobench_base::{Countdown, Divider, ParamError, Setpoint};
@@ -92,7 +92,7 @@ impl Network {
         let device = device::Params { counter: bus.counter, ..device };
         let (device, rated_effort) = with_objects(&device, bus, &units, rated_effort)?;
         let increment = units.increment;
-        let drive = (device, device::State::new(&device)?);
+        let drive = Stepped { state: device::State::new(&device)?, params: device };
 
         let model = master_model(bus, loops, scenario);
         let settings = link::Settings {
@@ -144,12 +144,12 @@ impl Network {
             model,
             transmission: loops.transmission,
             mailbox: Mailbox::default(),
-            link: (link, link::State::default()),
+            link: Stepped { params: link, state: link::State::default() },
             drive,
             serial: Port::default(),
-            bus: (bus::Params::new(bus_every, bus.delay, &[])?, bus::State::default()),
+            bus: Stepped { params: bus::Params::new(bus_every, bus.delay, &[])?, state: bus::State::default() },
             faults: bus.faults.clone(),
-            turns: (task::Params::new(motion_cycle, &[]), task::State::default()),
+            turns: Stepped { params: task::Params::new(motion_cycle, &[]), state: task::State::default() },
             task_faults: bus.task_faults.clone(),
             drive_every,
             drive_turn: Countdown::default(),

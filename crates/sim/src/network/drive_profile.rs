@@ -6,7 +6,7 @@ use super::Step;
 use super::program_cursor::ProgramCursor;
 use super::targets::Targets;
 use crate::error::BuildError;
-use servobench_base::Request;
+use servobench_base::{Request, Stateful};
 use servobench_cia402::interpolated::serial::Message;
 use servobench_drive::device;
 use servobench_fieldbus::trajectory::{PointEncoding, Stream, Timing, points};
@@ -20,23 +20,35 @@ use servobench_trace::Recorder;
 const ROUNDING: f64 = 1e-9;
 
 /// A program of ways under way.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct DriveProfile {
     moves: ProgramCursor,
     orders: Orders,
     /// By how much later than the program the drive begins each move (s), where points wait in its buffer; empty where none do.
+    #[state(constant)]
     lags: Vec<f64>,
     /// The ways of a drive that is told targets.
+    #[state(constant)]
     targets: Option<Targets>,
 }
 
 /// What is sent.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 enum Orders {
     /// Set-points: when, where to, and the largest velocity and acceleration.
-    Positions { set_points: Vec<(f64, [f64; 3])>, sent: usize },
+    Positions {
+        #[state(constant)]
+        set_points: Vec<(f64, [f64; 3])>,
+        sent: usize,
+    },
     /// Velocities: when, and which.
-    Velocities { commands: Vec<Command>, next: usize, now: Command },
+    Velocities {
+        #[state(constant)]
+        commands: Vec<Command>,
+        next: usize,
+        now: Command,
+    },
     /// Tables, point by point.
     Tables(Stream),
 }

@@ -2,7 +2,7 @@
 use super::Step;
 use super::signals::{Watched, word};
 use crate::error::BuildError;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::{AxisFeedback, Task};
 use servobench_motion::Limits;
 use servobench_motion::interpolate::Sample;
@@ -12,9 +12,10 @@ use servobench_scenario as scenario;
 use servobench_trace::{self as trace, CallFate, Event, Move, Recorder, SignalId};
 
 /// A program of function blocks and the axis that they command.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Plc {
     executor: Executor,
+    #[state(constant)]
     calls: Vec<Call>,
     state: Watched<AxisState>,
     homed: Watched<bool>,

@@ -1,14 +1,15 @@
 //! How far a program of moves is: its time begins with the cycle in which the axis is powered.
 use crate::program::Program;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::{AxisFeedback, Power};
 use servobench_trace::Move;
 
 /// A program, and how far it is.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct ProgramCursor {
     program: Program,
     /// Cycle of the motion task (s).
+    #[state(constant)]
     period: f64,
     /// Cycles before the axis was powered, and since then.
     waited: u64,

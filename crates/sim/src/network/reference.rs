@@ -4,7 +4,7 @@
 //! sent without an error is where the motion task wanted it that much earlier; an error against the undelayed set-point would
 //! be velocity × delay, and one against what arrived would not show a frame that was lost.
 use crate::program::Program;
-use servobench_base::Setpoint;
+use servobench_base::{Setpoint, Stateful};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 use std::collections::VecDeque;
 
@@ -14,7 +14,8 @@ const PREDICTED: f64 = 2.0;
 const ROUNDING: f64 = 5e-10;
 
 /// What the motion task will ask for, where that is known beforehand.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 struct Known {
     program: Program,
     /// When it began (s).
@@ -22,17 +23,20 @@ struct Known {
 }
 
 /// The set-points of the motion task and the way between them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct DelayedReference {
     /// Time from one set-point to the next (s), when nothing goes wrong.
+    #[state(constant)]
     period: f64,
     /// How much later the loops follow (s).
+    #[state(constant)]
     delay: f64,
     /// Set-points and their times (s), the oldest first.
     kept: VecDeque<(f64, Setpoint)>,
     /// Between the first two of them.
     interval: Option<Interval>,
     /// For a delay below the period, with which the next set-point is followed before it is there.
+    #[state(fixed)]
     known: Option<Box<Known>>,
 }
 

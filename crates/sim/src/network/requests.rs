@@ -6,7 +6,7 @@ use super::reference::between;
 use super::tables::Tables;
 use super::targets::Targets;
 use crate::program::Program;
-use servobench_base::{Request, RequestKind, Setpoint};
+use servobench_base::{Request, RequestKind, Setpoint, Stateful};
 use servobench_motion::interpolate::Interval;
 use std::collections::VecDeque;
 
@@ -16,27 +16,36 @@ const MISSED: f64 = 3.0;
 const ROUNDING: f64 = 5e-10;
 
 /// Requests on their way to the loops.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 pub(super) enum Requests {
     /// Those of a program that began at some time (s), `delay` seconds later.
-    Program { course: Course, period: f64, delay: f64, running: Option<Running> },
+    Program {
+        course: Course,
+        #[state(constant)]
+        period: f64,
+        #[state(constant)]
+        delay: f64,
+        running: Option<Running>,
+    },
     /// Those of function blocks.
     Cycles(Box<Cycles>),
 }
 
 /// The way that a program asks for.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 pub(super) enum Course {
     /// That of its moves.
     Moves(Box<Program>),
     /// That of a drive which is told targets.
-    Targets(Targets),
+    Targets(#[state(constant)] Targets),
     /// That of a drive which follows points.
     Tables(Box<Tables>),
 }
 
 /// A program under way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Stateful)]
 pub(super) struct Running {
     /// When it began (s), as its last cycle has it: later where its task was held up.
     begun: f64,
@@ -45,11 +54,13 @@ pub(super) struct Running {
 }
 
 /// A request per cycle.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Cycles {
     /// From one cycle to the next (s).
+    #[state(constant)]
     period: f64,
     /// How much later the loops are (s).
+    #[state(constant)]
     delay: f64,
     /// Requests with their times (s), the oldest first.
     kept: VecDeque<(f64, Request)>,

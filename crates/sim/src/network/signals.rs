@@ -1,4 +1,5 @@
 //! States of drive and link, noted when they change.
+use servobench_base::Stateful;
 use servobench_cia402::interpolated::BufferError;
 use servobench_cia402::{Mode, PowerState};
 use servobench_drive::device;
@@ -7,8 +8,9 @@ use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};
 
 /// A state of which only the changes are noted.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Watched<T> {
+    #[state(constant)]
     id: SignalId,
     last: Option<T>,
 }
@@ -50,7 +52,8 @@ fn latched(errors: u32) -> String {
 }
 
 /// What there is to say of drive and link.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
+#[state(fixed)]
 pub(super) struct Signals {
     power: Watched<PowerState>,
     mode: Watched<Option<Mode>>,
@@ -58,6 +61,7 @@ pub(super) struct Signals {
     internal_limit: Watched<bool>,
     buffer: Watched<u32>,
     /// The words in which a master reads the buffer, where it sends points: 2011h and 2012h.
+    #[state(fixed)]
     words: Option<(Watched<usize>, Watched<u32>)>,
     interpolation: Watched<Interpolation>,
     link_fault: Watched<Option<Fault>>,

@@ -1,12 +1,13 @@
 //! The way of a drive that follows points: a program whose moves begin when their points wait in the buffer of the drive.
 use super::requests::of_moves;
 use crate::program::Program;
-use servobench_base::Request;
+use servobench_base::{Request, Stateful};
 
 /// A program, each of whose moves begins later.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Tables {
     program: Program,
+    #[state(constant)]
     moves: Vec<Later>,
     /// The move that was begun last, if one was.
     now: Option<usize>,

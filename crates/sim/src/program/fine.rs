@@ -1,13 +1,14 @@
 //! Between a slow task that commands and a drive that has a set-point at every tick.
-use servobench_base::{ParamError, Rate, Setpoint, Tick};
+use servobench_base::{ParamError, Rate, Setpoint, Stateful, Tick};
 use servobench_motion::interpolate::{Interpolator, Sample};
 use servobench_scenario::Interpolation;
 
 /// The commands of a slow task, interpolated. Before the first command the axis rested where that begins.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(super) struct Fine {
     interpolator: Interpolator,
     /// Ticks from one command to the next.
+    #[state(constant)]
     every: u64,
     /// Ticks since the last command.
     passed: u64,

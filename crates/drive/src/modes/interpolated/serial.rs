@@ -3,6 +3,7 @@
 //! Trajectory mode 3 (C8h), PVT, is the one that there is. The interface has no other way to clear latched errors than to clear
 //! the buffer.
 use super::buffer::{Buffer, Refusal};
+use servobench_base::Stateful;
 use servobench_cia402::interpolated::serial::{
     Message, PVT, Record, RecordError, START_MOVE, TRAJECTORY_BUFFER, TRAJECTORY_MODE,
 };
@@ -48,7 +49,7 @@ pub enum SerialError {
 }
 
 /// What the interface remembers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Port {
     is_pvt: bool,
     /// Records that came before, by whose number a malformed one is named.

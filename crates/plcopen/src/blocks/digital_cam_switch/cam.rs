@@ -2,9 +2,10 @@
 use super::{CamDirection, CamEnd, CamSwitch, TrackOptions, ValueSource};
 use crate::axis::Axis;
 use crate::state::AxisState;
+use servobench_base::Stateful;
 
 /// What the block remembers of a switch.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct CamState {
     is_on: bool,
     /// The edge that the axis has not left by the hysteresis since it switched there.
@@ -18,7 +19,7 @@ pub struct CamState {
 }
 
 /// Where the axis is in a cycle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Place {
     x: f64,
     v: f64,
@@ -54,7 +55,7 @@ fn nearest(distance: f64, modulo: Option<f64>) -> f64 {
 }
 
 /// An end of a window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 enum Edge {
     /// FirstOnPosition.
     First,
