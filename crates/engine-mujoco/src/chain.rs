@@ -8,8 +8,8 @@ use crate::stability;
 use mujoco_rs::prelude::MjtDisableBit;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, Grip, Input, Mechanics, MechanicsError, MechanicsSetup, chain_to_mjcf,
-    check_states,
+    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Input, Mechanics, MechanicsError, MechanicsSetup,
+    chain_to_mjcf, check_states,
 };
 use std::path::Path;
 
@@ -26,6 +26,7 @@ const UNUSED: [MjtDisableBit; 5] = [
 pub(crate) struct MujocoChain {
     chain: Chain,
     data: Data,
+    friction: GroundFriction<{ Chain::MAX_BODIES }>,
     /// First body that `MuJoCo` moves: 1 behind a prescribed base, else 0.
     first: usize,
     /// Tick length (s).
@@ -49,7 +50,8 @@ impl MujocoChain {
         for (body, v) in bodies[first..].iter().zip(data.qvel_mut()) {
             *v = body.velocity;
         }
-        Ok(Self { chain, data, first, step: setup.step, bodies })
+        let friction = GroundFriction::new(&chain, setup.drive, setup.step);
+        Ok(Self { chain, data, friction, first, step: setup.step, bodies })
     }
 
     /// How the base moves in this tick, when it does.
@@ -74,27 +76,30 @@ impl MujocoChain {
     }
 
     /// Sets the forces of the tick; returns the set of bodies that friction holds, body i being bit i.
-    fn apply(&mut self, input: &Input) -> u32 {
-        let mut held = 0;
+    fn apply(&mut self, input: &Input) -> usize {
         let external = self.external_efforts(input);
-        let bodies = external.iter().zip(self.chain.bodies()).enumerate().skip(self.first);
-        for ((i, (external, body)), force) in bodies.zip(self.data.qfrc_applied_mut()) {
+        let bodies = external.iter().zip(self.chain.bodies()).skip(self.first);
+        for ((external, body), force) in bodies.zip(self.data.qfrc_applied_mut()) {
             *force = external - body.bias;
-            if body.friction.is_linear() {
-                continue;
-            }
-            let others = self.chain.passive_effort(i, &self.bodies) + external;
-            match body.friction.grip(self.bodies[i].velocity, others) {
-                Grip::Held => {
-                    // No net effort: the body stays where it is during the step but for what its neighbours' motion
-                    // within the tick adds, which `read` takes back.
-                    *force -= others;
-                    held |= 1 << i;
-                }
-                Grip::Force(friction) => *force += friction,
-            }
+        }
+        if self.friction.is_linear() {
+            return 0;
+        }
+        let mut others = external;
+        for (i, other) in others.iter_mut().enumerate().take(self.bodies.len()) {
+            *other += self.chain.passive_effort(i, &self.bodies);
+        }
+        let Grips { held, forces } = self.friction.before_tick(self.velocities(), others);
+        for (i, force) in (self.first..).zip(self.data.qfrc_applied_mut()) {
+            // A held body feels no net effort: it stays where it is during the step but for what its neighbours' motion
+            // within the tick adds, which `read` takes back.
+            *force += if held & (1 << i) == 0 { forces[i] } else { -others[i] };
         }
         held
+    }
+
+    fn velocities(&self) -> [f64; Chain::MAX_BODIES] {
+        std::array::from_fn(|i| self.bodies.get(i).map_or(0.0, |body| body.velocity))
     }
 
     /// Goes over to the moving base: velocities relative to it, its inertial forces, the first half of the shifts.
@@ -118,30 +123,21 @@ impl MujocoChain {
     }
 
     /// Takes over the state at the end of the tick, `MuJoCo`'s being relative to a base at `end`.
-    fn read(&mut self, held: u32, end: Setpoint) {
-        // Bodies that `MuJoCo` has moved on, though friction holds or has stopped them.
-        let mut at_rest = held;
+    fn read(&mut self, held: usize, end: Setpoint) {
         let moved = self.data.qpos().iter().zip(self.data.qvel());
         let bodies = self.chain.bodies().iter().zip(&mut self.bodies).enumerate().skip(self.first);
         for ((i, (body, state)), (q, v)) in bodies.zip(moved) {
-            if held & (1 << i) != 0 {
-                continue;
-            }
-            let before = state.velocity;
-            *state = BodyState { position: q + end.x / body.transmission, velocity: v + end.v / body.transmission };
-            if body.friction.settle(before, state.velocity) {
-                state.velocity = 0.0;
-                at_rest |= 1 << i;
+            if held & (1 << i) == 0 {
+                *state = BodyState { position: q + end.x / body.transmission, velocity: v + end.v / body.transmission };
             }
         }
-        if at_rest != 0 {
-            self.put_at_rest(at_rest, end);
+        if self.friction.is_linear() {
+            return;
         }
-    }
-
-    /// Tells `MuJoCo` which bodies are at rest, and where.
-    fn put_at_rest(&mut self, at_rest: u32, end: Setpoint) {
+        // Bodies that `MuJoCo` has moved on, though friction holds or has stopped them.
+        let at_rest = held | self.friction.after_tick(self.velocities());
         for i in (self.first..self.bodies.len()).filter(|i| at_rest & (1 << i) != 0) {
+            self.bodies[i].velocity = 0.0;
             let (dof, r) = (i - self.first, self.chain.bodies()[i].transmission);
             self.data.qpos_mut()[dof] = self.bodies[i].position - end.x / r;
             self.data.qvel_mut()[dof] = self.bodies[i].velocity - end.v / r;

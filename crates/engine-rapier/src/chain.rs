@@ -12,12 +12,14 @@ use crate::half_kick::HalfKick;
 use crate::lumps::{Lumps, Positions};
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, Friction, Grip, Input, Mechanics, MechanicsError, MechanicsSetup, check_states,
+    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Input, Mechanics, MechanicsError, MechanicsSetup,
+    check_states,
 };
 
 /// A chain in Rapier.
 pub(crate) struct LumpChain<const N: usize> {
     parameters: Parameters<N>,
+    friction: GroundFriction<N>,
     /// Body 0 follows a set-point and is no lump.
     prescribed: bool,
     /// Tick length (s).
@@ -40,9 +42,6 @@ struct Parameters<const N: usize> {
     /// Of link i, between bodies i and i+1.
     stiffness: [f64; N],
     damping: [f64; N],
-    friction: [Friction; N],
-    /// Whether all friction is linear.
-    is_linear: bool,
 }
 
 impl<const N: usize> LumpChain<N> {
@@ -56,7 +55,8 @@ impl<const N: usize> LumpChain<N> {
             positions.from_centre[0] = bodies[0].position;
         }
         let mut mechanics = Self {
-            parameters: Parameters::new(chain, first),
+            parameters: Parameters::new(chain),
+            friction: GroundFriction::new(chain, setup.drive, setup.step),
             prescribed,
             step: setup.step,
             kick: HalfKick::new(chain, setup.step),
@@ -93,23 +93,24 @@ impl<const N: usize> LumpChain<N> {
         efforts
     }
 
-    /// Adds dry friction to the efforts and says which bodies it holds; `all` are the efforts of everything else.
+    /// Adds dry friction to the efforts and stops the bodies that it holds; `all` are the efforts of everything else.
     fn grip(&mut self, constant: &mut [f64; N], all: &mut [f64; N]) {
-        let mut held = usize::from(self.prescribed);
-        for (i, friction) in self.parameters.friction.iter().enumerate() {
-            match friction.grip(self.velocities[i], all[i]) {
-                Grip::Held => {
-                    held |= 1 << i;
-                    // It can have come to rest by a half kick that Rapier has not seen.
-                    self.lumps.stop(i);
-                }
-                Grip::Force(force) => {
-                    constant[i] += force;
-                    all[i] += force;
-                }
-            }
+        let Grips { held, forces } = self.friction.before_tick(self.velocities, *all);
+        for (i, force) in forces.into_iter().enumerate() {
+            constant[i] += force;
+            all[i] += force;
         }
-        self.kick.hold(held);
+        // A held body can have come to rest by a half kick that Rapier has not seen.
+        self.stop(held);
+        self.kick.hold(held | usize::from(self.prescribed));
+    }
+
+    /// Stops the bodies of the set `at_rest`, body i being bit i, in Rapier too.
+    fn stop(&mut self, at_rest: usize) {
+        for i in (0..N).filter(|i| at_rest & (1 << i) != 0) {
+            self.velocities[i] = 0.0;
+            self.lumps.stop(i);
+        }
     }
 
     /// Puts body 0 where the set-point says.
@@ -146,8 +147,7 @@ impl<const N: usize> Mechanics for LumpChain<N> {
         constant[N - 1] += self.parameters.transmission[N - 1] * input.load_disturbance;
 
         let mut efforts = self.with_passive(&constant);
-        let before = self.velocities;
-        if !self.parameters.is_linear {
+        if !self.friction.is_linear() {
             self.grip(&mut constant, &mut efforts);
         }
         self.half_kick(&efforts);
@@ -159,13 +159,9 @@ impl<const N: usize> Mechanics for LumpChain<N> {
         }
         let efforts = self.with_passive(&constant);
         self.half_kick(&efforts);
-        if !self.parameters.is_linear {
-            for (i, friction) in self.parameters.friction.iter().enumerate() {
-                if friction.settle(before[i], self.velocities[i]) {
-                    self.velocities[i] = 0.0;
-                    self.lumps.stop(i);
-                }
-            }
+        if !self.friction.is_linear() {
+            let at_rest = self.friction.after_tick(self.velocities);
+            self.stop(at_rest);
         }
 
         for (i, body) in self.bodies.iter_mut().enumerate() {
@@ -177,23 +173,19 @@ impl<const N: usize> Mechanics for LumpChain<N> {
 }
 
 impl<const N: usize> Parameters<N> {
-    /// Of `chain`, whose bodies before `first` feel no friction.
-    fn new(chain: &Chain, first: usize) -> Self {
+    fn new(chain: &Chain) -> Self {
         let body = |value: fn(&servobench_plant::Body) -> f64| -> [f64; N] {
             std::array::from_fn(|i| value(&chain.bodies()[i]))
         };
         let link = |value: fn(&servobench_plant::Link) -> f64| -> [f64; N] {
             std::array::from_fn(|i| chain.links().get(i).map_or(0.0, value))
         };
-        let friction = std::array::from_fn(|i| if i < first { Friction::NONE } else { chain.bodies()[i].friction });
         Self {
             transmission: body(|body| body.transmission),
             viscous: body(|body| body.friction.linear()),
             bias: body(|body| body.bias),
             stiffness: link(|link| link.stiffness),
             damping: link(|link| link.damping),
-            is_linear: friction.iter().all(Friction::is_linear),
-            friction,
         }
     }
 }

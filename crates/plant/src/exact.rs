@@ -15,7 +15,7 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::chain::Chain;
 use crate::engine::{Engine, EngineName};
-use crate::friction::Grip;
+use crate::ground_friction::{Grips, GroundFriction};
 use crate::mechanics::{
     Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model, check_states,
 };
@@ -78,7 +78,7 @@ struct ExactChain<const W: usize> {
     factors: [f64; COLUMNS],
     bodies: Vec<BodyState>,
     terms: [Terms; MAX_BODIES],
-    any_dry: bool,
+    friction: GroundFriction<MAX_BODIES>,
     /// y and `bodies` at the mark.
     marked: Option<([f64; COLUMNS], Vec<BodyState>)>,
 }
@@ -99,11 +99,10 @@ impl<const W: usize> ExactChain<W> {
     fn new(chain: Chain, setup: &MechanicsSetup) -> Self {
         let n = chain.bodies().len();
         let prescribed = setup.drive == Drive::Prescribed;
-        let can_stick = chain.bodies().iter().enumerate().fold(0_usize, |set, (i, body)| {
-            if body.friction.is_linear() || (prescribed && i == 0) { set } else { set | 1 << i }
-        });
+        let friction = GroundFriction::new(&chain, setup.drive, setup.step);
+        let may_hold = friction.may_hold();
         let holds = (0..1_usize << n)
-            .map(|stuck| (stuck & !can_stick == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
+            .map(|stuck| (stuck & !may_hold == 0).then(|| hold(&chain, prescribed, setup.step, stuck)))
             .collect();
         let bodies: Vec<BodyState> = (0..n).map(|i| setup.initial.get(i).copied().unwrap_or_default()).collect();
         let mut terms = [Terms::default(); MAX_BODIES];
@@ -120,9 +119,9 @@ impl<const W: usize> ExactChain<W> {
         for i in 0..n {
             factors[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
-        let (states, any_dry) = (states(&chain, prescribed), can_stick != 0);
+        let states = states(&chain, prescribed);
         let (chain, marked) = (Arc::new(chain), None);
-        Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, any_dry, marked }
+        Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, friction, marked }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
@@ -163,7 +162,7 @@ impl<const W: usize> ExactChain<W> {
             }
         }
         let mut u = self.efforts(input);
-        let stuck = if self.any_dry { self.grip(&mut u) } else { 0 };
+        let stuck = if self.friction.is_linear() { 0 } else { self.grip(&mut u) };
         let Some(hold) = &self.holds[stuck] else {
             return Err(MechanicsError::Native {
                 engine: NAME,
@@ -184,44 +183,40 @@ impl<const W: usize> ExactChain<W> {
         let travel = std::mem::take(&mut next[self.states]);
 
         let mut axis_position = base_position.unwrap_or(self.terms[0].transmission * self.bodies[0].position + travel);
-        let (stretches, velocities) = next.split_at_mut(n - 1);
-        for (i, ((body, velocity_row), terms)) in
-            self.bodies.iter_mut().zip(&mut *velocities).zip(&self.terms).enumerate()
-        {
+        let (stretches, rows) = next.split_at_mut(n - 1);
+        let mut velocities = [0.0; MAX_BODIES];
+        for ((velocity, row), terms) in velocities.iter_mut().zip(&*rows).zip(&self.terms).take(n) {
+            *velocity = row * terms.per_travel;
+        }
+        let at_rest = if self.friction.is_linear() { 0 } else { stuck | self.friction.after_tick(velocities) };
+        for (i, ((body, row), terms)) in self.bodies.iter_mut().zip(rows).zip(&self.terms).enumerate() {
             if i > 0 {
                 axis_position -= stretches[i - 1];
             }
-            if stuck & (1 << i) != 0 {
-                body.velocity = 0.0;
-                *velocity_row = 0.0;
-                continue;
-            }
-            let mut velocity = *velocity_row * terms.per_travel;
-            if self.any_dry
-                && !(self.prescribed && i == 0)
-                && self.chain.bodies()[i].friction.settle(body.velocity, velocity)
-            {
+            let mut velocity = velocities[i];
+            if at_rest & (1 << i) != 0 {
                 velocity = 0.0;
-                *velocity_row = 0.0;
+                *row = 0.0;
             }
-            *body = BodyState { position: axis_position * terms.per_axis, velocity };
+            let position = if stuck & (1 << i) != 0 { body.position } else { axis_position * terms.per_axis };
+            *body = BodyState { position, velocity };
         }
         self.factors[..W].copy_from_slice(&next);
         check_states(NAME, self.bodies.iter().copied())
     }
 
     /// Adds dry friction to `u` and returns the set of bodies that are held.
+    #[inline(always)]
     fn grip(&mut self, u: &mut [f64; MAX_BODIES]) -> usize {
-        let mut stuck = 0;
-        for (i, body) in self.chain.bodies().iter().enumerate().skip(usize::from(self.prescribed)) {
+        let (mut velocities, mut others) = ([0.0; MAX_BODIES], [0.0; MAX_BODIES]);
+        for (i, body) in self.bodies.iter().enumerate().take(MAX_BODIES) {
+            velocities[i] = body.velocity;
             // `passive_effort` holds the bias, and `u` does too.
-            let others = self.chain.passive_effort(i, &self.bodies) + u[i] + body.bias;
-            match body.friction.grip(self.bodies[i].velocity, others) {
-                Grip::Held => stuck |= 1 << i,
-                Grip::Force(force) => u[i] += force,
-            }
+            others[i] = self.chain.passive_effort(i, &self.bodies) + u[i] + self.terms[i].bias;
         }
-        stuck
+        let Grips { held, forces } = self.friction.before_tick(velocities, others);
+        u.iter_mut().zip(forces).for_each(|(u, force)| *u += force);
+        held
     }
 }
 

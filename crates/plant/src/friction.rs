@@ -7,10 +7,11 @@
 //! Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, *Automatica* 30(7), 1994, eq. (4).
 //!
 //! [`Friction`] is all that engines, previews and estimates know of it. The part that is proportional to the velocity belongs to the
-//! linear chain and is integrated with it ([`Friction::linear`]). For the rest the engine asks [`Friction::grip`] before each tick: a
-//! held body is locked for the tick, a sliding one gets a constant force. After the tick it tells [`Friction::settle`] the new
-//! velocity; when that reversed, the body came to rest within the tick and is stopped there. The crossing itself is met to first
-//! order in the step.
+//! linear chain and is integrated with it ([`Friction::linear`]). The rest acts tick by tick ([`GroundFriction`](crate::GroundFriction)):
+//! [`Friction::grip`] decides before a tick, a held body is locked for the tick, a sliding one gets a constant force;
+//! [`Friction::settle`] sees the new velocity after it, and takes the [`Memory`] of the friction to the next tick. A body whose velocity
+//! reversed came to rest within the tick and is stopped there; the crossing itself is met to first order in the step.
+#![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::ParamError;
 use servobench_config::Kind::Axis;
 use servobench_config::not_negative;
@@ -50,9 +51,13 @@ pub struct DryFriction {
     pub stribeck_velocity: f64,
 }
 
+/// What the friction of a body remembers from tick to tick: nothing, its force follows from velocity and effort.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Memory;
+
 /// What friction does to a body during one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Grip {
+pub(crate) enum Grip {
     /// Holds it: neither position nor velocity changes.
     Held,
     /// Acts with this force (N or N·m), constant over the tick.
@@ -90,13 +95,17 @@ impl Friction {
         self.dry.is_none()
     }
 
-    /// What all but the linear part does in the coming tick, given the velocity and the effort of everything else at its start.
-    #[must_use]
+    /// Whether a body can be [held](Grip::Held).
     #[inline]
-    pub fn grip(&self, velocity: f64, effort: f64) -> Grip {
-        if self.is_linear() {
-            Grip::Force(0.0)
-        } else if velocity != 0.0 {
+    pub(crate) fn holds(&self) -> bool {
+        !self.is_linear()
+    }
+
+    /// What all but the linear part does in the coming tick of `step` (s), given the velocity and the effort of everything else at its
+    /// start.
+    #[inline(always)]
+    pub(crate) fn grip(&self, _memory: &Memory, velocity: f64, effort: f64, _step: f64) -> Grip {
+        if velocity != 0.0 {
             Grip::Force(-self.sliding(velocity).copysign(velocity))
         } else if effort.abs() <= self.breakaway() {
             Grip::Held
@@ -105,12 +114,11 @@ impl Friction {
         }
     }
 
-    /// Whether a body that slid with `before` and arrived with `after` came to rest within the tick; its velocity is
-    /// then to be set to zero.
-    #[must_use]
-    #[inline]
-    pub fn settle(&self, before: f64, after: f64) -> bool {
-        !self.is_linear() && before * after < 0.0
+    /// Takes the memory over the tick of `step` (s) that has passed, from the velocity `before` to the one `after` it. Whether the body came
+    /// to rest within the tick; its velocity is then to be set to zero.
+    #[inline(always)]
+    pub(crate) fn settle(&self, _memory: &mut Memory, before: f64, after: f64, _step: f64) -> bool {
+        before * after < 0.0
     }
 
     /// Magnitude of all but the linear part while the body slides with `velocity` (N or N·m).
@@ -219,15 +227,14 @@ mod tests {
 
     #[test]
     fn a_body_at_rest_is_held_until_the_breakaway_force() {
-        assert_eq!(DRY.grip(0.0, 3.0), Grip::Held);
-        assert_eq!(DRY.grip(0.0, -3.1), Grip::Force(3.0));
+        assert_eq!(DRY.grip(&Memory, 0.0, 3.0, 1e-3), Grip::Held);
+        assert_eq!(DRY.grip(&Memory, 0.0, -3.1, 1e-3), Grip::Force(3.0));
     }
 
     #[test]
     fn friction_never_reverses_a_motion() {
-        assert!(DRY.settle(0.1, -0.2));
-        assert!(!DRY.settle(0.0, 0.2), "a body that broke away goes on");
-        assert!(!Friction::NONE.settle(0.1, -0.2));
+        assert!(DRY.settle(&mut Memory, 0.1, -0.2, 1e-3));
+        assert!(!DRY.settle(&mut Memory, 0.0, 0.2, 1e-3), "a body that broke away goes on");
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod engine;
 mod exact;
 mod fmu;
 mod friction;
+mod ground_friction;
 mod integration;
 pub mod inverter;
 mod load_coordinate;
@@ -30,7 +31,8 @@ pub use end_stops::{EndStopError, EndStopParameter, EndStops};
 pub use engine::{Capabilities, Engine, EngineName};
 pub use exact::{Exact, transition};
 pub use fmu::{FmuBody, FmuModel};
-pub use friction::{DryFriction, Friction, FrictionParameter, Grip};
+pub use friction::{DryFriction, Friction, FrictionParameter};
+pub use ground_friction::{Grips, GroundFriction};
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
