@@ -1,4 +1,6 @@
 //! What `Engine` and `Mechanics` promise, held against every engine of the build.
+mod saved_state;
+
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_fmi::{FmuFile, Isolation, SiPort};

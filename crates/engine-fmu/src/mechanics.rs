@@ -8,10 +8,13 @@
 //! With n = 1 nothing is extrapolated, and the effort of a tick is held over it: what an engine of our own gets. With n > 1 the
 //! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
 use crate::motion::Motion;
+use servobench_base::Stateful;
+use servobench_base::state::{Reader, Writer};
 use servobench_fmi::{LogLine, Severity, Slave, SlaveError, StepEnd};
 use servobench_plant::{
     Actuation, BodyState, EngineName, FmuModel, Input, LogMessage, Mechanics, MechanicsError, check_states,
 };
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The engine.
 pub(crate) const NAME: EngineName = EngineName::Fmu;
@@ -34,24 +37,31 @@ pub struct FmuMechanics {
     /// Length of a base tick (s).
     tick: f64,
     state: State,
-    marked: Option<State>,
+    /// Number of the state that the slave has saved, if it has: in this process no other one has it.
+    saved: Option<u64>,
     inputs: Vec<[f64; 3]>,
     outputs: Vec<f64>,
-    /// When it wanted the simulation to end (s): at the end of the last step, so that only another one is too much.
-    ended: Option<f64>,
 }
 
-/// Where it is, the FMU itself apart.
-#[derive(Debug, Clone, Default)]
+/// States that FMUs of this process have saved.
+static SAVED: AtomicU64 = AtomicU64::new(0);
+
+/// The state at a tick, the FMU itself apart.
+#[derive(Debug, Clone, Default, Stateful)]
 struct State {
     /// Ticks since the last exchange.
     since: u32,
     /// Exchanges up to now.
     exchanges: u64,
     /// Sums of the inputs since the last exchange.
+    #[state(fixed)]
     sums: Vec<f64>,
+    #[state(fixed)]
     motions: Vec<Motion>,
+    #[state(fixed)]
     bodies: Vec<BodyState>,
+    /// When it wanted the simulation to end (s): at the end of the last step, so that only another one is too much.
+    ended: Option<f64>,
 }
 
 impl FmuMechanics {
@@ -75,11 +85,11 @@ impl FmuMechanics {
                 sums: vec![0.0; inputs],
                 motions: vec![motion; bodies],
                 bodies: vec![BodyState::default(); bodies],
+                ended: None,
             },
-            marked: None,
+            saved: None,
             inputs: vec![[0.0; 3]; inputs],
             outputs: vec![0.0; model.outputs().count()],
-            ended: None,
         };
         mechanics.read()?;
         mechanics.go_on();
@@ -137,7 +147,7 @@ impl FmuMechanics {
         self.state.exchanges += 1;
         let mut length = count * self.tick;
         let (rounding, mut stalls) = (ROUNDING * length, 0);
-        if let Some(ended) = self.ended {
+        if let Some(ended) = self.state.ended {
             return Err(native(format!("the FMU wants the simulation to end at {ended} s")));
         }
         for _ in 0..MOST_PARTS {
@@ -154,7 +164,7 @@ impl FmuMechanics {
                     return Err(native(format!("the FMU came back from a step from {time} s at {reached} s")));
                 }
                 StepEnd::Terminated(reached) if (reached - end).abs() <= rounding => {
-                    self.ended = Some(reached);
+                    self.state.ended = Some(reached);
                     return self.read();
                 }
                 StepEnd::Terminated(reached) => {
@@ -209,20 +219,26 @@ impl Mechanics for FmuMechanics {
         check_states(NAME, self.state.bodies.iter().copied())
     }
 
-    fn marks(&self) -> bool {
+    fn saves(&self) -> bool {
         self.slave.capabilities().saves_state
     }
 
-    fn mark(&mut self) -> Result<(), MechanicsError> {
+    /// The slave keeps its state itself, the last one only: what is written has its number.
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        self.saved = None;
         self.slave.save().map_err(|error| self.wrong(&error))?;
-        self.marked.get_or_insert_default().clone_from(&self.state);
+        let number = SAVED.fetch_add(1, Ordering::Relaxed);
+        self.saved = Some(number);
+        to.word(number);
+        self.state.save(to);
         Ok(())
     }
 
-    fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some(marked) = &self.marked else { return Err(MechanicsError::NoWayBack) };
-        self.state.clone_from(marked);
-        self.ended = None;
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        if self.saved != Some(from.word()?) {
+            return Err(MechanicsError::Superseded { engine: NAME });
+        }
+        self.state.restore(from)?;
         self.slave.restore().map_err(|error| self.wrong(&error))
     }
 

@@ -4,12 +4,14 @@
 //! x(t) = x0 + v·t       v(t) = v       t after the last exchange
 //! ```
 //! v is the velocity that was exchanged, or (x0 − x1)/H of the last two positions, H apart; 0 until there are two.
+use servobench_base::Stateful;
 use servobench_plant::BodyState;
 
 /// What is known of a body's motion.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub(crate) struct Motion {
     /// Time between two exchanges (s).
+    #[state(constant)]
     period: f64,
     /// The last position; `None` before the first exchange.
     position: Option<f64>,

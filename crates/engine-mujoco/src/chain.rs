@@ -7,9 +7,10 @@ use crate::simulation::{self, Data};
 use crate::stability;
 use mujoco_rs::prelude::MjtDisableBit;
 use servobench_base::Setpoint;
+use servobench_base::state::{Damaged, FixedForm as _, Part, Reader, Stateful, Writer};
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Input, Mechanics, MechanicsError, MechanicsSetup,
-    chain_to_mjcf, check_states,
+    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Identity, Input, Mechanics, MechanicsError,
+    MechanicsSetup, chain_to_mjcf, check_states,
 };
 use std::path::Path;
 
@@ -32,6 +33,7 @@ pub(crate) struct MujocoChain {
     /// Tick length (s).
     step: f64,
     bodies: Vec<BodyState>,
+    identity: Identity,
 }
 
 impl MujocoChain {
@@ -51,7 +53,8 @@ impl MujocoChain {
             *v = body.velocity;
         }
         let friction = GroundFriction::new(&chain, setup.drive, setup.step);
-        Ok(Self { chain, data, friction, first, step: setup.step, bodies })
+        let identity = Identity::new(crate::NAME, setup);
+        Ok(Self { chain, data, friction, first, step: setup.step, bodies, identity })
     }
 
     /// How the base moves in this tick, when it does.
@@ -145,7 +148,51 @@ impl MujocoChain {
     }
 }
 
+impl Stateful for MujocoChain {
+    fn save(&self, to: &mut dyn Writer) {
+        let Self { identity, bodies, data, friction, chain: _, first: _, step: _ } = self;
+        identity.save(to);
+        to.enter(Part::field("bodies"));
+        bodies.save_fixed(to);
+        to.leave();
+        // Behind a base that moves they keep digits that the bodies do not.
+        to.enter(Part::derived("qpos"));
+        data.qpos().save_fixed(to);
+        to.leave();
+        to.enter(Part::field("friction"));
+        friction.save(to);
+        to.leave();
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.identity.restore(from)?;
+        self.bodies.restore_fixed(from)?;
+        self.data.qpos_mut().restore_fixed(from)?;
+        self.friction.restore(from)?;
+        let bodies = &self.bodies[self.first..];
+        if self.first == 0 {
+            self.data.qpos_mut().iter_mut().zip(bodies).for_each(|(q, body)| *q = body.position);
+        }
+        // Behind a base that moves each tick sets them.
+        self.data.qvel_mut().iter_mut().zip(bodies).for_each(|(v, body)| *v = body.velocity);
+        Ok(())
+    }
+}
+
 impl Mechanics for MujocoChain {
+    fn saves(&self) -> bool {
+        true
+    }
+
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        Stateful::save(self, to);
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        Ok(Stateful::restore(self, from)?)
+    }
+
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }

@@ -5,10 +5,12 @@ mod parts;
 use crate::NAME;
 use crate::simulation::{self, Data};
 use limits::Limits;
+use mujoco_rs::prelude::{MjtEnableBit, MjtState};
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
+use servobench_base::state::{Damaged, Part, Reader, Stateful as _, Writer};
 use servobench_plant::{
-    Actuation, BodyState, Drive, Input, JointLimit, LoadCoordinate, Mechanics, MechanicsError, MechanicsSetup,
-    MjcfModel, check_states,
+    Actuation, BodyState, Drive, Identity, Input, JointLimit, LoadCoordinate, Mechanics, MechanicsError,
+    MechanicsSetup, MjcfModel, check_states,
 };
 
 /// A model with a motor joint and a load joint.
@@ -25,7 +27,24 @@ pub(crate) struct MujocoMjcf {
     limits: Limits,
     /// Motor, then load; one body when one joint is both.
     bodies: Vec<BodyState>,
+    /// `MuJoCo`'s own state on its way.
+    state: Vec<f64>,
+    identity: Identity,
 }
+
+/// Parts of `MuJoCo`'s state that a step continues from, in the order in which it writes them. Those after `act` are set in each tick, or
+/// only start an iteration.
+const PARTS: [(u32, Part); 5] = [
+    (MjtState::mjSTATE_TIME as u32, Part::derived("time")),
+    (MjtState::mjSTATE_QPOS as u32, Part::field("qpos")),
+    (MjtState::mjSTATE_QVEL as u32, Part::field("qvel")),
+    (MjtState::mjSTATE_ACT as u32, Part::field("act")),
+    (REST, Part::derived("rest")),
+];
+const ALL: u32 = MjtState::mjSTATE_INTEGRATION as u32;
+const REST: u32 = ALL
+    & !(MjtState::mjSTATE_TIME as u32 | MjtState::mjSTATE_QPOS as u32)
+    & !(MjtState::mjSTATE_QVEL as u32 | MjtState::mjSTATE_ACT as u32);
 
 impl MujocoMjcf {
     pub(crate) fn new(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Self, MechanicsError> {
@@ -44,7 +63,10 @@ impl MujocoMjcf {
         let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
         bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);
         let load_per_joint = if bodies.len() == 1 { file.transmission } else { 1.0 };
-        let mut mechanics = Self { data, actuator, joints, motor, load, load_per_joint, limits, bodies };
+        let state = vec![0.0; data.model().state_size(ALL)];
+        let identity = Identity::new(NAME, setup);
+        let mut mechanics =
+            Self { data, actuator, joints, motor, load, load_per_joint, limits, bodies, state, identity };
         mechanics.start();
         mechanics.read();
         Ok(mechanics)
@@ -77,6 +99,37 @@ impl MujocoMjcf {
 }
 
 impl Mechanics for MujocoMjcf {
+    /// Which bodies sleep is not in `MuJoCo`'s state.
+    fn saves(&self) -> bool {
+        self.data.model().opt().enableflags & MjtEnableBit::mjENBL_SLEEP as i32 == 0
+    }
+
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        if !self.saves() {
+            return Err(MechanicsError::NotSaved);
+        }
+        self.identity.save(to);
+        self.data.read_state_into(ALL, &mut self.state);
+        let mut numbers = self.state.iter();
+        for (spec, part) in PARTS {
+            to.enter(part);
+            numbers.by_ref().take(self.data.model().state_size(spec)).for_each(|number| to.number(*number));
+            to.leave();
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        self.identity.restore(from)?;
+        for number in &mut self.state {
+            *number = from.number()?;
+        }
+        // A number that `MuJoCo` refuses is an index into a history.
+        self.data.set_state(&self.state, ALL).map_err(|_| Damaged)?;
+        self.read();
+        Ok(())
+    }
+
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }

@@ -11,9 +11,10 @@ use crate::NAME;
 use crate::half_kick::HalfKick;
 use crate::lumps::{Lumps, Positions};
 use servobench_base::Setpoint;
+use servobench_base::state::{Damaged, Part, Reader, Stateful, Writer};
 use servobench_plant::{
-    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Input, Mechanics, MechanicsError, MechanicsSetup,
-    check_states,
+    Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Identity, Input, Mechanics, MechanicsError,
+    MechanicsSetup, check_states,
 };
 
 /// A chain in Rapier.
@@ -32,6 +33,7 @@ pub(crate) struct LumpChain<const N: usize> {
     /// Stretch of each link when both its ends are at their centres (m or rad).
     stretch_of_centres: [f64; N],
     bodies: [BodyState; N],
+    identity: Identity,
 }
 
 /// The chain's numbers side by side; zero where there is no such body or link.
@@ -65,6 +67,7 @@ impl<const N: usize> LumpChain<N> {
             velocities: bodies.map(|state| state.velocity),
             stretch_of_centres: [0.0; N],
             bodies,
+            identity: Identity::new(NAME, setup),
         };
         mechanics.kick.hold(first);
         mechanics.measure_centres();
@@ -121,6 +124,14 @@ impl<const N: usize> LumpChain<N> {
     }
 
     #[inline]
+    fn publish(&mut self) {
+        for (i, body) in self.bodies.iter_mut().enumerate() {
+            body.position = self.positions.centre[i] + self.positions.from_centre[i];
+            body.velocity = self.velocities[i];
+        }
+    }
+
+    #[inline]
     fn half_kick(&mut self, efforts: &[f64; N]) {
         for (velocity, change) in self.velocities.iter_mut().zip(self.kick.velocity_change(efforts)) {
             *velocity += change;
@@ -128,7 +139,51 @@ impl<const N: usize> LumpChain<N> {
     }
 }
 
+impl<const N: usize> Stateful for LumpChain<N> {
+    fn save(&self, to: &mut dyn Writer) {
+        let Self { identity, positions, velocities, lumps, friction, parameters: _, prescribed: _, step: _, .. } = self;
+        // A tick begins with the half kick of the bodies that are held in it.
+        let Self { kick: _, stretch_of_centres: _, bodies: _, .. } = self;
+        identity.save(to);
+        for (name, state) in
+            [("position", positions as &dyn Stateful), ("velocity", velocities), ("friction", friction)]
+        {
+            to.enter(Part::field(name));
+            state.save(to);
+            to.leave();
+        }
+        to.enter(Part::derived("lumps"));
+        lumps.save(to);
+        to.leave();
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.identity.restore(from)?;
+        self.positions.restore(from)?;
+        self.velocities.restore(from)?;
+        self.friction.restore(from)?;
+        self.lumps.restore(from)?;
+        self.lumps.put(&self.positions);
+        self.measure_centres();
+        self.publish();
+        Ok(())
+    }
+}
+
 impl<const N: usize> Mechanics for LumpChain<N> {
+    fn saves(&self) -> bool {
+        true
+    }
+
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        Stateful::save(self, to);
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        Ok(Stateful::restore(self, from)?)
+    }
+
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }
@@ -164,10 +219,7 @@ impl<const N: usize> Mechanics for LumpChain<N> {
             self.stop(at_rest);
         }
 
-        for (i, body) in self.bodies.iter_mut().enumerate() {
-            body.position = self.positions.centre[i] + self.positions.from_centre[i];
-            body.velocity = self.velocities[i];
-        }
+        self.publish();
         check_states(NAME, self.bodies.iter().copied())
     }
 }

@@ -103,7 +103,7 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
         refusals.extend(linkage::check(&mechanism).err().unwrap_or_default());
         refused(refusals)
     })?;
-    match Linkage::new(&mechanism, axis, setup.step, &setup.initial) {
+    match Linkage::new(&mechanism, axis, setup) {
         Ok(linkage) => Ok(Box::new(linkage)),
         Err(LinkageError::Refused(refusals)) => Err(refused(refusals)),
         Err(LinkageError::Engine(error)) => Err(error),

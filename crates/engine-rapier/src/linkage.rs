@@ -22,7 +22,10 @@ use crate::scene::{self, diverged};
 use assembly::assemble;
 use nalgebra::DVector;
 use rapier3d_f64::prelude::{Multibody, MultibodyIndex, MultibodyJointSet, PhysicsWorld, Vector};
-use servobench_plant::{Actuation, BodyState, Input, Mechanics, MechanicsError, check_states};
+use servobench_base::state::{Damaged, FixedForm as _, Part, Reader, Stateful, Writer};
+use servobench_plant::{
+    Actuation, BodyState, Identity, Input, Mechanics, MechanicsError, MechanicsSetup, check_states,
+};
 use std::f64::consts::TAU;
 
 /// 2¹⁰⁰: how far off a spring's rest position is per unit of effort.
@@ -48,32 +51,41 @@ pub(crate) struct Linkage {
     /// One number for each joint.
     work: DVector<f64>,
     bodies: Vec<BodyState>,
+    identity: Identity,
 }
 
 /// A joint and its coordinate.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Stateful)]
 struct Coordinate {
     /// Number of its link in the multibody.
+    #[state(constant)]
     link: usize,
     /// Rapier's number of its axis: 0 for a slide along x, 3 for a hinge about x.
+    #[state(constant)]
     axis: usize,
     /// N/m or N·m/rad.
+    #[state(constant)]
     stiffness: f64,
     /// m or rad.
+    #[state(constant)]
     spring_rest: f64,
     /// N·s/m or N·m·s/rad.
+    #[state(constant)]
     damping: f64,
     /// Dry friction (N or N·m).
+    #[state(constant)]
     friction: f64,
     /// Rapier's coordinate (m or rad).
     position: f64,
-    /// Whole turns that Rapier's coordinate does not hold.
+    /// Whole turns that Rapier's coordinate does not hold: it alone varies continuously.
+    #[state(derived)]
     turns: f64,
     /// Velocity at the tick (m/s or rad/s).
     velocity: f64,
     /// Rapier's velocity: that of the last drift (m/s or rad/s).
     drift: f64,
     /// Effort in the last kick, without the damper's (N or N·m).
+    #[state(derived)]
     effort: f64,
 }
 
@@ -97,13 +109,9 @@ pub(crate) fn check(mechanism: &Mechanism) -> Result<(), Vec<MjcfRefusal>> {
 
 impl Linkage {
     /// The mechanism with motor and load in the given states; the rest of it at rest at zero.
-    pub(crate) fn new(
-        mechanism: &Mechanism,
-        axis: Axis,
-        step: f64,
-        initial: &[BodyState],
-    ) -> Result<Self, LinkageError> {
-        let (mut world, multibody, mut joints) = assemble(mechanism, step)?;
+    pub(crate) fn new(mechanism: &Mechanism, axis: Axis, setup: &MechanicsSetup) -> Result<Self, LinkageError> {
+        let (step, initial) = (setup.step, &setup.initial);
+        let (world, multibody, mut joints) = assemble(mechanism, step)?;
         let mut bodies = vec![BodyState::default(); if axis.motor == axis.load.joint() { 1 } else { 2 }];
         bodies.iter_mut().zip(initial).for_each(|(body, initial)| *body = *initial);
         joints[axis.motor].start(bodies[0]);
@@ -112,12 +120,6 @@ impl Linkage {
             let velocity = axis.load.own(load.velocity, |joint| joints[joint].velocity);
             joints[axis.load.joint()].start(BodyState { position, velocity });
         }
-        let links = links(&mut world.multibody_joints, multibody).map_err(LinkageError::Engine)?;
-        links.apply_displacements(&joints.iter().map(|joint| joint.position).collect::<Vec<_>>());
-        for (velocity, joint) in links.generalized_velocity_mut().iter_mut().zip(&joints) {
-            *velocity = joint.drift;
-        }
-        scene::take_in(&mut world).map_err(LinkageError::Engine)?;
         let mut linkage = Self {
             world,
             multibody,
@@ -130,9 +132,28 @@ impl Linkage {
             fresh: true,
             axis,
             bodies,
+            identity: Identity::new(crate::NAME, setup),
         };
+        linkage.put().and_then(|()| scene::take_in(&mut linkage.world)).map_err(LinkageError::Engine)?;
         linkage.publish();
         Ok(linkage)
+    }
+
+    /// Puts Rapier's joints where ours are; it computes the rest anew in each tick.
+    fn put(&mut self) -> Result<(), MechanicsError> {
+        let links = links(&mut self.world.multibody_joints, self.multibody)?;
+        // Rapier adds to its coordinate. The first sum may be rounded, the second one is of neighbours, and exact.
+        for _ in 0..2 {
+            for (way, joint) in self.work.iter_mut().zip(&self.joints) {
+                let now = links.link(joint.link).map_or(0.0, |link| link.joint().coords()[joint.axis]);
+                *way = joint.position - now;
+            }
+            links.apply_displacements(self.work.as_slice());
+        }
+        for (velocity, joint) in links.generalized_velocity_mut().iter_mut().zip(&self.joints) {
+            *velocity = joint.drift;
+        }
+        Ok(())
     }
 
     /// Efforts of springs and of tendons' dampers on each joint, into `work`.
@@ -237,7 +258,58 @@ impl Linkage {
     }
 }
 
+impl Stateful for Linkage {
+    fn save(&self, to: &mut dyn Writer) {
+        let Self {
+            identity,
+            joints,
+            last,
+            fresh,
+            world: _,
+            multibody: _,
+            gravity: _,
+            step: _,
+            tendons: _,
+            axis: _,
+            ..
+        } = self;
+        // The first is of the tick under way, the second follows from the joints.
+        let Self { work: _, bodies: _, .. } = self;
+        identity.save(to);
+        to.enter(Part::field("joints"));
+        joints.save_fixed(to);
+        to.leave();
+        to.enter(Part::field("last effort"));
+        last.save(to);
+        to.leave();
+        fresh.save(to);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.identity.restore(from)?;
+        self.joints.restore_fixed(from)?;
+        self.last.restore(from)?;
+        self.fresh.restore(from)
+    }
+}
+
 impl Mechanics for Linkage {
+    fn saves(&self) -> bool {
+        true
+    }
+
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        Stateful::save(self, to);
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        Stateful::restore(self, from)?;
+        self.put()?;
+        self.publish();
+        Ok(())
+    }
+
     fn bodies(&self) -> &[BodyState] {
         &self.bodies
     }

@@ -9,6 +9,7 @@
 //! [`SPAN`]. At 3000 rpm a coordinate that grew without bound would lose 1e-8 rad in ten seconds to rounding.
 use crate::scene;
 use rapier3d_f64::prelude::{LockedAxes, MassProperties, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector};
+use servobench_base::state::{Damaged, Reader, Stateful, Writer};
 use servobench_plant::{BodyState, Chain, MechanicsError};
 
 /// Lumps to a scene: one to an axis.
@@ -112,12 +113,48 @@ impl Lumps {
         Ok(recentred)
     }
 
+    /// Puts the lumps in Rapier at `positions`, with their velocities there.
+    pub(crate) fn put<const N: usize>(&mut self, positions: &Positions<N>) {
+        for lump in &self.members {
+            let rigid = &mut self.scenes[lump.scene].bodies[lump.handle];
+            rigid.set_translation(along(lump.axis, positions.from_centre[lump.body]), false);
+            rigid.set_linvel(along(lump.axis, lump.velocity), false);
+        }
+    }
+
     /// Stops a body in Rapier too, if it moves there.
     pub(crate) fn stop(&mut self, body: usize) {
         if let Some(lump) = self.members.iter_mut().find(|lump| lump.body == body && lump.velocity != 0.0) {
             lump.velocity = 0.0;
             self.scenes[lump.scene].bodies[lump.handle].set_linvel(Vector::ZERO, false);
         }
+    }
+}
+
+/// Rapier's velocities: those of the bodies as the last drift left them, which the next one replaces but for roundings.
+impl Stateful for Lumps {
+    fn save(&self, to: &mut dyn Writer) {
+        for lump in &self.members {
+            to.number(lump.velocity);
+        }
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.members.iter_mut().try_for_each(|lump| lump.velocity.restore(from))
+    }
+}
+
+/// Centres are whole, and counts therefore.
+impl<const N: usize> Stateful for Positions<N> {
+    fn save(&self, to: &mut dyn Writer) {
+        let Self { centre, from_centre } = self;
+        centre.iter().for_each(|centre| to.word(centre.to_bits()));
+        from_centre.save(to);
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.centre.restore(from)?;
+        self.from_centre.restore(from)
     }
 }
 

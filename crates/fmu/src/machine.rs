@@ -187,7 +187,7 @@ impl Machine {
     }
 
     /// Where it is; `None` after a failure.
-    pub(crate) fn save(&self) -> Option<MachineState> {
+    pub(crate) fn save(&mut self) -> Option<MachineState> {
         let snapshot = if self.failed { None } else { self.stepper.snapshot() };
         Some(MachineState { snapshot: snapshot?, mover: self.mover.clone() })
     }

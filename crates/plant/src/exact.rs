@@ -16,6 +16,7 @@
 use crate::chain::Chain;
 use crate::engine::{Engine, EngineName};
 use crate::ground_friction::{Grips, GroundFriction};
+use crate::identity::Identity;
 use crate::mechanics::{
     Actuation, BodyState, Drive, Input, Mechanics, MechanicsError, MechanicsSetup, Model, check_states,
 };
@@ -79,8 +80,7 @@ struct ExactChain<const W: usize> {
     bodies: Vec<BodyState>,
     terms: [Terms; MAX_BODIES],
     friction: GroundFriction<MAX_BODIES>,
-    /// y and `bodies` at the mark.
-    marked: Option<([f64; COLUMNS], Vec<BodyState>)>,
+    identity: Identity,
 }
 
 /// What a tick needs of a body.
@@ -120,8 +120,8 @@ impl<const W: usize> ExactChain<W> {
             factors[n - 1 + i] = setup.step * chain.bodies()[i].transmission * bodies[i].velocity;
         }
         let states = states(&chain, prescribed);
-        let (chain, marked) = (Arc::new(chain), None);
-        Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, friction, marked }
+        let (chain, identity) = (Arc::new(chain), Identity::new(NAME, setup));
+        Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, friction, identity }
     }
 
     /// Efforts that are constant over the tick, dry friction still missing.
@@ -224,8 +224,11 @@ impl<const W: usize> ExactChain<W> {
 /// for the roundings on the way, which is why they are saved.
 impl<const W: usize> Stateful for ExactChain<W> {
     fn save(&self, to: &mut dyn Writer) {
-        let count = self.bodies.len();
-        for (index, factor) in self.factors[..self.states].iter().enumerate() {
+        let Self { identity, factors, bodies, friction, states, chain: _, prescribed: _, step: _, holds: _, terms: _ } =
+            self;
+        identity.save(to);
+        let count = bodies.len();
+        for (index, factor) in factors[..*states].iter().enumerate() {
             let name =
                 ["stretch", "velocity", "base"][usize::from(index + 1 >= count) + usize::from(index + 1 >= 2 * count)];
             to.enter(Part::field(name));
@@ -233,19 +236,24 @@ impl<const W: usize> Stateful for ExactChain<W> {
             to.leave();
         }
         to.enter(Part::field("position"));
-        to.number(self.bodies[0].position);
+        to.number(bodies[0].position);
         to.leave();
         to.enter(Part::derived("bodies"));
-        self.bodies.save_fixed(to);
+        bodies.save_fixed(to);
+        to.leave();
+        to.enter(Part::field("friction"));
+        friction.save(to);
         to.leave();
     }
 
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.identity.restore(from)?;
         for factor in &mut self.factors[..self.states] {
             *factor = from.number()?;
         }
         let position = from.number()?;
         self.bodies.restore_fixed(from)?;
+        self.friction.restore(from)?;
         if from.is_moved() {
             self.derive_bodies(position);
         }
@@ -269,6 +277,10 @@ impl<const W: usize> ExactChain<W> {
 }
 
 impl<const W: usize> Mechanics for ExactChain<W> {
+    fn saves(&self) -> bool {
+        true
+    }
+
     fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         Stateful::save(self, to);
         Ok(())
@@ -284,28 +296,6 @@ impl<const W: usize> Mechanics for ExactChain<W> {
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
         wide_registers!(self.advanced(input), Self::advanced_in_wide_registers, self, input)
-    }
-
-    fn copy(&self) -> Option<Box<dyn Mechanics>> {
-        Some(Box::new(self.clone()))
-    }
-
-    fn marks(&self) -> bool {
-        true
-    }
-
-    fn mark(&mut self) -> Result<(), MechanicsError> {
-        let (factors, bodies) = self.marked.get_or_insert_with(|| (self.factors, Vec::new()));
-        *factors = self.factors;
-        bodies.clone_from(&self.bodies);
-        Ok(())
-    }
-
-    fn rewind(&mut self) -> Result<(), MechanicsError> {
-        let Some((factors, bodies)) = &self.marked else { return Err(MechanicsError::NoWayBack) };
-        self.factors = *factors;
-        self.bodies.clone_from(bodies);
-        Ok(())
     }
 }
 

@@ -12,7 +12,7 @@
 //! [`Friction::settle`] sees the new velocity after it, and takes the [`Memory`] of the friction to the next tick. A body whose velocity
 //! reversed came to rest within the tick and is stopped there; the crossing itself is met to first order in the step.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-use servobench_base::ParamError;
+use servobench_base::{ParamError, Stateful};
 use servobench_config::Kind::Axis;
 use servobench_config::not_negative;
 use servobench_config::quantities::{EFFORT, VELOCITY, VISCOUS};
@@ -52,7 +52,7 @@ pub struct DryFriction {
 }
 
 /// What the friction of a body remembers from tick to tick: nothing, its force follows from velocity and effort.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub(crate) struct Memory;
 
 /// What friction does to a body during one tick.

@@ -9,18 +9,23 @@
 use crate::chain::Chain;
 use crate::friction::{Friction, Grip, Memory};
 use crate::mechanics::Drive;
+use servobench_base::Stateful;
 
 /// Friction of up to `N` bodies, the linear part apart ([`Friction::linear`]): that is integrated with the chain.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Stateful)]
 pub struct GroundFriction<const N: usize> {
     /// [`Friction::NONE`] where a body feels none.
+    #[state(constant)]
     laws: [Friction; N],
     memories: [Memory; N],
     /// Bodies with more than linear friction, body i being bit i.
+    #[state(constant)]
     felt: usize,
     /// Tick length (s).
+    #[state(constant)]
     step: f64,
-    /// Velocities at the start of the tick under way (m/s or rad/s).
+    /// Velocities at the start of the last tick (m/s or rad/s).
+    #[state(derived)]
     before: [f64; N],
 }
 

@@ -11,6 +11,7 @@ mod exact;
 mod fmu;
 mod friction;
 mod ground_friction;
+mod identity;
 mod integration;
 pub mod inverter;
 mod load_coordinate;
@@ -33,6 +34,7 @@ pub use exact::{Exact, transition};
 pub use fmu::{FmuBody, FmuModel};
 pub use friction::{DryFriction, Friction, FrictionParameter};
 pub use ground_friction::{Grips, GroundFriction};
+pub use identity::Identity;
 pub use integration::{Distortion, Integrator};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{

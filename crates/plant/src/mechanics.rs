@@ -134,17 +134,17 @@ pub trait Mechanics: Send {
     /// [`MechanicsError::Diverged`] or [`MechanicsError::Native`]; the mechanics must not be used afterwards.
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError>;
 
-    /// The same mechanics at the same tick; `None` where the engine cannot copy it.
-    fn copy(&self) -> Option<Box<dyn Mechanics>> {
-        None
+    /// True where [`save`](Self::save) and [`restore`](Self::restore) can do it.
+    fn saves(&self) -> bool {
+        false
     }
 
-    /// Writes the state at the present tick.
+    /// Writes the state at the present tick, [`Identity`](crate::Identity) first.
     ///
     /// # Errors
     /// [`MechanicsError`], also where the engine cannot.
     fn save(&mut self, _: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NoWayBack)
+        Err(MechanicsError::NotSaved)
     }
 
     /// Takes the state that [`save`](Self::save) of mechanics of the same setup has written.
@@ -152,28 +152,7 @@ pub trait Mechanics: Send {
     /// # Errors
     /// [`MechanicsError`], also of numbers that are not a state of them; they must not be used then but to restore another.
     fn restore(&mut self, _: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NoWayBack)
-    }
-
-    /// Whether it can [`mark`](Self::mark) where it is.
-    fn marks(&self) -> bool {
-        false
-    }
-
-    /// Remembers where it is, in place of what it remembered before.
-    ///
-    /// # Errors
-    /// [`MechanicsError`], also where it cannot.
-    fn mark(&mut self) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NoWayBack)
-    }
-
-    /// Goes back to the mark; it can do so again.
-    ///
-    /// # Errors
-    /// [`MechanicsError`], also where there is no mark.
-    fn rewind(&mut self) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NoWayBack)
+        Err(MechanicsError::NotSaved)
     }
 
     /// Frees what it holds of somebody else's, after which only its log is taken. What goes wrong with that is in its log.
@@ -348,9 +327,17 @@ pub enum MechanicsError {
         /// What was seen.
         message: String,
     },
-    /// The mechanics have no mark to go back to, or cannot go back.
-    #[error("engine `mechanics` failed: it cannot go back to where it was")]
-    NoWayBack,
+    /// The mechanics cannot save or restore their state, or nothing is saved yet.
+    #[error("engine `mechanics` failed: it has no saved state to go back to")]
+    NotSaved,
+    /// The engine keeps its last state only, and another one is to be restored.
+    #[error(
+        "engine `{engine}` keeps its last state only, and an older one, or that of another model, is to be restored"
+    )]
+    Superseded {
+        /// Engine name.
+        engine: EngineName,
+    },
     /// A state that is to be restored is of other mechanics.
     #[error(transparent)]
     Damaged(#[from] Damaged),

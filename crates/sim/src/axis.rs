@@ -35,9 +35,10 @@ pub(crate) struct Axis {
     requests: RequestWatch,
 }
 
-/// An axis at a tick, the mechanics apart, which remember that tick themselves.
+/// An axis at a tick.
 pub(crate) struct Saved {
     state: State,
+    mechanics: Vec<u64>,
     external: External,
     now: Instant,
     ticks_to_row: u32,
@@ -50,7 +51,8 @@ pub(crate) struct Saved {
 
 /// An axis of which nothing is recorded, at a tick, with its mechanics.
 pub(crate) struct Snapshot {
-    closed_loop: ClosedLoop,
+    state: State,
+    mechanics: Vec<u64>,
     external: External,
     now: Instant,
 }
@@ -142,8 +144,10 @@ impl Axis {
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
     pub(crate) fn save(&mut self, time: f64) -> Result<Saved, MechanicsError> {
+        let mut mechanics = Vec::new();
         Ok(Saved {
-            state: self.closed_loop.mark()?,
+            state: self.closed_loop.save(&mut mechanics)?,
+            mechanics,
             external: self.external,
             now: self.now,
             ticks_to_row: self.ticks_to_row,
@@ -160,7 +164,7 @@ impl Axis {
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
     pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
-        self.closed_loop.rewind(&saved.state)?;
+        self.closed_loop.restore(&saved.state, &saved.mechanics)?;
         (self.external, self.now, self.ticks_to_row) = (saved.external, saved.now, saved.ticks_to_row);
         self.limits.clone_from(&saved.limits);
         self.joints.clone_from(&saved.joints);
@@ -170,15 +174,19 @@ impl Axis {
         Ok(())
     }
 
-    /// A copy of the state of an [unrecorded](Self::unrecorded) axis; `None` where the engine cannot copy its mechanics.
-    pub(crate) fn snapshot(&self) -> Option<Snapshot> {
-        Some(Snapshot { closed_loop: self.closed_loop.copy()?, external: self.external, now: self.now })
+    /// The state of an [unrecorded](Self::unrecorded) axis; `None` where the engine cannot save its mechanics.
+    pub(crate) fn snapshot(&mut self) -> Option<Snapshot> {
+        let mut mechanics = Vec::new();
+        let state = self.closed_loop.save(&mut mechanics).ok()?;
+        Some(Snapshot { state, mechanics, external: self.external, now: self.now })
     }
 
-    /// Goes back to a snapshot, and says whether the engine could.
+    /// Goes back to a snapshot. Whether the engine could.
     pub(crate) fn go_back(&mut self, snapshot: &Snapshot) -> bool {
-        let Some(closed_loop) = snapshot.closed_loop.copy() else { return false };
-        (self.closed_loop, self.external, self.now) = (closed_loop, snapshot.external, snapshot.now);
+        if self.closed_loop.restore(&snapshot.state, &snapshot.mechanics).is_err() {
+            return false;
+        }
+        (self.external, self.now) = (snapshot.external, snapshot.now);
         true
     }
 

@@ -9,6 +9,7 @@ use crate::network::{Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
 pub(crate) use control::{Control, EncoderInput, Mounting};
+use servobench_base::state::{Reader, words};
 use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Stateful, Tick};
 use servobench_drive::{Demand, EffortLimits};
 use servobench_plant::{Actuation, BodyState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches};
@@ -268,32 +269,25 @@ impl ClosedLoop {
         }
     }
 
-    /// The same loop at the same tick; `None` where the engine cannot copy its mechanics.
-    pub(crate) fn copy(&self) -> Option<Self> {
-        Some(Self {
-            mechanics: self.mechanics.copy()?,
-            state: self.state.clone(),
-            disturbances: self.disturbances.clone(),
-            switches: self.switches.clone(),
-            ..*self
-        })
-    }
-
-    /// Marks where the mechanics are, and gives the rest.
+    /// Saves the mechanics as words in `mechanics`, in place of what was there, and gives the rest.
     ///
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn mark(&mut self) -> Result<State, MechanicsError> {
-        self.mechanics.mark()?;
+    pub(crate) fn save(&mut self, mechanics: &mut Vec<u64>) -> Result<State, MechanicsError> {
+        mechanics.clear();
+        self.mechanics.save(&mut words(|word| mechanics.push(word)))?;
         Ok(self.state.clone())
     }
 
-    /// Goes back to the last mark, where the rest was `state`.
+    /// Goes back to where [`save`](Self::save) was called.
     ///
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn rewind(&mut self, state: &State) -> Result<(), MechanicsError> {
+    pub(crate) fn restore(&mut self, state: &State, mechanics: &[u64]) -> Result<(), MechanicsError> {
+        let mut from = Reader::new(mechanics);
+        self.mechanics.restore(&mut from)?;
+        from.end()?;
         self.state.clone_from(state);
-        self.mechanics.rewind()
+        Ok(())
     }
 }

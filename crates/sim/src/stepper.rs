@@ -127,10 +127,10 @@ impl Stepper {
         Ok(())
     }
 
-    /// Where the loop is now; `None` where the engine cannot copy its mechanics.
+    /// Where the loop is now; `None` where the engine cannot save its mechanics.
     #[must_use]
-    pub fn snapshot(&self) -> Option<Snapshot> {
-        Some(Snapshot { tick: self.tick(), axis: self.axis().snapshot()? })
+    pub fn snapshot(&mut self) -> Option<Snapshot> {
+        Some(Snapshot { tick: self.tick(), axis: self.axis_mut().snapshot()? })
     }
 
     /// Goes back to `snapshot`, which may be of another stepper of the same scenario.

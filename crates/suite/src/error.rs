@@ -63,7 +63,7 @@ pub enum RunError {
 pub(crate) const fn is_of_the_run(error: &BuildError) -> bool {
     matches!(
         error,
-        BuildError::Mechanics(MechanicsError::Native { .. } | MechanicsError::NoWayBack)
+        BuildError::Mechanics(MechanicsError::Native { .. } | MechanicsError::NotSaved)
             | BuildError::Broken(_)
             | BuildError::NotBegun(_)
     )

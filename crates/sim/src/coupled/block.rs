@@ -126,7 +126,7 @@ impl AxisBlock {
     }
 
     fn restore(&mut self) -> Result<(), MechanicsError> {
-        let Some((tick, saved)) = &self.saved else { return Err(MechanicsError::NoWayBack) };
+        let Some((tick, saved)) = &self.saved else { return Err(MechanicsError::NotSaved) };
         let [axis] = &mut self.machine.axes;
         axis.restore(saved)?;
         self.machine.go_back(*tick);
@@ -135,7 +135,7 @@ impl AxisBlock {
 
     fn saves_state(&self) -> bool {
         let [axis] = &self.machine.axes;
-        axis.closed_loop.mechanics.marks()
+        axis.closed_loop.mechanics.saves()
     }
 }
 
