@@ -433,7 +433,11 @@ mod tests {
             }
             assert!(here.bodies[0].position != 0.0);
         }
-        let dry = Friction { viscous: 0.2, dry: DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.01 } };
+        let (viscous, dry) = (
+            Friction { viscous: 0.2, ..Friction::NONE },
+            DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.01 },
+        );
+        let dry = Friction { dry, ..viscous };
         for friction in [Friction::NONE, dry] {
             for count in 1..=MAX_BODIES {
                 let bodies = (0..count).map(|k| body(0.3 + 0.7 * k as f64, friction)).collect();

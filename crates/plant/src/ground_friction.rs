@@ -109,7 +109,7 @@ mod tests {
     use servobench_base::Coordinate;
 
     const DRY: Friction =
-        Friction { viscous: 0.5, dry: DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.0 } };
+        Friction { dry: DryFriction { coulomb: 2.0, breakaway: 3.0, stribeck_velocity: 0.0 }, ..Friction::NONE };
 
     fn chain(frictions: &[Friction]) -> Chain {
         let coordinate = Coordinate::Linear;
