@@ -9,9 +9,8 @@
 //! Time of the FMU is the tick of its loop: t = start + k/f. A step goes over a whole number of base ticks and holds the inputs;
 //! another one is an error: it never fits, whatever is asked for next.
 use crate::error::Refusal;
-use crate::history::{History, Past};
 use crate::interface::{Kind, Role, Variable};
-use crate::machine::{Machine, MachineState, Model};
+use crate::machine::{Machine, Model};
 use servobench_base::Rate;
 use std::ffi::{CStr, CString};
 use std::sync::Arc;
@@ -61,16 +60,10 @@ pub(crate) struct Instance {
     values: Vec<f64>,
     /// Whether the outputs among them are those of the machine.
     is_read: bool,
-    run: Option<Run>,
+    machine: Option<Machine>,
     /// Where the last step ended (s).
     last_successful_time: f64,
     text: CString,
-}
-
-/// The loop and what it has been told.
-struct Run {
-    machine: Machine,
-    history: History,
 }
 
 /// An instance at a time, to go back to.
@@ -78,14 +71,8 @@ pub(crate) struct State {
     pub(crate) phase: Phase,
     pub(crate) experiment: Experiment,
     pub(crate) values: Vec<f64>,
-    pub(crate) run: Option<SavedRun>,
-}
-
-/// A run at a time.
-pub(crate) struct SavedRun {
-    pub(crate) machine: MachineState,
-    pub(crate) tick: u64,
-    pub(crate) past: Past,
+    /// The loop, where it was built.
+    pub(crate) machine: Option<Vec<u64>>,
 }
 
 impl Instance {
@@ -94,7 +81,7 @@ impl Instance {
         let experiment = Experiment { start: 0.0, stop: None };
         let text = CString::default();
         let phase = Phase::Instantiated;
-        Self { model, phase, experiment, values, is_read: false, run: None, last_successful_time: 0.0, text }
+        Self { model, phase, experiment, values, is_read: false, machine: None, last_successful_time: 0.0, text }
     }
 
     pub(crate) fn model(&self) -> &Model {
@@ -137,7 +124,7 @@ impl Instance {
 
     pub(crate) fn exit_initialization(&mut self) -> Result<(), Refusal> {
         self.expect(&[Phase::Initialization], "in initialization mode only")?;
-        self.run()?;
+        self.built()?;
         self.phase = Phase::Step;
         Ok(())
     }
@@ -153,16 +140,12 @@ impl Instance {
     }
 
     /// Makes sure that the loop is there, with the parameters as they are.
-    fn run(&mut self) -> Result<&mut Run, Refusal> {
-        if self.run.is_none() {
-            let machine = Machine::new(&self.model, &self.values)?;
-            self.run = Some(Run { machine, history: History::default() });
+    fn built(&mut self) -> Result<(), Refusal> {
+        if self.machine.is_none() {
+            self.machine = Some(Machine::new(&self.model, &self.values)?);
             self.is_read = false;
         }
-        match &mut self.run {
-            Some(run) => Ok(run),
-            None => Err(Refusal::Phase { phase: self.phase.name(), allowed: "after instantiation" }),
-        }
+        Ok(())
     }
 
     fn variable(&self, reference: u32) -> Result<(usize, &Variable), Refusal> {
@@ -198,7 +181,7 @@ impl Instance {
     pub(crate) fn get_text(&mut self, reference: u32, asked: &Asked) -> Result<&CStr, Refusal> {
         let (at, _) = self.typed(reference, asked)?;
         self.read_outputs(at)?;
-        let text = self.run.as_ref().map(|run| run.machine.faults()).unwrap_or_default();
+        let text = self.machine.as_ref().map(Machine::faults).unwrap_or_default();
         self.text = CString::new(text).unwrap_or_default();
         Ok(&self.text)
     }
@@ -209,10 +192,10 @@ impl Instance {
             return Err(Refusal::NotYet { name: self.model.variables[at].name.clone() });
         }
         if self.phase == Phase::Initialization {
-            self.run()?;
+            self.built()?;
         }
-        if let (false, Some(run)) = (self.is_read, &mut self.run) {
-            run.machine.read(&self.model.variables, &mut self.values);
+        if let (false, Some(machine)) = (self.is_read, &mut self.machine) {
+            machine.read(&self.model.variables, &mut self.values);
             self.is_read = true;
         }
         Ok(())
@@ -238,7 +221,7 @@ impl Instance {
             return Err(Refusal::Range { name: variable.name.clone(), min, max, value });
         }
         if matches!(variable.role, Role::Setting(_)) && self.values[at].to_bits() != value.to_bits() {
-            (self.run, self.is_read) = (None, false);
+            (self.machine, self.is_read) = (None, false);
         }
         self.values[at] = value;
         Ok(())
@@ -247,7 +230,7 @@ impl Instance {
     /// The time (s).
     fn time(&self) -> f64 {
         let rate = self.model.scenario.base_rate;
-        let tick = self.run.as_ref().map_or(0, |run| run.machine.tick());
+        let tick = self.machine.as_ref().map_or(0, Machine::tick);
         self.experiment.start + time_of(tick, rate)
     }
 
@@ -266,10 +249,10 @@ impl Instance {
         let ticks = |time: f64| (time - start) * hertz;
         let inputs = self.model.inputs(&self.values);
         let now = self.time();
-        let Some(run) = &mut self.run else {
+        let Some(machine) = &mut self.machine else {
             return Err(Refusal::Phase { phase: self.phase.name(), allowed: "after initialization" });
         };
-        let first = run.machine.tick();
+        let first = machine.tick();
         if (ticks(point) - first as f64).abs() > NEAR {
             return Err(Refusal::Point { given: point, now });
         }
@@ -283,9 +266,8 @@ impl Instance {
             return Err(Refusal::Step { from: point, length, rate: rate.hertz(), tick: 1.0 / hertz });
         }
         self.is_read = false;
-        while (run.machine.tick() as f64) < end {
-            run.history.note(run.machine.tick(), &inputs);
-            run.machine.step(&inputs)?;
+        while (machine.tick() as f64) < end {
+            machine.step(&inputs)?;
         }
         self.last_successful_time = to;
         Ok(())
@@ -293,31 +275,24 @@ impl Instance {
 
     /// Where the instance is.
     pub(crate) fn save(&mut self) -> Result<State, Refusal> {
-        let run = match &mut self.run {
-            None => None,
-            Some(run) => {
-                let failed = || Refusal::Failed("a loop that has failed has no state".into());
-                let machine = run.machine.save().ok_or_else(failed)?;
-                Some(SavedRun { machine, tick: run.machine.tick(), past: run.history.past() })
-            }
-        };
-        Ok(State { phase: self.phase, experiment: self.experiment, values: self.values.clone(), run })
+        let machine = self.machine.as_mut().map(Machine::save).transpose()?;
+        Ok(State { phase: self.phase, experiment: self.experiment, values: self.values.clone(), machine })
     }
 
     /// Goes back to `state`, which may be of another instance of the same FMU.
     pub(crate) fn restore(&mut self, state: &State) -> Result<(), Refusal> {
-        let run = match &state.run {
+        let machine = match &state.machine {
             None => None,
             Some(saved) => {
-                let mut machine = match self.run.take() {
-                    Some(run) if self.has_settings_of(&state.values) => run.machine,
+                let mut machine = match self.machine.take() {
+                    Some(machine) if self.has_settings_of(&state.values) => machine,
                     _ => Machine::new(&self.model, &state.values)?,
                 };
-                machine.restore(&saved.machine);
-                Some(Run { machine, history: History::after(&saved.past) })
+                machine.restore(saved)?;
+                Some(machine)
             }
         };
-        (self.phase, self.experiment, self.run) = (state.phase, state.experiment, run);
+        (self.phase, self.experiment, self.machine) = (state.phase, state.experiment, machine);
         self.values.clone_from(&state.values);
         self.is_read = false;
         self.last_successful_time = self.time();

@@ -13,7 +13,6 @@ mod description;
 mod error;
 mod export;
 mod ffi;
-mod history;
 mod instance;
 mod interface;
 mod library;

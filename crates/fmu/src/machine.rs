@@ -3,12 +3,13 @@ use crate::error::{FmuError, Refusal};
 use crate::interface::{INPUTS, Input, Kind, Output, Role, SETPOINT, Setting, TARGET, Variable, variables};
 use crate::mover::Mover;
 use crate::part::{Part, has_one_body};
-use servobench_base::{Rate, Setpoint};
+use servobench_base::state::{Reader, words};
+use servobench_base::{Rate, Setpoint, Stateful as _};
 use servobench_cia402::PowerState;
 use servobench_plant::{BodyState, Exact};
 use servobench_plcopen::AxisState;
 use servobench_scenario::Scenario;
-use servobench_sim::{Bench, BuildError, External, Snapshot, Stepper};
+use servobench_sim::{Bench, BuildError, External, Stepper};
 
 /// What an FMU is made of, before it has parameters of its own.
 pub(crate) struct Model {
@@ -75,12 +76,6 @@ pub(crate) struct Machine {
     /// Axis coordinate per motor coordinate where the motor is the load too.
     one_body: Option<f64>,
     failed: bool,
-}
-
-/// A loop at a tick, to go back to.
-pub(crate) struct MachineState {
-    snapshot: Snapshot,
-    mover: Mover,
 }
 
 impl Machine {
@@ -186,16 +181,32 @@ impl Machine {
         [drive, link].into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 
-    /// Where it is; `None` after a failure.
-    pub(crate) fn save(&mut self) -> Option<MachineState> {
-        let snapshot = if self.failed { None } else { self.stepper.snapshot() };
-        Some(MachineState { snapshot: snapshot?, mover: self.mover.clone() })
+    /// Its state.
+    ///
+    /// # Errors
+    /// [`Refusal::Failed`] after a failure.
+    pub(crate) fn save(&mut self) -> Result<Vec<u64>, Refusal> {
+        if self.failed {
+            return Err(Refusal::Failed("a loop that has failed has no state".into()));
+        }
+        let mut all = Vec::new();
+        let mut to = words(|word| all.push(word));
+        self.stepper.save(&mut to).map_err(|error| Refusal::Failed(error.to_string()))?;
+        self.mover.save(&mut to);
+        Ok(all)
     }
 
-    /// Goes back to `state`, of a machine with the same parameters.
-    pub(crate) fn restore(&mut self, state: &MachineState) {
-        self.stepper.restore(&state.snapshot);
-        self.mover = state.mover.clone();
+    /// Goes back to the state `saved`, of a machine with the same parameters.
+    ///
+    /// # Errors
+    /// [`Refusal::State`]; then it can only go back to another one.
+    pub(crate) fn restore(&mut self, saved: &[u64]) -> Result<(), Refusal> {
+        self.failed = true;
+        let wrong = Refusal::State { why: "they are not of a loop with these parameters" };
+        let mut from = Reader::new(saved);
+        self.stepper.restore(&mut from).map_err(|_| wrong.clone())?;
+        self.mover.restore(&mut from).and_then(|()| from.end()).map_err(|_| wrong)?;
         self.failed = false;
+        Ok(())
     }
 }

@@ -1,5 +1,5 @@
 //! Moves to a target, from whatever state of motion the set-point is in.
-use servobench_base::{Rate, Setpoint};
+use servobench_base::{Rate, Setpoint, Stateful};
 use servobench_motion::online::{DirectionalLimits, Effort, Target};
 use servobench_motion::{Limits, Order, PlanError};
 use servobench_planner::{Generator, Plan, Replanning, Request};
@@ -7,17 +7,62 @@ use servobench_planner::{Generator, Plan, Replanning, Request};
 /// Generator of set-points for the command `target`: a rising edge of `execute` makes a move to `target`, jerk-limited, also
 /// while another is under way. A new override plans the rest of the move again, with the limit of velocity times it; at 0 the axis
 /// stops until it rises.
-#[derive(Debug, Clone)]
+#[derive(Debug, Stateful)]
 pub(crate) struct Mover {
+    #[state(constant)]
     limits: [f64; 3],
     /// What is followed at present.
     now: Setpoint,
     /// Where the last move goes.
     goal: Option<f64>,
-    /// The move under way: its plan, the tick at which it began and where.
-    under_way: Option<(Plan, u64, f64)>,
+    under_way: Option<Move>,
     executed: bool,
     factor: f64,
+}
+
+/// A move under way: its start, the tick of it, and the plan that follows from the start.
+#[derive(Debug)]
+struct Move {
+    start: Start,
+    begun: u64,
+    plan: Plan,
+}
+
+/// Start and goal of a move.
+#[derive(Debug, Clone, Copy, Stateful)]
+struct Start {
+    from: Setpoint,
+    goal: f64,
+    factor: f64,
+    limits: [f64; 3],
+}
+
+servobench_base::saved_as!(Move: (Start, u64), |one: &Move| (one.start, one.begun), |(start, begun)| Self::new(start, begun).ok());
+
+impl Move {
+    /// # Errors
+    /// What the planner says of a move that it cannot plan.
+    fn new(start: Start, begun: u64) -> Result<Self, PlanError> {
+        Ok(Self { plan: start.plan()?, start, begun })
+    }
+}
+
+impl Start {
+    /// The way from here to the goal, or to rest.
+    fn plan(&self) -> Result<Plan, PlanError> {
+        let Self { from, goal, factor, limits: [velocity, acceleration, jerk] } = *self;
+        let is_stop = factor == 0.0;
+        let velocity = if is_stop { velocity } else { factor * velocity };
+        let x = goal - from.x;
+        let generator = Generator::Replanning(Replanning {
+            from: Setpoint { x: 0.0, s: 0.0, ..from },
+            target: if is_stop { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } },
+            order: Order::Third,
+            limits: DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap: f64::INFINITY }),
+            effort: Effort::Fast,
+        });
+        Request::new(generator).plan()
+    }
 }
 
 impl Mover {
@@ -38,9 +83,9 @@ impl Mover {
         target: f64,
         factor: f64,
     ) -> Result<Setpoint, PlanError> {
-        if let Some((plan, begun, from)) = &self.under_way {
+        if let Some(Move { start, begun, plan }) = &self.under_way {
             self.now = plan.at((k - begun) as f64 / f64::from(rate.hertz()));
-            self.now.x += from;
+            self.now.x += start.from.x;
         }
         let is_new = execute && !self.executed;
         if is_new {
@@ -49,26 +94,10 @@ impl Mover {
         if let Some(goal) = self.goal
             && (is_new || factor.to_bits() != self.factor.to_bits())
         {
-            self.under_way = Some((self.plan(goal, factor)?, k, self.now.x));
+            self.under_way = Some(Move::new(Start { from: self.now, goal, factor, limits: self.limits }, k)?);
         }
         (self.executed, self.factor) = (execute, factor);
         Ok(self.now)
-    }
-
-    /// The way from here to `goal`, or to rest.
-    fn plan(&self, goal: f64, factor: f64) -> Result<Plan, PlanError> {
-        let [velocity, acceleration, jerk] = self.limits;
-        let is_stop = factor == 0.0;
-        let velocity = if is_stop { velocity } else { factor * velocity };
-        let x = goal - self.now.x;
-        let generator = Generator::Replanning(Replanning {
-            from: Setpoint { x: 0.0, s: 0.0, ..self.now },
-            target: if is_stop { Target::Velocity(0.0) } else { Target::Position { x, v: 0.0 } },
-            order: Order::Third,
-            limits: DirectionalLimits::from(Limits { velocity, acceleration, jerk, snap: f64::INFINITY }),
-            effort: Effort::Fast,
-        });
-        Request::new(generator).plan()
     }
 }
 

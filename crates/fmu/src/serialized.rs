@@ -1,62 +1,64 @@
-//! A state of an instance as bytes: parameters, inputs and what the inputs were since tick 0. What it means is simulated again,
-//! which by determinism gives the same state bit for bit.
+//! A state of an instance as bytes, all of it: its size and the time that it takes do not depend on how long the run was.
 //!
 //! ```text
-//! token of the FMU | phase, start, stop | values | with a run: tick, count of changes, changes (tick, input, value)
+//! token of the FMU | count of all words | phase, start, stop | count, values | with a loop: its state | checksum
 //! ```
-//! Little endian; `stop` is NaN without one.
+//! Words of eight bytes, little endian; `stop` is NaN without one. The checksum is xxHash64 of the bytes before it.
 use crate::error::Refusal;
-use crate::history::{Change, History};
-use crate::instance::{Experiment, Phase, SavedRun, State};
-use crate::interface::INPUTS;
-use crate::machine::{Machine, Model};
+use crate::instance::{Experiment, Phase, State};
+use crate::machine::Model;
+use servobench_base::state::Reader;
+use std::cmp::Ordering;
+use twox_hash::XxHash64;
 
 const PHASES: [Phase; 5] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated, Phase::Failed];
 
+/// Words of a token.
+const TOKEN: usize = 5;
+
 /// The bytes of `state`, of the FMU with this token.
 pub(crate) fn write(state: &State, token: &str) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut word = |word: u64| bytes.extend_from_slice(&word.to_le_bytes());
-    for word8 in token_words(token) {
-        word(word8);
-    }
-    word(PHASES.iter().position(|phase| *phase == state.phase).map_or(u64::MAX, |at| at as u64));
-    word(state.experiment.start.to_bits());
-    word(state.experiment.stop.unwrap_or(f64::NAN).to_bits());
-    word(state.values.len() as u64);
-    state.values.iter().for_each(|value| word(value.to_bits()));
-    word(u64::from(state.run.is_some()));
-    if let Some(run) = &state.run {
-        let changes = run.past.changes();
-        word(run.tick);
-        word(changes.len() as u64);
-        for Change { tick, input, value } in changes {
-            word(tick);
-            word(input.into());
-            word(value.to_bits());
-        }
-    }
+    let State { phase, experiment, values, machine } = state;
+    let place = PHASES.iter().position(|one| one == phase).map_or(u64::MAX, |place| place as u64);
+    let numbers = [experiment.start, experiment.stop.unwrap_or(f64::NAN)];
+    let head = [place].into_iter().chain(numbers.map(f64::to_bits));
+    let values = [values.len() as u64].into_iter().chain(values.iter().map(|value| value.to_bits()));
+    let run = [u64::from(machine.is_some())].into_iter().chain(machine.iter().flatten().copied());
+    let body: Vec<u64> = head.chain(values).chain(run).collect();
+    let count = TOKEN + 1 + body.len() + 1;
+    let all = token_words(token).into_iter().chain([count as u64]).chain(body);
+    let mut bytes: Vec<u8> = all.flat_map(u64::to_le_bytes).collect();
+    bytes.extend(XxHash64::oneshot(0, &bytes).to_le_bytes());
     bytes
 }
 
-/// The state that `bytes` are, of `model` with this token; simulates up to it.
+/// The state that `bytes` are, of `model` with this token.
 ///
 /// # Errors
-/// [`Refusal::State`] for bytes that are none; what the loop says when it cannot be simulated again.
+/// [`Refusal::State`] for bytes that are not a state of this FMU, or damaged.
 pub(crate) fn read(bytes: &[u8], model: &Model, token: &str) -> Result<State, Refusal> {
     let wrong = |why| Refusal::State { why };
-    let mut words = bytes.chunks(8).map(|word| word.try_into().map(u64::from_le_bytes));
-    let mut word = || match words.next() {
-        Some(Ok(word)) => Ok(word),
-        _ => Err(wrong("they end too early")),
-    };
+    let too_early = |_| wrong("they end too early");
+    let (whole, rest) = bytes.as_chunks();
+    let words: Vec<u64> = whole.iter().map(|word| u64::from_le_bytes(*word)).collect();
+    let mut from = Reader::new(&words);
     for expected in token_words(token) {
-        if word()? != expected {
+        if from.word().map_err(too_early)? != expected {
             return Err(wrong("they are of another FMU, or of another version of it"));
         }
     }
-    let phase =
-        usize::try_from(word()?).ok().and_then(|at| PHASES.get(at).copied()).ok_or(wrong("the phase is unknown"))?;
+    match from.word().map_err(too_early)?.cmp(&(words.len() as u64)) {
+        Ordering::Greater => return Err(wrong("they end too early")),
+        Ordering::Equal if rest.is_empty() => {}
+        Ordering::Less | Ordering::Equal => return Err(wrong("they go on after its end")),
+    }
+    let checked = &bytes[..bytes.len() - 8];
+    if words.last() != Some(&XxHash64::oneshot(0, checked)) {
+        return Err(wrong("they are damaged: their checksum is another"));
+    }
+    let mut word = || from.word().map_err(too_early);
+    let phase = usize::try_from(word()?).ok().and_then(|place| PHASES.get(place).copied());
+    let phase = phase.ok_or(wrong("the phase is unknown"))?;
     let (start, stop) = (f64::from_bits(word()?), f64::from_bits(word()?));
     let experiment = Experiment { start, stop: (!stop.is_nan()).then_some(stop) };
     let mut values = model.start();
@@ -66,48 +68,18 @@ pub(crate) fn read(bytes: &[u8], model: &Model, token: &str) -> Result<State, Re
     for value in &mut values {
         *value = f64::from_bits(word()?);
     }
-    let run = match word()? {
-        0 => None,
-        1 => {
-            let (tick, count) = (word()?, word()?);
-            let mut changes = Vec::new();
-            for _ in 0..count {
-                let (tick, input, value) = (word()?, word()?, f64::from_bits(word()?));
-                let input = u8::try_from(input).ok().filter(|input| usize::from(*input) < INPUTS);
-                let input = input.ok_or(wrong("there is no such input"))?;
-                changes.push(Change { tick, input, value });
-            }
-            Some(simulate(model, &values, tick, &changes)?)
-        }
-        _ => return Err(wrong("it has neither a run nor none")),
-    };
-    if word().is_ok() {
-        return Err(wrong("they go on after its end"));
-    }
-    Ok(State { phase, experiment, values, run })
+    let has_machine = word()? != 0;
+    let read = TOKEN + 1 + 3 + 1 + values.len() + 1;
+    let rest = words.get(read..words.len() - 1).ok_or(wrong("they end too early"))?;
+    let machine = has_machine.then(|| rest.to_vec());
+    Ok(State { phase, experiment, values, machine })
 }
 
-/// The run with these inputs up to `end`.
-fn simulate(model: &Model, values: &[f64], end: u64, changes: &[Change]) -> Result<SavedRun, Refusal> {
-    let mut machine = Machine::new(model, values)?;
-    let (mut history, mut inputs) = (History::default(), [0.0; INPUTS]);
-    let mut changes = changes.iter().peekable();
-    for tick in 0..end {
-        while let Some(change) = changes.next_if(|change| change.tick <= tick) {
-            inputs[usize::from(change.input)] = change.value;
-        }
-        history.note(tick, &inputs);
-        machine.step(&inputs)?;
-    }
-    let failed = || Refusal::Failed("the loop cannot be copied".into());
-    Ok(SavedRun { machine: machine.save().ok_or_else(failed)?, tick: end, past: history.past() })
-}
-
-/// The token as five words, zeros behind it.
-fn token_words(token: &str) -> [u64; 5] {
-    let mut bytes = [0; 40];
+/// The token as words, zeros behind it.
+fn token_words(token: &str) -> [u64; TOKEN] {
+    let mut bytes = [0; 8 * TOKEN];
     bytes.iter_mut().zip(token.bytes()).for_each(|(to, from)| *to = from);
-    let mut words = [0; 5];
+    let mut words = [0; TOKEN];
     for (word, eight) in words.iter_mut().zip(bytes.chunks(8)) {
         *word = eight.try_into().map_or(0, u64::from_le_bytes);
     }

@@ -1,13 +1,14 @@
 //! One axis: its closed loop, what acts on it from outside, and what is recorded of it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::alarm_watch::AlarmWatch;
-use crate::closed_loop::{ClosedLoop, Source, State};
+use crate::closed_loop::{ClosedLoop, Source};
 use crate::external::External;
 use crate::joint_watch::JointWatch;
 use crate::limit_watch::LimitWatch;
 use crate::request_watch::RequestWatch;
 use crate::run::Reason;
-use servobench_base::Severity;
+use servobench_base::state::{Reader, Writer, words};
+use servobench_base::{Severity, Stateful};
 use servobench_plant::MechanicsError;
 use servobench_signals::{Instant, PerLimit, Selection, write_row};
 use servobench_trace::{Mark, Recorder, Recording};
@@ -28,33 +29,36 @@ pub(crate) struct Axis {
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row: one, unless the run is too long for that.
     record_every: u32,
-    ticks_to_row: u32,
-    limits: LimitWatch,
-    joints: JointWatch,
-    alarms: AlarmWatch,
-    requests: RequestWatch,
+    watches: Watches,
 }
 
-/// An axis at a tick.
+/// An axis at a tick, and how much of its recording there was.
 pub(crate) struct Saved {
-    state: State,
-    mechanics: Vec<u64>,
-    external: External,
-    now: Instant,
-    ticks_to_row: u32,
-    limits: LimitWatch,
-    joints: JointWatch,
-    alarms: AlarmWatch,
-    requests: RequestWatch,
+    words: Vec<u64>,
     mark: Mark,
 }
 
-/// An axis of which nothing is recorded, at a tick, with its mechanics.
-pub(crate) struct Snapshot {
-    state: State,
-    mechanics: Vec<u64>,
-    external: External,
-    now: Instant,
+/// Changes that a recording notes, and when its next row is due.
+#[derive(Stateful)]
+#[state(fixed)]
+struct Watches {
+    ticks_to_row: u32,
+    limits: LimitWatch,
+    joints: JointWatch,
+    alarms: AlarmWatch,
+    requests: RequestWatch,
+}
+
+impl Watches {
+    fn new(recorder: &mut Recorder) -> Self {
+        Self {
+            ticks_to_row: 0,
+            limits: LimitWatch::default(),
+            joints: JointWatch::default(),
+            alarms: AlarmWatch::default(),
+            requests: RequestWatch::new(recorder),
+        }
+    }
 }
 
 impl Axis {
@@ -62,29 +66,15 @@ impl Axis {
     pub(crate) fn new(closed_loop: ClosedLoop, wanted: Selection, mut recorder: Recorder, record_every: u32) -> Self {
         let (external, mut now) = (External::default(), Instant::default());
         closed_loop.sample(&external, &mut now);
-        let (limits, joints, alarms) = (LimitWatch::default(), JointWatch::default(), AlarmWatch::default());
-        let requests = RequestWatch::new(&mut recorder);
-        let ticks_to_row = 0;
-        Self {
-            closed_loop,
-            external,
-            now,
-            wanted,
-            recorder,
-            record_every,
-            ticks_to_row,
-            limits,
-            joints,
-            alarms,
-            requests,
-        }
+        let watches = Watches::new(&mut recorder);
+        Self { closed_loop, external, now, wanted, recorder, record_every, watches }
     }
 
     /// The same axis with nothing recorded of it.
     pub(crate) fn unrecorded(self) -> Self {
         let mut recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
-        let requests = RequestWatch::new(&mut recorder);
-        Self { recorder, requests, record_every: 1, ticks_to_row: 0, ..self }
+        let watches = Watches::new(&mut recorder);
+        Self { recorder, watches, record_every: 1, ..self }
     }
 
     /// Tick `k`, which is at `time` (s), but for the mechanics: the loop, then its row. What is recorded together belongs to the same
@@ -97,19 +87,20 @@ impl Axis {
 
     #[inline(always)]
     fn record(&mut self, time: f64) {
+        let Watches { ticks_to_row, limits, joints, alarms, requests } = &mut self.watches;
         let now = &mut self.now;
         let (effort, speed) = (now.effort_reference, now.velocity_reference);
         let cut = PerLimit { voltage: now.voltage.q, current: effort, effort, speed, master: speed };
-        self.limits.tick(time, &now.binds, cut, &mut self.recorder);
-        self.alarms.tick(time, now.alarms, &mut self.recorder);
-        self.requests.tick(time, now.request_kind, &mut self.recorder);
-        self.joints.tick(time, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
-        if self.ticks_to_row == 0 {
-            self.ticks_to_row = self.record_every;
-            now.saturation = self.limits.shares();
+        limits.tick(time, &now.binds, cut, &mut self.recorder);
+        alarms.tick(time, now.alarms, &mut self.recorder);
+        requests.tick(time, now.request_kind, &mut self.recorder);
+        joints.tick(time, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
+        if *ticks_to_row == 0 {
+            *ticks_to_row = self.record_every;
+            now.saturation = limits.shares();
             self.recorder.push_with(|row| write_row(now, row));
         }
-        self.ticks_to_row -= 1;
+        *ticks_to_row -= 1;
     }
 
     /// Moves the mechanics to the next tick.
@@ -139,64 +130,58 @@ impl Axis {
         self.recorder.note_said(source, severity, from, text);
     }
 
-    /// Saves the state at the present tick, which is at `time` (s).
+    /// Writes the axis at the present tick.
     ///
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn save(&mut self, time: f64) -> Result<Saved, MechanicsError> {
-        let mut mechanics = Vec::new();
-        Ok(Saved {
-            state: self.closed_loop.save(&mut mechanics)?,
-            mechanics,
-            external: self.external,
-            now: self.now,
-            ticks_to_row: self.ticks_to_row,
-            limits: self.limits.clone(),
-            joints: self.joints.clone(),
-            alarms: self.alarms.clone(),
-            requests: self.requests.clone(),
-            mark: self.recorder.mark(time),
-        })
-    }
-
-    /// Goes back to the last saved state; what was recorded since is forgotten.
-    ///
-    /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
-        self.closed_loop.restore(&saved.state, &saved.mechanics)?;
-        (self.external, self.now, self.ticks_to_row) = (saved.external, saved.now, saved.ticks_to_row);
-        self.limits.clone_from(&saved.limits);
-        self.joints.clone_from(&saved.joints);
-        self.alarms.clone_from(&saved.alarms);
-        self.requests.clone_from(&saved.requests);
-        self.recorder.rewind(&saved.mark);
+    pub(crate) fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        self.closed_loop.save(to)?;
+        self.external.save(to);
+        self.now.save(to);
+        self.watches.save(to);
         Ok(())
     }
 
-    /// The state of an [unrecorded](Self::unrecorded) axis; `None` where the engine cannot save its mechanics.
-    pub(crate) fn snapshot(&mut self) -> Option<Snapshot> {
-        let mut mechanics = Vec::new();
-        let state = self.closed_loop.save(&mut mechanics).ok()?;
-        Some(Snapshot { state, mechanics, external: self.external, now: self.now })
+    /// Goes back to where [`save`](Self::save) of an axis of the same scenario was called.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this axis.
+    pub(crate) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        self.closed_loop.restore(from)?;
+        self.external.restore(from)?;
+        self.now.restore(from)?;
+        Ok(self.watches.restore(from)?)
     }
 
-    /// Goes back to a snapshot. Whether the engine could.
-    pub(crate) fn go_back(&mut self, snapshot: &Snapshot) -> bool {
-        if self.closed_loop.restore(&snapshot.state, &snapshot.mechanics).is_err() {
-            return false;
-        }
-        (self.external, self.now) = (snapshot.external, snapshot.now);
-        true
+    /// The axis and its recording at the present tick, which is at `time` (s).
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn save_recorded(&mut self, time: f64) -> Result<Saved, MechanicsError> {
+        let mut all = Vec::new();
+        self.save(&mut words(|word| all.push(word)))?;
+        Ok(Saved { words: all, mark: self.recorder.mark(time) })
+    }
+
+    /// Goes back to `saved`; what was recorded since is forgotten.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub(crate) fn restore_recorded(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
+        let mut from = Reader::new(&saved.words);
+        self.restore(&mut from)?;
+        from.end()?;
+        self.recorder.rewind(&saved.mark);
+        Ok(())
     }
 
     /// Ends the mechanics at `present` (s) and gives the recording, which ends at `end` (s); and why it is not all, if it is not.
     pub(crate) fn finish(mut self, present: f64, end: f64) -> (Recording, Option<io::Error>) {
         self.closed_loop.mechanics.end();
         self.note_log(present);
-        self.limits.finish(end, &mut self.recorder);
-        self.alarms.finish(end, &mut self.recorder);
-        self.joints.finish(end, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
+        self.watches.limits.finish(end, &mut self.recorder);
+        self.watches.alarms.finish(end, &mut self.recorder);
+        self.watches.joints.finish(end, self.closed_loop.mechanics.joint_limits(), &mut self.recorder);
         if let Source::Network(network, delay) = &mut self.closed_loop.state.source {
             network.finish(end, *delay, &mut self.recorder);
         }

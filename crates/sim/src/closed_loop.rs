@@ -9,7 +9,7 @@ use crate::network::{Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
 pub(crate) use control::{Control, EncoderInput, Mounting};
-use servobench_base::state::{Reader, words};
+use servobench_base::state::{Reader, Writer};
 use servobench_base::{PowerCommand, Rate, RequestKind, Setpoint, Stateful, Tick};
 use servobench_drive::{Demand, EffortLimits};
 use servobench_plant::{Actuation, BodyState, EndStops, Input, Mechanics, MechanicsError, PowerStage, Switches};
@@ -33,7 +33,7 @@ pub(crate) struct ClosedLoop {
 }
 
 /// What changes from tick to tick, the mechanics apart.
-#[derive(Clone, Stateful)]
+#[derive(Stateful)]
 pub(crate) struct State {
     pub(crate) source: Source,
     /// The tick at which the program began.
@@ -60,7 +60,7 @@ pub(crate) struct Shaft {
 }
 
 /// Where the loops have their demand from.
-#[derive(Clone, Stateful)]
+#[derive(Stateful)]
 #[state(fixed)]
 pub(crate) enum Source {
     /// Every tick has its set-point.
@@ -269,25 +269,21 @@ impl ClosedLoop {
         }
     }
 
-    /// Saves the mechanics as words in `mechanics`, in place of what was there, and gives the rest.
+    /// Writes the loop at the present tick, its mechanics included.
     ///
     /// # Errors
     /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn save(&mut self, mechanics: &mut Vec<u64>) -> Result<State, MechanicsError> {
-        mechanics.clear();
-        self.mechanics.save(&mut words(|word| mechanics.push(word)))?;
-        Ok(self.state.clone())
+    pub(crate) fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        self.state.save(to);
+        self.mechanics.save(to)
     }
 
-    /// Goes back to where [`save`](Self::save) was called.
+    /// Goes back to where [`save`](Self::save) of a loop of the same scenario was called.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
-    pub(crate) fn restore(&mut self, state: &State, mechanics: &[u64]) -> Result<(), MechanicsError> {
-        let mut from = Reader::new(mechanics);
-        self.mechanics.restore(&mut from)?;
-        from.end()?;
-        self.state.clone_from(state);
-        Ok(())
+    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this loop.
+    pub(crate) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        self.state.restore(from)?;
+        self.mechanics.restore(from)
     }
 }

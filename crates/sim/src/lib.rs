@@ -34,5 +34,5 @@ pub use program::Program;
 pub use run::{AxisFailure, Failure, Outcome, Reason};
 pub use speeds::Speeds;
 pub use stability::{Analysis, MasterLoop, NotAnalysed, analyse_stability};
-pub use stepper::{Snapshot, States, Stepper};
+pub use stepper::{States, Stepper};
 pub use thinning::{selected, thinned};

@@ -110,6 +110,7 @@ impl Watch {
             let is_above = cut > 0.0;
             if self.bound_above.replace(is_above).is_some_and(|before| before != is_above)
                 && self.reversals.len() < LimitReversals::MOST
+                && recorder.keeps()
             {
                 self.reversals.push(t);
             }

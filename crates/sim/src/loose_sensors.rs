@@ -5,7 +5,7 @@ use servobench_plant::{BodyState, PowerStage};
 use servobench_signals::Instant;
 
 /// Encoders and current sensors that no firmware reads.
-#[derive(Clone, Stateful)]
+#[derive(Stateful)]
 pub(crate) struct LooseSensors {
     pub(crate) motor_encoder: EncoderInput,
     #[state(fixed)]

@@ -43,7 +43,7 @@ use servobench_trace::Recorder;
 use signals::Signals;
 
 /// From the motion task to the bus interface of the drive.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(crate) struct Network {
     task: MotionTask,
     /// Model of the axis that the motion task feeds forward with.
@@ -95,7 +95,7 @@ pub(crate) struct Network {
 }
 
 /// Parameters, and the state that goes on by them.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 struct Stepped<P, S> {
     #[state(constant)]
     params: P,
@@ -103,7 +103,7 @@ struct Stepped<P, S> {
 }
 
 /// What commands the axis.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 enum MotionTask {
     /// The moves of `[[program]]`.

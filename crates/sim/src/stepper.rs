@@ -1,14 +1,15 @@
 //! The closed loop tick by tick, for somebody else's simulation: what acts on the axis comes from outside, and it can go back.
-use crate::axis::{Axis, Snapshot as AxisSnapshot};
+use crate::axis::Axis;
 use crate::bench::{Bench, Loop};
 use crate::closed_loop::Source;
 use crate::external::External;
 use crate::machine::Machine;
 use crate::run::Failure;
+use servobench_base::state::{Reader, Writer};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::PowerState;
 use servobench_fieldbus::Fault;
-use servobench_plant::BodyState;
+use servobench_plant::{BodyState, MechanicsError};
 use servobench_plcopen::AxisState;
 use servobench_signals::{Selection, Signal};
 use servobench_trace::ChannelSpec;
@@ -30,12 +31,6 @@ pub struct States {
 pub struct Stepper {
     machine: Machine<[Axis; 1]>,
     selection: Selection,
-}
-
-/// A closed loop at a tick, to go back to.
-pub struct Snapshot {
-    tick: Tick,
-    axis: AxisSnapshot,
 }
 
 impl Bench {
@@ -127,16 +122,24 @@ impl Stepper {
         Ok(())
     }
 
-    /// Where the loop is now; `None` where the engine cannot save its mechanics.
-    #[must_use]
-    pub fn snapshot(&mut self) -> Option<Snapshot> {
-        Some(Snapshot { tick: self.tick(), axis: self.axis_mut().snapshot()? })
+    /// Writes the loop at the present tick.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot.
+    pub fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        to.word(self.tick().0);
+        self.axis_mut().save(to)
     }
 
-    /// Goes back to `snapshot`, which may be of another stepper of the same scenario.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
-        if self.axis_mut().go_back(&snapshot.axis) {
-            self.machine.go_back(snapshot.tick);
-        }
+    /// Goes back to where [`save`](Self::save) of a stepper of the same scenario was called.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this loop. Then it must not be stepped, but may go
+    /// back to another state.
+    pub fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        let tick = Tick(from.word()?);
+        self.axis_mut().restore(from)?;
+        self.machine.go_back(tick);
+        Ok(())
     }
 }

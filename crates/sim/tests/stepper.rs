@@ -3,6 +3,7 @@ mod ball_screw;
 
 use ball_screw::{AXIS, BLOCKS, BUS, MOVE};
 use servobench_base::Setpoint;
+use servobench_base::state::{Reader, words};
 use servobench_plant::Exact;
 use servobench_scenario as scenario;
 use servobench_sim::{Bench, External, Outcome, Program, Stepper};
@@ -75,13 +76,16 @@ fn it_goes_back_to_where_it_was_as_often_as_asked() {
     for (what, text) in [("direct", format!("{AXIS}{MOVE}")), ("by function blocks", format!("{AXIS}{BUS}{BLOCKS}"))] {
         let mut stepper = bench(&text).into_stepper();
         stepped(&mut stepper, 1_500, |_| External::default());
-        let snapshot = stepper.snapshot().unwrap_or_else(|| panic!("the exact engine can be copied"));
+        let mut saved = Vec::new();
+        stepper.save(&mut words(|word| saved.push(word))).unwrap();
         let states = stepper.states();
         let pushed = |_| External { load_effort: 30.0, ..External::default() };
         let disturbed = stepped(&mut stepper, 800, pushed);
         let mut other = bench(&text).into_stepper();
         for stepper in [&mut stepper, &mut other] {
-            stepper.restore(&snapshot);
+            let mut from = Reader::new(&saved);
+            stepper.restore(&mut from).unwrap();
+            from.end().unwrap();
             assert_eq!((stepper.tick().0, stepper.states()), (1_500, states), "{what}");
             assert_eq!(stepped(stepper, 800, pushed), disturbed, "{what}");
         }

@@ -98,6 +98,12 @@ impl Recorder {
         Self { is_silent: true, ..Self::new(about, rate, vec![], 0) }
     }
 
+    /// False where nothing is kept.
+    #[must_use]
+    pub const fn keeps(&self) -> bool {
+        !self.is_silent
+    }
+
     /// Appends a row.
     ///
     /// # Panics

@@ -24,7 +24,7 @@ pub trait Listener {
 }
 
 /// The calls of a program, and the axis that they command.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub struct Executor {
     axis: Axis,
     #[state(fixed)]

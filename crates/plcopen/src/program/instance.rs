@@ -15,14 +15,6 @@ pub(crate) trait Instance: fmt::Debug + Stateful + Send + Sync {
     fn step(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool, values: &mut [f64]);
     /// What its error is.
     fn error(&self) -> Option<&BlockError>;
-    /// The same block in the same state.
-    fn copy(&self) -> Box<dyn Instance>;
-}
-
-impl Clone for Box<dyn Instance> {
-    fn clone(&self) -> Self {
-        self.copy()
-    }
 }
 
 impl Stateful for Box<dyn Instance> {
@@ -48,17 +40,15 @@ impl<B: FunctionBlock + Default> New for B {
 }
 
 /// A new instance of block `B`.
-pub(crate) fn called<B: New + Clone + Stateful + fmt::Debug + Send + Sync + 'static>(
-    inputs: &Inputs,
-) -> Box<dyn Instance> {
+pub(crate) fn called<B: New + Stateful + fmt::Debug + Send + Sync + 'static>(inputs: &Inputs) -> Box<dyn Instance> {
     Box::new(Called(B::new_for(inputs)))
 }
 
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 struct Called<B>(B);
 
-impl<B: FunctionBlock + Clone + Stateful + fmt::Debug + Send + Sync + 'static> Instance for Called<B> {
+impl<B: FunctionBlock + Stateful + fmt::Debug + Send + Sync + 'static> Instance for Called<B> {
     fn step(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool, values: &mut [f64]) {
         let outputs = self.0.step(axis, &B::Inputs::read(inputs, trigger));
         let mut places = values.iter_mut();
@@ -71,9 +61,5 @@ impl<B: FunctionBlock + Clone + Stateful + fmt::Debug + Send + Sync + 'static> I
 
     fn error(&self) -> Option<&BlockError> {
         self.0.error()
-    }
-
-    fn copy(&self) -> Box<dyn Instance> {
-        Box::new(self.clone())
     }
 }

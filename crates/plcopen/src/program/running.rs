@@ -64,7 +64,7 @@ pub struct Overdue {
 
 /// A call in a run.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state that a cycle asks for, and they are independent")]
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct RunningCall {
     /// Where it stands in the program.
     #[state(constant)]

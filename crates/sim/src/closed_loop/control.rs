@@ -10,7 +10,7 @@ use servobench_plant::{self as plant, BodyState, EncoderState, PowerStage, Readi
 use servobench_signals::{Instant, PerLimit};
 
 /// The firmware and the sensors it is wired to.
-#[derive(Clone, Stateful)]
+#[derive(Stateful)]
 pub(crate) struct Control {
     #[state(constant)]
     pub(crate) params: drive::Params,
@@ -22,7 +22,7 @@ pub(crate) struct Control {
 }
 
 /// An encoder, and how the drive counts it on where it begins again.
-#[derive(Clone, Stateful)]
+#[derive(Stateful)]
 pub(crate) struct EncoderInput {
     pub(crate) encoder: EncoderState,
     #[state(fixed)]

@@ -121,14 +121,14 @@ impl AxisBlock {
     fn save(&mut self) -> Result<(), MechanicsError> {
         let (next, time) = (self.machine.next(), self.machine.time());
         let [axis] = &mut self.machine.axes;
-        self.saved = Some((next, axis.save(time)?));
+        self.saved = Some((next, axis.save_recorded(time)?));
         Ok(())
     }
 
     fn restore(&mut self) -> Result<(), MechanicsError> {
         let Some((tick, saved)) = &self.saved else { return Err(MechanicsError::NotSaved) };
         let [axis] = &mut self.machine.axes;
-        axis.restore(saved)?;
+        axis.restore_recorded(saved)?;
         self.machine.go_back(*tick);
         Ok(())
     }

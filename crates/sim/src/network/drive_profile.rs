@@ -20,7 +20,7 @@ use servobench_trace::Recorder;
 const ROUNDING: f64 = 1e-9;
 
 /// A program of ways under way.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct DriveProfile {
     moves: ProgramCursor,
     orders: Orders,
@@ -33,7 +33,7 @@ pub(super) struct DriveProfile {
 }
 
 /// What is sent.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 enum Orders {
     /// Set-points: when, where to, and the largest velocity and acceleration.

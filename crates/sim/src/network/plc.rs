@@ -12,7 +12,7 @@ use servobench_scenario as scenario;
 use servobench_trace::{self as trace, CallFate, Event, Move, Recorder, SignalId};
 
 /// A program of function blocks and the axis that they command.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct Plc {
     executor: Executor,
     #[state(constant)]

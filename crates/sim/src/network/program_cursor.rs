@@ -5,7 +5,7 @@ use servobench_fieldbus::{AxisFeedback, Power};
 use servobench_trace::Move;
 
 /// A program, and how far it is.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct ProgramCursor {
     program: Program,
     /// Cycle of the motion task (s).

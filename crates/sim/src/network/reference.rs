@@ -14,7 +14,7 @@ const PREDICTED: f64 = 2.0;
 const ROUNDING: f64 = 5e-10;
 
 /// What the motion task will ask for, where that is known beforehand.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 struct Known {
     program: Program,
@@ -23,7 +23,7 @@ struct Known {
 }
 
 /// The set-points of the motion task and the way between them.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct DelayedReference {
     /// Time from one set-point to the next (s), when nothing goes wrong.
     #[state(constant)]

@@ -16,7 +16,7 @@ const MISSED: f64 = 3.0;
 const ROUNDING: f64 = 5e-10;
 
 /// Requests on their way to the loops.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) enum Requests {
     /// Those of a program that began at some time (s), `delay` seconds later.
@@ -33,7 +33,7 @@ pub(super) enum Requests {
 }
 
 /// The way that a program asks for.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) enum Course {
     /// That of its moves.
@@ -54,7 +54,7 @@ pub(super) struct Running {
 }
 
 /// A request per cycle.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct Cycles {
     /// From one cycle to the next (s).
     #[state(constant)]

@@ -8,7 +8,7 @@ use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};
 
 /// A state of which only the changes are noted.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct Watched<T> {
     #[state(constant)]
     id: SignalId,
@@ -52,7 +52,7 @@ fn latched(errors: u32) -> String {
 }
 
 /// What there is to say of drive and link.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) struct Signals {
     power: Watched<PowerState>,

@@ -4,7 +4,7 @@ use crate::program::Program;
 use servobench_base::{Request, Stateful};
 
 /// A program, each of whose moves begins later.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Stateful)]
 pub(super) struct Tables {
     program: Program,
     #[state(constant)]

@@ -167,8 +167,8 @@ mod tests {
 
     #[test]
     fn a_build_dependency_counts() {
-        let arrows = [("servobench-base", "servobench-plant", Some("build"))];
-        let found = findings(&metadata(&["servobench-base", "servobench-plant"], &[], &arrows));
+        let arrows = [("servobench-files", "servobench-plant", Some("build"))];
+        let found = findings(&metadata(&["servobench-files", "servobench-plant"], &[], &arrows));
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].ends_with("allowed: none"), "{found:?}");
     }

@@ -4,6 +4,7 @@ use crate::ffi::host::{Messages, Room, recording};
 use crate::interface::{Kind, Role};
 use crate::part::Part;
 use servobench_config::Choice as _;
+use servobench_testkit::Random;
 use std::ptr;
 
 /// Base rate of the demo (Hz).
@@ -220,10 +221,24 @@ fn a_saved_state_goes_on_to_the_bit_and_so_do_its_bytes() {
             }
             assert_eq!(fmi2SetFMUstate(other.c, copy), Status::OK);
             assert!(go(&other) == expected, "{part:?}: from the bytes");
-            for (wrong, why) in [(&bytes[..size - 8], "end too early"), (&bytes[1..], "of another FMU")] {
+            let longer: Vec<c_char> = bytes.iter().copied().chain([0; 8]).collect();
+            for (wrong, why) in [
+                (&bytes[..size - 8], "end too early"),
+                (&bytes[..size - 3], "end too early"),
+                (&longer[..], "go on after its end"),
+                (&bytes[1..], "of another FMU"),
+            ] {
                 let mut none = ptr::null_mut();
                 assert_eq!(fmi2DeSerializeFMUstate(other.c, wrong.as_ptr(), wrong.len(), &raw mut none), Status::ERROR);
                 assert!(other.said().contains(why) && none.is_null());
+            }
+            // One damaged byte, in a thousand places.
+            let mut random = Random::seeded(40);
+            for _ in 0..1_000 {
+                let (mut damaged, mut none) = (bytes.clone(), ptr::null_mut());
+                damaged[random.index(size)] ^= 1 << random.index(8);
+                assert_eq!(fmi2DeSerializeFMUstate(other.c, damaged.as_ptr(), size, &raw mut none), Status::ERROR);
+                assert!(none.is_null());
             }
             assert_eq!(fmi2FreeFMUstate(one.c, &raw mut state), Status::OK);
             assert_eq!(fmi2FreeFMUstate(one.c, &raw mut copy), Status::OK);
