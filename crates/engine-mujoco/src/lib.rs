@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | chain moved by efforts | RK4, efforts held over the tick | fourth |
 //! | chain behind a prescribed base | the base is the frame of reference (`base.rs`) | fourth without damping, else second |
-//! | dry friction | see [`servobench_plant::Friction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
+//! | dry friction | see [`servobench_plant::GroundFriction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
 //! | a user's MJCF | the integrator of the file | as `MuJoCo` documents it |
 //!
 //! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain that it

@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | chain moved by efforts | a sliding body for each lump (`lumps.rs`); half kick – drift – half kick, the drift Rapier's | second, damped or not |
 //! | chain behind a prescribed base | the links see the base at both ends of the tick | second |
-//! | dry friction of a chain | see [`servobench_plant::Friction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
+//! | dry friction of a chain | see [`servobench_plant::GroundFriction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
 //! | a user's MJCF | a multibody of joints (`linkage.rs`), efforts as in a chain | second; Coriolis forces of hinges on hinges first |
 //!
 //! A mode of ω rings too fast by the factor 1 + (ω·h)²/24 (84 Hz at 16 kHz: 5e-5; 1 kHz: 6e-3) and keeps its amplitude:

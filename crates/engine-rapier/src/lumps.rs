@@ -148,7 +148,9 @@ impl Stateful for Lumps {
 impl<const N: usize> Stateful for Positions<N> {
     fn save(&self, to: &mut dyn Writer) {
         let Self { centre, from_centre } = self;
-        centre.iter().for_each(|centre| to.word(centre.to_bits()));
+        for centre in centre {
+            to.word(centre.to_bits());
+        }
         from_centre.save(to);
     }
 

@@ -53,7 +53,7 @@ pub struct DryFriction {
 
 /// What the friction of a body remembers from tick to tick: nothing, its force follows from velocity and effort.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
-pub(crate) struct Memory;
+pub(crate) struct Memory {}
 
 /// What friction does to a body during one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,7 +118,7 @@ impl Friction {
     /// to rest within the tick; its velocity is then to be set to zero.
     #[inline(always)]
     pub(crate) fn settle(&self, _memory: &mut Memory, before: f64, after: f64, _step: f64) -> bool {
-        before * after < 0.0
+        self.holds() && before * after < 0.0
     }
 
     /// Magnitude of all but the linear part while the body slides with `velocity` (N or N·m).
@@ -227,14 +227,14 @@ mod tests {
 
     #[test]
     fn a_body_at_rest_is_held_until_the_breakaway_force() {
-        assert_eq!(DRY.grip(&Memory, 0.0, 3.0, 1e-3), Grip::Held);
-        assert_eq!(DRY.grip(&Memory, 0.0, -3.1, 1e-3), Grip::Force(3.0));
+        assert_eq!(DRY.grip(&Memory::default(), 0.0, 3.0, 1e-3), Grip::Held);
+        assert_eq!(DRY.grip(&Memory::default(), 0.0, -3.1, 1e-3), Grip::Force(3.0));
     }
 
     #[test]
     fn friction_never_reverses_a_motion() {
-        assert!(DRY.settle(&mut Memory, 0.1, -0.2, 1e-3));
-        assert!(!DRY.settle(&mut Memory, 0.0, 0.2, 1e-3), "a body that broke away goes on");
+        assert!(DRY.settle(&mut Memory::default(), 0.1, -0.2, 1e-3));
+        assert!(!DRY.settle(&mut Memory::default(), 0.0, 0.2, 1e-3), "a body that broke away goes on");
     }
 
     #[test]

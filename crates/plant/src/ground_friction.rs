@@ -67,11 +67,11 @@ impl<const N: usize> GroundFriction<N> {
     #[inline(always)]
     pub fn before_tick(&mut self, velocities: [f64; N], efforts: [f64; N]) -> Grips<N> {
         let mut grips = Grips { held: 0, forces: [0.0; N] };
-        for i in 0..N {
+        for (i, (law, memory)) in self.laws.iter().zip(&self.memories).enumerate() {
             if self.felt & (1 << i) == 0 {
                 continue;
             }
-            match self.laws[i].grip(&self.memories[i], velocities[i], efforts[i], self.step) {
+            match law.grip(memory, velocities[i], efforts[i], self.step) {
                 Grip::Held => grips.held |= 1 << i,
                 Grip::Force(force) => grips.forces[i] = force,
             }
@@ -85,10 +85,8 @@ impl<const N: usize> GroundFriction<N> {
     #[must_use]
     pub fn after_tick(&mut self, velocities: [f64; N]) -> usize {
         let mut at_rest = 0;
-        for i in 0..N {
-            if self.felt & (1 << i) != 0
-                && self.laws[i].settle(&mut self.memories[i], self.before[i], velocities[i], self.step)
-            {
+        for (i, (law, memory)) in self.laws.iter().zip(&mut self.memories).enumerate() {
+            if self.felt & (1 << i) != 0 && law.settle(memory, self.before[i], velocities[i], self.step) {
                 at_rest |= 1 << i;
             }
         }
