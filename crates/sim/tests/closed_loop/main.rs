@@ -1,0 +1,24 @@
+//! The closed loop of scenarios: programs, buses, drives, sensors and FMUs beside it.
+mod ball_screw;
+mod bus;
+mod coupled;
+mod coupling;
+mod diverging;
+mod drive_profile;
+mod ending;
+mod function_blocks;
+mod handover;
+mod hardware_firmware;
+mod multi_axis;
+mod network;
+mod objections;
+mod plc;
+mod position_profiles;
+mod power;
+mod program;
+mod rig;
+mod said;
+mod sensors;
+mod stepper;
+mod switches;
+mod units;
