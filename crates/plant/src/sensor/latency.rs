@@ -3,22 +3,37 @@
 //! Between two ticks the position is the cubic of Hermite through both positions and velocities: of fourth order in the tick, and
 //! exact under constant acceleration and constant jerk. Before the first tick the body is taken to have moved as it moves then.
 use crate::mechanics::BodyState;
-use servobench_base::Stateful;
+use servobench_base::state::{Damaged, Reader, Stateful, Value as _, Writer};
 
 /// The last states of a body: all that a snapshot must hold.
-#[derive(Debug, Clone, Stateful)]
+#[derive(Debug, Clone)]
 pub(super) struct Past {
     /// From the oldest on, in a ring.
     states: Vec<BodyState>,
     newest: usize,
     is_begun: bool,
     /// Whole ticks, and share of a tick, that it looks back.
-    #[state(constant)]
     ticks: usize,
-    #[state(constant)]
     share: f64,
-    #[state(constant)]
     h: f64,
+}
+
+/// Saved from the newest on: a number of the state is then as old at each tick.
+impl Stateful for Past {
+    fn save(&self, to: &mut dyn Writer) {
+        let Self { states, newest, is_begun, ticks: _, share: _, h: _ } = self;
+        is_begun.save(to);
+        let count = states.len();
+        for age in 0..count {
+            states[(newest + count - age) % count].save(to);
+        }
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        (self.is_begun, self.newest) = (bool::restored(from)?, 0);
+        let count = self.states.len();
+        (0..count).try_for_each(|age| self.states[(count - age) % count].restore(from))
+    }
 }
 
 impl Past {
