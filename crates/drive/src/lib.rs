@@ -15,6 +15,7 @@ mod estimate;
 pub mod feedforward;
 pub mod filter;
 mod firmware;
+mod linearised;
 pub mod measurement;
 pub mod modes;
 pub mod overload;

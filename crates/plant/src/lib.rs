@@ -14,6 +14,7 @@ mod ground_friction;
 mod identity;
 mod integration;
 pub mod inverter;
+mod linearised;
 mod load_coordinate;
 mod mechanics;
 mod mjcf;
