@@ -104,6 +104,15 @@ impl Program {
         Ok(program)
     }
 
+    /// One without moves.
+    pub(crate) fn standing() -> Self {
+        let (index, start, from, next_start) = (0, 0.0, 0.0, f64::INFINITY);
+        let (plan_end, then, reader) = (f64::NEG_INFINITY, RequestKind::Stand, Reader::default());
+        let now = Now { index, start, from, next_start, plan_end, then, reader };
+        let course = Course { moves: Vec::new(), now };
+        Self { course, end: 0.0, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) }
+    }
+
     /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start, and moves that are no table as `points`.
     fn plan(steps: &[Step], cycle: Option<CommandCycle>, points: Option<PointTimes>) -> Result<Self, BuildError> {
         let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());

@@ -2,6 +2,7 @@
 use crate::bench::plant;
 use crate::coupled;
 use crate::error::BuildError;
+use crate::linear::{AtRest, WiredSensors};
 use crate::speeds::Speeds;
 use servobench_base::Dq;
 use servobench_drive::Stage;
@@ -133,18 +134,19 @@ impl Display for NotAnalysed {
 /// # Errors
 /// [`BuildError`] says which part of the scenario cannot be built.
 pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Speeds>) -> Result<Analysis, BuildError> {
-    let (model, mut without) = match linear_loop(scenario)? {
+    let (model, sensors, mut without) = match linear_loop(scenario)? {
         Ok(found) => found,
         Err(why) => return Ok(Analysis::NotPossible(why)),
     };
     let failed = |error| Ok(Analysis::NotPossible(NotAnalysed::Failed(error)));
-    let mut report = match stability::analyse(&model, depth) {
+    let running = || AtRest::new(&model, &sensors).map(Box::new);
+    let mut report = match stability::analyse_running(&model, running()?, depth) {
         Ok(report) => Box::new(report),
         Err(error) => return failed(error),
     };
     if report.is_stable() {
         let stays = |range| speeds.map_or(f64::INFINITY, |speeds| speeds.longest_within(&range));
-        match stability::analyse_schedule(&model, stays) {
+        match stability::analyse_schedule_running(&model, running()?, stays) {
             Ok(found) if speeds.is_some() => report.instability = found,
             Ok(found) => without.extend(found.map(|found| NotAnalysed::GainSchedule(Box::new(found)))),
             Err(error) => return failed(error),
@@ -152,6 +154,19 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
     }
     let master = scenario.bus.as_ref().and_then(|bus| master_loop(scenario, bus, &model));
     Ok(Analysis::Done { report, master, without })
+}
+
+/// The same without `speeds`, of the equations that are written out.
+///
+/// # Errors
+/// [`BuildError`] says which part of the scenario cannot be built.
+#[doc(hidden)]
+pub fn analyse_typed(
+    scenario: &Scenario,
+    depth: Depth,
+) -> Result<Result<Report, stability::StabilityError>, BuildError> {
+    let Ok((model, ..)) = linear_loop(scenario)? else { unreachable!("asked for a loop") };
+    Ok(stability::analyse(&model, depth))
 }
 
 /// The position loop that the master closes over `bus`, if it does.
@@ -171,7 +186,7 @@ fn master_loop(scenario: &Scenario, bus: &Bus, model: &Loop) -> Option<MasterLoo
     Some(MasterLoop { gain: gains.gain, largest: master.largest_gain(model) })
 }
 
-type Found = Result<(Loop, Vec<NotAnalysed>), NotAnalysed>;
+type Found = Result<(Loop, WiredSensors, Vec<NotAnalysed>), NotAnalysed>;
 
 /// The linear loop of `scenario`, and what of it is not in that; or why there is none.
 fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
@@ -185,8 +200,18 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     };
     let (drive, source, encoder) = match &scenario.actuator {
         Actuator::Prescribed | Actuator::Off(_) => return Ok(Err(NotAnalysed::NoDrive)),
-        Actuator::Pmsm { motor, encoder, drive, .. } => (drive, Source::Pmsm(*motor), encoder),
+        Actuator::Pmsm { motor, effects, encoder, drive, .. } => {
+            (drive, Source::Pmsm(effects.linearised(motor)), encoder)
+        }
         Actuator::IdealSource { source, encoder, drive } => (drive, Source::Ideal { gain: source.gain }, encoder),
+    };
+    let wired = WiredSensors {
+        motor: *encoder,
+        load: match drive.position_feedback {
+            Feedback::Motor => None,
+            Feedback::Load(encoder) => Some(encoder),
+        },
+        current: drive.current_sensor,
     };
     let bus = scenario.bus.as_ref();
     let closes_position = bus.is_none_or(|bus| !matches!(bus.mode, BusMode::CyclicVelocity | BusMode::ProfileVelocity));
@@ -214,7 +239,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     let is_wrong = matches!(&scenario.actuator, Actuator::Pmsm { wiring, .. } if !wiring.is_right());
     let left_out = [(acts, NotAnalysed::Fmus), (turns, NotAnalysed::Commutation), (is_wrong, NotAnalysed::Wiring)];
     let without = left_out.into_iter().filter_map(|(is_left_out, what)| is_left_out.then_some(what)).collect();
-    Ok(Ok((model, without)))
+    Ok(Ok((model, wired, without)))
 }
 
 /// The drive where it is linearised: without effort, with the d-axis current that it holds then. Where motor or estimate has no magnets,

@@ -4,17 +4,18 @@
 //! the velocity loop with the position loop open, the position loop; the first that is unstable.
 use crate::boundary;
 use crate::eigen::{self, Block, Eigenvalue};
+use crate::equations::{Derived, Equations};
 use crate::error::StabilityError;
 use crate::model::{Loop, Source};
 use crate::period::Period;
 use crate::pole::Pole;
 use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report};
-use crate::state::CURRENT;
-use crate::tick::{Closed, Factors, Tick};
+use crate::tick::{Closed, Tick};
 use nalgebra::Complex;
 use servobench_base::Coordinate;
 use servobench_base::Dq;
 use servobench_drive::Stage;
+use servobench_linear::{Factors, Running};
 use std::f64::consts::TAU;
 
 /// How much is asked for.
@@ -32,13 +33,30 @@ pub enum Depth {
 /// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
 pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
     model.check()?;
-    let mut analysis = Analysis::new(model);
+    report(model, Analysis::new(model), depth)
+}
+
+/// Analyses the loop that is `running`, of which `model` says what it is.
+///
+/// # Errors
+/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
+pub fn analyse_running<'a>(
+    model: &'a Loop,
+    running: Box<dyn Running + 'a>,
+    depth: Depth,
+) -> Result<Report, StabilityError> {
+    model.check()?;
+    report(model, Analysis::running(model, running)?, depth)
+}
+
+fn report<'a>(model: &'a Loop, mut analysis: Analysis<'a>, depth: Depth) -> Result<Report, StabilityError> {
     let poles = analysis.poles(analysis.whole())?;
-    let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(model, &eigenvalue));
+    let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(&analysis.equations, &eigenvalue));
     let is_unstable = unstable.is_some();
-    let largest = unstable.or_else(|| poles.largest(model));
-    let slowest_oscillating = poles.slowest(model, |pole| pole.im != 0.0 || pole.re < 0.0, Pole::oscillates);
-    let slowest_real = poles.slowest(model, |pole| pole.im == 0.0 && pole.re > 0.0, |_| true);
+    let largest = unstable.or_else(|| poles.largest(&analysis.equations));
+    let slowest_oscillating =
+        poles.slowest(&analysis.equations, |pole| pole.im != 0.0 || pole.re < 0.0, Pole::oscillates);
+    let slowest_real = poles.slowest(&analysis.equations, |pole| pole.im == 0.0 && pole.re > 0.0, |_| true);
     let instability = match unstable {
         Some(pole) => Some(analysis.instability(pole)?),
         None => None,
@@ -61,10 +79,10 @@ pub(crate) struct Poles {
 }
 
 impl Poles {
-    pub(crate) fn new(tick: &Tick) -> Result<Self, StabilityError> {
-        let period = Period::new(tick)?;
+    pub(crate) fn new(equations: &mut Equations) -> Result<Self, StabilityError> {
+        let period = Period::new(equations)?;
         let blocks = eigen::blocks(&period)?;
-        let values = candidates(tick, &blocks);
+        let values = candidates(equations, &blocks);
         Ok(Self { period, blocks, values })
     }
 
@@ -82,15 +100,15 @@ impl Poles {
             .find(|eigenvalue| eigenvalue.value.norm() - 1.0 > eigenvalue.bound)
     }
 
-    fn largest(&self, model: &Loop) -> Option<Pole> {
+    fn largest(&self, equations: &Equations) -> Option<Pole> {
         let largest = self.values.iter().max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
-        Some(self.in_seconds(model, &self.refined(*largest)))
+        Some(self.in_seconds(equations, &self.refined(*largest)))
     }
 
     /// The pole that fades last among those of this kind; `is_kind` sees the pole over a period, `is_wanted` the pole in seconds.
     fn slowest(
         &self,
-        model: &Loop,
+        equations: &Equations,
         is_kind: impl Fn(Complex<f64>) -> bool,
         is_wanted: impl Fn(&Pole) -> bool,
     ) -> Option<Pole> {
@@ -98,11 +116,11 @@ impl Poles {
         let of_kind = |value: Complex<f64>| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt() && is_kind(value);
         let mut found: Vec<_> = self.values.iter().copied().filter(|(_, value)| of_kind(*value)).collect();
         found.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
-        found.into_iter().map(|pole| self.in_seconds(model, &self.refined(pole))).find(is_wanted)
+        found.into_iter().map(|pole| self.in_seconds(equations, &self.refined(pole))).find(is_wanted)
     }
 
-    fn in_seconds(&self, model: &Loop, eigenvalue: &Eigenvalue) -> Pole {
-        Pole::new(&self.period, model, eigenvalue)
+    fn in_seconds(&self, equations: &Equations, eigenvalue: &Eigenvalue) -> Pole {
+        Pole::new(&self.period, equations, eigenvalue)
     }
 
     /// Largest magnitude in a block that holds the state `index`.
@@ -113,12 +131,12 @@ impl Poles {
 }
 
 /// The poles of all loops but the one that is known to be at 1.
-fn candidates(tick: &Tick, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
+fn candidates(equations: &Equations, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
     let of_block =
         |(index, block): (usize, &Block)| block.eigenvalues.iter().map(|value| (index, *value)).collect::<Vec<_>>();
     let mut all: Vec<_> = blocks.iter().enumerate().flat_map(of_block).collect();
-    if tick.turns_freely() {
-        let turns = |block: usize| blocks[block].states.contains(&tick.motor_velocity());
+    if let Some(motor) = equations.motor_velocity().filter(|_| equations.turns_freely()) {
+        let turns = |block: usize| blocks[block].states.contains(&motor);
         let to_one = |&(_, (_, value)): &(usize, (usize, Complex<f64>))| (value - 1.0).norm();
         let nearest = all
             .iter()
@@ -136,7 +154,7 @@ fn candidates(tick: &Tick, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
 /// A loop under analysis, with the gains of a speed of the drive's schedule.
 pub(crate) struct Analysis<'a> {
     model: &'a Loop,
-    tick: Tick<'a>,
+    equations: Equations<'a>,
     /// Factors on position and velocity gain, and the speed that has them (motor coordinate); `None` at standstill.
     scheduled: ((f64, f64), Option<f64>),
 }
@@ -144,12 +162,18 @@ pub(crate) struct Analysis<'a> {
 impl<'a> Analysis<'a> {
     /// At standstill.
     pub(crate) fn new(model: &'a Loop) -> Self {
-        Self { model, tick: Tick::new(model), scheduled: ((1.0, 1.0), None) }
+        Self { model, equations: Equations::Typed(Tick::new(model)), scheduled: ((1.0, 1.0), None) }
+    }
+
+    /// At standstill, of the loop that is `running`.
+    pub(crate) fn running(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
+        let equations = Equations::Derived(Box::new(Derived::new(model, running)?));
+        Ok(Self { model, equations, scheduled: ((1.0, 1.0), None) })
     }
 
     fn schedule(&mut self, factors: (f64, f64), speed: Option<f64>) {
         self.scheduled = (factors, speed);
-        self.tick.schedule(factors);
+        self.equations.schedule(factors);
     }
 
     /// The fastest growing pole of the whole loop with its gains by `factors`.
@@ -186,13 +210,13 @@ impl<'a> Analysis<'a> {
     }
 
     fn poles(&mut self, closed: Closed) -> Result<Poles, StabilityError> {
-        self.tick.with(closed, Factors::ONE);
-        Poles::new(&self.tick)
+        self.equations.with(closed, Factors::ONE);
+        Poles::new(&mut self.equations)
     }
 
     fn unstable(&mut self, closed: Closed) -> Result<Option<Pole>, StabilityError> {
         let poles = self.poles(closed)?;
-        Ok(poles.outside().map(|eigenvalue| poles.in_seconds(self.model, &eigenvalue)))
+        Ok(poles.outside().map(|eigenvalue| poles.in_seconds(&self.equations, &eigenvalue)))
     }
 
     /// Why the whole loop, whose largest pole is `pole`, is unstable.
@@ -230,7 +254,7 @@ impl<'a> Analysis<'a> {
 
     fn boundaries(&mut self, closed: Closed, gain_name: GainName, is_unstable: bool) -> Boundaries {
         let (gain, _) = self.gain(gain_name);
-        let [below, above] = boundary::nearest(&mut self.tick, closed, gain_name, is_unstable)
+        let [below, above] = boundary::nearest(&mut self.equations, closed, gain_name, is_unstable)
             .map(|factor| factor.map(|factor| Boundary { factor, gain: factor * gain }));
         Boundaries { below, above, alone: false }
     }
@@ -241,7 +265,7 @@ impl<'a> Analysis<'a> {
             return Ok(GainName::CurrentBandwidth);
         }
         let poles = self.poles(self.alone(LoopName::Current))?;
-        let [d, q] = [CURRENT, CURRENT + 1].map(|axis| poles.largest_with(axis));
+        let [d, q] = self.equations.currents().map(|axis| axis.map_or(0.0, |axis| poles.largest_with(axis)));
         Ok(if d > q { GainName::CurrentD } else { GainName::CurrentQ })
     }
 
@@ -312,7 +336,7 @@ impl<'a> Analysis<'a> {
             .iter()
             // A pole at the origin is a delay.
             .filter(|(_, value)| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt())
-            .map(|pole| all.in_seconds(self.model, &all.refined(*pole)));
-        Ok(poles.min_by(|a, b| a.damping().total_cmp(&b.damping())))
+            .map(|pole| all.in_seconds(&self.equations, &all.refined(*pole)));
+        Ok(poles.min_by(|a, b| a.damping().total_cmp(&b.damping()).then(b.magnitude.total_cmp(&a.magnitude))))
     }
 }

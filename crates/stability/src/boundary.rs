@@ -6,8 +6,9 @@
 //! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
 //! back within a step, in which it would have gone half of the way.
 use crate::analyse::Poles;
+use crate::equations::Equations;
 use crate::report::GainName;
-use crate::tick::{Closed, Tick};
+use crate::tick::Closed;
 
 /// Gains are scanned to this factor and its reciprocal.
 pub(crate) const REACH: f64 = 1_000.0;
@@ -27,13 +28,18 @@ const DELAY: f64 = 0.3;
 
 /// The nearest factors on the gain `name` at which the verdict on the loops `closed` changes from `is_unstable`: downwards and
 /// upwards.
-pub(crate) fn nearest(tick: &mut Tick, closed: Closed, name: GainName, is_unstable: bool) -> [Option<f64>; 2] {
-    let mut scan = Scan { tick, closed, name, is_unstable };
+pub(crate) fn nearest(
+    equations: &mut Equations,
+    closed: Closed,
+    name: GainName,
+    is_unstable: bool,
+) -> [Option<f64>; 2] {
+    let mut scan = Scan { equations, closed, name, is_unstable };
     [-1.0, 1.0].map(|sign| scan.nearest(sign).map(f64::exp))
 }
 
 struct Scan<'a, 'b> {
-    tick: &'a mut Tick<'b>,
+    equations: &'a mut Equations<'b>,
     closed: Closed,
     name: GainName,
     is_unstable: bool,
@@ -57,8 +63,8 @@ impl Scan<'_, '_> {
 
     /// The poles with the gain by e to the power of `exponent`; `None` where the loop grows beyond all numbers within a period.
     fn poles(&mut self, exponent: f64) -> Option<Poles> {
-        self.tick.with(self.closed, self.name.factors(exponent.exp()));
-        Poles::new(self.tick).ok()
+        self.equations.with(self.closed, self.name.factors(exponent.exp()));
+        Poles::new(self.equations).ok()
     }
 
     /// Whether the verdict is another one.

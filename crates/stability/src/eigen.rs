@@ -81,7 +81,7 @@ impl Block {
 
         let mut moved = 0.0;
         let rounding = ROUNDING * size as f64;
-        for ((matrix, state), row) in period.matrices().zip(&states).zip(&rows[1..]) {
+        for ((matrix, state), row) in period.magnitudes().zip(&states).zip(&rows[1..]) {
             for (column, state) in matrix.column_iter().zip(state.iter()) {
                 let through: f64 = column.iter().zip(row.iter()).map(|(entry, row)| entry.abs() * row.norm()).sum();
                 moved += rounding * through * state.norm();

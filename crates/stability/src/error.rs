@@ -3,7 +3,7 @@ use servobench_base::ParamError;
 use thiserror::Error;
 
 /// Why a loop could not be analysed.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 pub enum StabilityError {
     /// A parameter is out of its bound.
     #[error(transparent)]
@@ -11,6 +11,9 @@ pub enum StabilityError {
     /// A parameter of the drive is out of its bound.
     #[error(transparent)]
     Drive(#[from] servobench_drive::ParameterError),
+    /// The loop that runs has no matrices.
+    #[error(transparent)]
+    Linear(#[from] servobench_linear::LinearError),
     /// The source of effort is not one that the drive's output is for.
     #[error("a current loop is for a synchronous motor, a direct output for an ideal source")]
     SourceDoesNotFit,

@@ -2,13 +2,11 @@
 //!
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
 //! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
+use crate::equations::Equations;
 use crate::error::StabilityError;
-use crate::state::{CONTROLLER, State};
-use crate::structure::Pattern;
-use crate::tick::{Due, Tick};
+use crate::tick::Due;
 use nalgebra::{Complex, DMatrix, DVector};
-use servobench_drive::Stage;
-use std::ops::Range;
+use servobench_linear::{Pattern, TickMatrix};
 
 /// Largest entry of a product whose columns can still be squared and summed.
 pub(crate) const LARGEST: f64 = 1e150;
@@ -18,14 +16,14 @@ pub(crate) type ComplexVector = DVector<Complex<f64>>;
 /// The ticks of a common period.
 pub(crate) struct Period {
     /// What is due, and the matrix of such a tick: `C·P`.
-    kinds: Vec<(Due, DMatrix<f64>)>,
+    kinds: Vec<(Due, TickMatrix)>,
     /// Index into `kinds` of each tick of the period, the one at which all loops turn last.
     ticks: Vec<usize>,
     /// The product of all.
     pub(crate) monodromy: DMatrix<f64>,
     pub(crate) pattern: Pattern,
-    /// The states of the controllers.
-    pub(crate) controllers: Range<usize>,
+    /// Which states are of the controllers.
+    pub(crate) controllers: Vec<bool>,
     /// Length of a tick (s).
     pub(crate) h: f64,
 }
@@ -59,17 +57,12 @@ impl Product {
 }
 
 impl Period {
-    /// Of the loops that `tick` closes.
+    /// Of the loops that `equations` close.
     ///
     /// # Errors
-    /// [`StabilityError::Overflow`] when the product is beyond what can be computed with.
-    pub(crate) fn new(tick: &Tick) -> Result<Self, StabilityError> {
-        let drive = &tick.model().drive;
-        let current = match &drive.stage {
-            Stage::Current { every, .. } => every.ticks(),
-            Stage::Direct { .. } => drive.velocity_every.ticks(),
-        };
-        let closed = tick.closed();
+    /// [`StabilityError`] when the loop does not run, [`StabilityError::Overflow`] when the product is beyond what can be computed with.
+    pub(crate) fn new(equations: &mut Equations) -> Result<Self, StabilityError> {
+        let (drive, current, closed) = (&equations.model().drive, equations.current_every(), equations.closed());
         // A loop that is open does not lengthen the period: what is below it repeats faster.
         let velocity = drive.velocity_every.ticks();
         let velocity = if closed.shaft { velocity } else { current };
@@ -77,7 +70,7 @@ impl Period {
 
         let idle = Due { position: false, velocity: false, current: false };
         let all = Due { position: closed.position, velocity: closed.shaft, current: true };
-        let mut kinds: Vec<(Due, DMatrix<f64>)> = Vec::new();
+        let mut kinds: Vec<(Due, TickMatrix)> = Vec::new();
         let mut ticks = Vec::new();
         for k in 1..=position {
             let due = Due {
@@ -88,14 +81,14 @@ impl Period {
             let index = kinds.iter().position(|(kind, _)| *kind == due);
             ticks.push(index.unwrap_or(kinds.len()));
             if index.is_none() {
-                kinds.push((due, matrix(tick, due)));
+                kinds.push((due, equations.matrix(due)?));
             }
         }
         let product = |due: Due| {
             let kind = kinds.iter().find(|(kind, _)| *kind == due);
             kind.map_or_else(
-                || Product::identity(tick.states()),
-                |(_, matrix)| Product(matrix.clone(), Pattern::of(matrix)),
+                || Product::identity(equations.states()),
+                |(_, tick)| Product(tick.matrix.clone(), Pattern::of(&tick.matrix)),
             )
         };
         // Each loop's period is a whole number of the periods of the loop below it.
@@ -111,8 +104,8 @@ impl Period {
         if !whole.0.iter().all(|entry| entry.abs() < LARGEST) {
             return Err(StabilityError::Overflow { ticks: position });
         }
-        let controllers = CONTROLLER..tick.fixed_states();
-        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, controllers, h: tick.h() })
+        let (controllers, h) = (equations.controllers(), equations.h());
+        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, controllers, h })
     }
 
     /// Length (s).
@@ -122,7 +115,16 @@ impl Period {
 
     /// Matrices of the ticks in order.
     pub(crate) fn matrices(&self) -> impl DoubleEndedIterator<Item = &DMatrix<f64>> {
-        self.ticks.iter().map(|&kind| &self.kinds[kind].1)
+        self.ticks.iter().map(|&kind| &self.kinds[kind].1.matrix)
+    }
+
+    /// What the entries of these matrices are sums of.
+    pub(crate) fn magnitudes(&self) -> impl Iterator<Item = &DMatrix<f64>> {
+        let of = |&kind: &usize| {
+            let tick = &self.kinds[kind].1;
+            tick.magnitude.as_ref().unwrap_or(&tick.matrix)
+        };
+        self.ticks.iter().map(of)
     }
 
     /// A state before the period and after each of its ticks.
@@ -145,20 +147,6 @@ impl Period {
         rows.reverse();
         rows
     }
-}
-
-/// The matrix of a tick at the end of which the loops `due` turn.
-fn matrix(tick: &Tick, due: Due) -> DMatrix<f64> {
-    let (size, fixed, late) = (tick.states(), tick.fixed_states(), tick.late_states());
-    let mut matrix = DMatrix::zeros(size, size);
-    for column in 0..size {
-        let mut x = State::unit(column, fixed, late);
-        tick.plant(&mut x);
-        tick.control(&mut x, due);
-        matrix.view_mut((0, column), (fixed, 1)).copy_from_slice(&x.to_array()[..fixed]);
-        matrix.view_mut((fixed, column), (late, 1)).copy_from_slice(&x.late);
-    }
-    matrix
 }
 
 fn times(matrix: &DMatrix<f64>, vector: &ComplexVector) -> ComplexVector {

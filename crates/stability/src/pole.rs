@@ -10,9 +10,8 @@
 //! a tick, on average, and the branch of arg λ is the one that is nearest to N·φ. ⟨ ⟩ is the kinetic energy, or where nothing moves
 //! the currents. What is above half the base rate is folded there: the run itself cannot tell.
 use crate::eigen::Eigenvalue;
-use crate::model::Loop;
+use crate::equations::Equations;
 use crate::period::{ComplexVector, Period};
-use crate::state::{CURRENT, MOST_STATES};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -47,11 +46,11 @@ impl Pole {
         self.damping() < Self::RESONANT
     }
 
-    pub(crate) fn new(period: &Period, model: &Loop, eigenvalue: &Eigenvalue) -> Self {
+    pub(crate) fn new(period: &Period, equations: &Equations, eigenvalue: &Eigenvalue) -> Self {
         let seconds = period.seconds();
         let magnitude = eigenvalue.value.norm();
         let ticks = (eigenvalue.states.len() - 1) as f64;
-        let turn = nearest_branch(eigenvalue.value, ticks * turn_per_tick(model, eigenvalue));
+        let turn = nearest_branch(eigenvalue.value, ticks * turn_per_tick(equations, eigenvalue));
         Self { magnitude, period: seconds, growth: magnitude.ln() / seconds, frequency: turn.abs() / (TAU * seconds) }
     }
 }
@@ -61,8 +60,8 @@ fn nearest_branch(value: Complex<f64>, turn: f64) -> f64 {
     value.arg() + TAU * ((turn - value.arg()) / TAU).round()
 }
 
-fn turn_per_tick(model: &Loop, eigenvalue: &Eigenvalue) -> f64 {
-    let weights = weights(model, &eigenvalue.states);
+fn turn_per_tick(equations: &Equations, eigenvalue: &Eigenvalue) -> f64 {
+    let weights = weights(equations, &eigenvalue.states);
     let ticks = (eigenvalue.states.len() - 1) as f64;
     let growth = eigenvalue.value.norm().powf(1.0 / ticks);
     let (mut turned, mut energy, mut scale) = (Complex::<f64>::default(), 0.0_f64, 1.0);
@@ -81,17 +80,15 @@ fn turn_per_tick(model: &Loop, eigenvalue: &Eigenvalue) -> f64 {
 }
 
 /// Inertia of each velocity, or 1 for each current where no body moves.
-fn weights(model: &Loop, states: &[ComplexVector]) -> [f64; MOST_STATES] {
-    let mut weights = [0.0; MOST_STATES];
-    let bodies = model.mechanics.bodies();
-    for (i, body) in bodies.iter().enumerate() {
-        weights[bodies.len() - 1 + i] = body.inertia / (body.transmission * body.transmission);
+fn weights(equations: &Equations, states: &[ComplexVector]) -> Vec<f64> {
+    let mut weights = vec![0.0; equations.states()];
+    for (index, body) in equations.velocities().zip(equations.model().mechanics.bodies()) {
+        weights[index] = body.inertia / (body.transmission * body.transmission);
     }
     let moves =
         states.iter().any(|state| state.iter().zip(&weights).any(|(entry, weight)| weight * entry.norm() > 0.0));
     if !moves {
-        weights[CURRENT] = 1.0;
-        weights[CURRENT + 1] = 1.0;
+        equations.currents().into_iter().flatten().for_each(|index| weights[index] = 1.0);
     }
     weights
 }

@@ -1,7 +1,7 @@
 //! What an analysis says.
 use crate::pole::Pole;
-use crate::tick::Factors;
 use servobench_base::Dq;
+use servobench_linear::Factors;
 use std::fmt::{self, Display, Formatter};
 
 /// A loop of the cascade.

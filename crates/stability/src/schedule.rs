@@ -9,6 +9,7 @@ use crate::model::Loop;
 use crate::pole::Pole;
 use crate::report::Instability;
 use servobench_drive::schedule;
+use servobench_linear::Running;
 use std::ops::Range;
 
 /// Gains at most that far apart (5 %) from one speed to the next: margins of a loop change by less than 0.5 dB.
@@ -36,8 +37,29 @@ pub fn analyse_schedule(
     stays: impl Fn(Range<f64>) -> f64,
 ) -> Result<Option<Instability>, StabilityError> {
     model.check()?;
+    of_schedule(model, || Ok(Analysis::new(model)), stays)
+}
+
+/// The same of the loop that is `running`.
+///
+/// # Errors
+/// [`StabilityError`], as of [`analyse`](crate::analyse).
+pub fn analyse_schedule_running<'a>(
+    model: &'a Loop,
+    running: Box<dyn Running + 'a>,
+    stays: impl Fn(Range<f64>) -> f64,
+) -> Result<Option<Instability>, StabilityError> {
+    model.check()?;
+    of_schedule(model, || Analysis::running(model, running), stays)
+}
+
+fn of_schedule<'a>(
+    model: &'a Loop,
+    analysis: impl FnOnce() -> Result<Analysis<'a>, StabilityError>,
+    stays: impl Fn(Range<f64>) -> f64,
+) -> Result<Option<Instability>, StabilityError> {
     let Some(schedule) = &model.drive.blocks.schedule else { return Ok(None) };
-    let mut analysis = Analysis::new(model);
+    let mut analysis = analysis()?;
     let mut speeds = Vec::new();
     for share in shares(schedule) {
         let speed = schedule.from + share * (schedule.to - schedule.from);

@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 use servobench_base::{Divider, Dq};
 use servobench_drive::measurement::{self, observer};
 use servobench_drive::{Stage, derivative, filter};
+use servobench_linear::Factors;
 use servobench_plant::transition;
 
 /// Which loops have their turn at a tick.
@@ -28,18 +29,6 @@ pub(crate) struct Closed {
     pub(crate) velocity: bool,
     /// Whether the shaft turns; a current loop by itself is looked at with the shaft held.
     pub(crate) shaft: bool,
-}
-
-/// Factors on the gains, 1 as they are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Factors {
-    pub(crate) position: f64,
-    pub(crate) velocity: f64,
-    pub(crate) current: Dq,
-}
-
-impl Factors {
-    pub(crate) const ONE: Self = Self { position: 1.0, velocity: 1.0, current: Dq { d: 1.0, q: 1.0 } };
 }
 
 /// All that a tick needs.
@@ -117,7 +106,7 @@ impl<'a> Tick<'a> {
         self.closed
     }
 
-    pub(crate) const fn model(&self) -> &Loop {
+    pub(crate) const fn model(&self) -> &'a Loop {
         self.model
     }
 
@@ -138,29 +127,6 @@ impl<'a> Tick<'a> {
             return MOST_STATES;
         }
         STATES + 2 * self.model.drive.blocks.filters.sections().len()
-    }
-
-    /// Base tick (s).
-    pub(crate) const fn h(&self) -> f64 {
-        self.h
-    }
-
-    /// Index of the motor's velocity.
-    pub(crate) const fn motor_velocity(&self) -> usize {
-        self.bodies - 1
-    }
-
-    /// Whether there is one pole at 1 within the current loop, because physics wants it: without viscous friction and without a
-    /// velocity loop the axis keeps any constant speed, since the integrators hold the current at its reference whatever the
-    /// back-EMF. A current that is held over several ticks while the rotor turns is not quite at its reference.
-    pub(crate) fn turns_freely(&self) -> bool {
-        let is_open = !self.closed.velocity || self.model.drive.velocity.k_p == 0.0;
-        let holds_current = match &self.model.drive.stage {
-            Stage::Current { every, .. } => self.model.point.current == Dq::default() || every.ticks() == 1,
-            Stage::Direct { .. } => false,
-        };
-        let bodies = self.model.mechanics.bodies();
-        self.closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.friction.linear() == 0.0)
     }
 
     /// Speed of the motor (its own coordinate).

@@ -1,4 +1,5 @@
 //! The analysis of the linear loop against runs.
+mod agreement;
 mod deviation;
 mod files;
 mod modes;

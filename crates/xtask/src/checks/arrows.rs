@@ -12,7 +12,7 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 37] = [
+const PLAN: [(&str, May); 38] = [
     ("state-derive", May::On(&[])),
     ("base", May::On(&["state-derive"])),
     ("files", May::On(&[])),
@@ -26,7 +26,8 @@ const PLAN: [(&str, May); 37] = [
     ("structured-text", May::On(&["base", "config"])),
     ("fmi", May::On(&["base", "config", "files"])),
     ("plant", May::On(&["base", "config", "fmi"])),
-    ("stability", May::On(&["base", "drive", "plant"])),
+    ("linear", May::On(&["base"])),
+    ("stability", May::On(&["base", "drive", "linear", "plant"])),
     ("sweep", May::On(&["base", "config"])),
     ("advise", May::On(&["motion", "sweep"])),
     ("engine-*", May::On(&["base", "files", "plant"])),
@@ -55,6 +56,7 @@ const PLAN: [(&str, May); 37] = [
             "fieldbus",
             "plcopen",
             "plant",
+            "linear",
             "stability",
             "fmi",
             "coupling",

@@ -7,11 +7,10 @@
 //! of controllers' states alone: an integrator without input, a filter.
 //! Source: Tarjan, *SIAM J. Comput.* 1(2), 1972 (components); Murota, *Matrices and Matroids for Systems Analysis*, §2.
 use nalgebra::DMatrix;
-use std::ops::Range;
 
 /// What acts on what: bit j of row i says whether state j acts on state i.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Pattern(Vec<Row>);
+pub struct Pattern(Vec<Row>);
 
 /// A set of states, 64 a word.
 type Row = Vec<u64>;
@@ -32,7 +31,8 @@ fn unite(row: &mut Row, other: &Row) {
 
 impl Pattern {
     /// Of `size` states, each of which acts on those of its row.
-    fn with_rows(size: usize, acts: impl Fn(usize, usize) -> bool) -> Self {
+    #[must_use]
+    pub fn with_rows(size: usize, acts: impl Fn(usize, usize) -> bool) -> Self {
         let row = |i: usize| {
             let mut row = vec![0; size.div_ceil(64)];
             (0..size).filter(|&j| acts(j, i)).for_each(|j| insert(&mut row, j));
@@ -42,17 +42,20 @@ impl Pattern {
     }
 
     /// Every one of `size` states acts on itself alone.
-    pub(crate) fn identity(size: usize) -> Self {
+    #[must_use]
+    pub fn identity(size: usize) -> Self {
         Self::with_rows(size, |j, i| i == j)
     }
 
     /// Of a matrix: where it is not exactly zero.
-    pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
+    #[must_use]
+    pub fn of(matrix: &DMatrix<f64>) -> Self {
         Self::with_rows(matrix.nrows(), |j, i| matrix[(i, j)] != 0.0)
     }
 
     /// What acts on what when `first` comes before this one.
-    pub(crate) fn after(&self, first: &Self) -> Self {
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
         let through = |row: &Row| {
             let mut sum = vec![0; row.len()];
             (0..self.0.len()).filter(|&j| contains(row, j)).for_each(|j| unite(&mut sum, &first.0[j]));
@@ -61,15 +64,17 @@ impl Pattern {
         Self(self.0.iter().map(through).collect())
     }
 
-    /// The strongly connected components that hold states of a controller, which are `controllers`, and of what it controls.
-    pub(crate) fn loops(&self, controllers: &Range<usize>) -> Vec<Vec<usize>> {
-        let is_controllers = |j: &usize| controllers.contains(j);
+    /// The strongly connected components that hold states of a controller, those that `is_controllers` says, and of what it controls.
+    #[must_use]
+    pub fn loops(&self, is_controllers: &[bool]) -> Vec<Vec<usize>> {
+        let is_controllers = |j: &usize| is_controllers[*j];
         let holds_both = |one: &Vec<usize>| one.iter().any(is_controllers) && !one.iter().all(is_controllers);
         self.components().into_iter().filter(holds_both).collect()
     }
 
     /// The strongly connected components; a state that does not act on itself is none.
-    fn components(&self) -> Vec<Vec<usize>> {
+    #[must_use]
+    pub fn components(&self) -> Vec<Vec<usize>> {
         let size = self.0.len();
         let mut reached = self.0.clone();
         for via in 0..size {
@@ -96,11 +101,14 @@ impl Pattern {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::{CONTROLLER, MOST_STATES};
 
     /// Two words.
-    const SIZE: usize = MOST_STATES + 40;
-    const CONTROLLERS: Range<usize> = CONTROLLER..MOST_STATES;
+    const SIZE: usize = 100;
+    const CONTROLLER: usize = 12;
+
+    fn controllers() -> Vec<bool> {
+        (0..SIZE).map(|j| (CONTROLLER..60).contains(&j)).collect()
+    }
 
     fn pattern(edges: &[(usize, usize)]) -> Pattern {
         let mut matrix = DMatrix::zeros(SIZE, SIZE);
@@ -115,8 +123,11 @@ mod tests {
     fn only_rings_through_a_controller_are_loops() {
         let c = CONTROLLER;
         let ring = pattern(&[(0, SIZE - 1), (SIZE - 1, c), (c, 2), (2, 0), (3, 4), (4, 3), (2, 5), (5, c + 1)]);
-        assert_eq!(ring.loops(&CONTROLLERS), [vec![0, 2, c, SIZE - 1]]);
-        assert_eq!(pattern(&[(c, c), (0, 0), (1, c), (c + 1, c + 2), (c + 2, c + 1)]).loops(&CONTROLLERS), [[0; 0]; 0]);
+        assert_eq!(ring.loops(&controllers()), [vec![0, 2, c, SIZE - 1]]);
+        assert_eq!(
+            pattern(&[(c, c), (0, 0), (1, c), (c + 1, c + 2), (c + 2, c + 1)]).loops(&controllers()),
+            [[0; 0]; 0]
+        );
     }
 
     #[test]

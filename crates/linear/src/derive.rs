@@ -1,0 +1,271 @@
+//! Matrices of the kinds of ticks of a loop that runs.
+use crate::form::{Form, Number, Values};
+use crate::{CONTROLLERS, Factors, LinearError, MECHANICS, Pattern, Running};
+use nalgebra::DMatrix;
+use servobench_base::state::{Reader, words};
+use std::collections::HashMap;
+
+/// Exponent of two of what a number is moved by that is zero at rest: its square underflows, and what a thousand times a thousand units
+/// make of it does not.
+const SMALL: i32 = -600;
+/// Places that are tried.
+const PLACES: u32 = 64;
+/// What a number at rest may change by in a tick, as a share of it: roundings of a sum of some ten numbers.
+const REST: f64 = 64.0 * f64::EPSILON;
+
+/// The loop at rest before a tick of a kind, and after it.
+struct Kind {
+    words: Vec<u64>,
+    before: Vec<f64>,
+    after: Vec<f64>,
+}
+
+/// Matrix of a tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TickMatrix {
+    /// A.
+    pub matrix: DMatrix<f64>,
+    /// What each entry is a sum of, by magnitude: its rounding is in proportion to that. `None` where it is the entry itself.
+    pub magnitude: Option<DMatrix<f64>>,
+}
+
+/// A loop that runs, and the matrices of its ticks as far as they were asked for.
+pub struct Matrices<'a> {
+    running: Box<dyn Running + 'a>,
+    numbers: Vec<Number>,
+    kinds: Vec<Kind>,
+    /// Every number when the loop rests elsewhere, less what it is here; by the position there; and the number from which positions
+    /// are told.
+    elsewhere: Vec<f64>,
+    place: Vec<f64>,
+    origin: Option<usize>,
+    /// Numbers that are states.
+    states: Vec<usize>,
+    /// Of a kind and factors of 0 and 1, by their bits.
+    known: HashMap<(usize, u8), DMatrix<f64>>,
+    scratch: (Vec<u64>, Vec<f64>),
+}
+
+/// What is moved.
+fn small() -> f64 {
+    f64::from(SMALL).exp2()
+}
+
+fn values(running: &mut dyn Running) -> Result<Vec<f64>, LinearError> {
+    let mut values = Vec::new();
+    running.save(&mut Values(&mut values))?;
+    Ok(values)
+}
+
+impl<'a> Matrices<'a> {
+    /// Of `running`, whose first tick is number 0; of kind i is tick number `ticks[i]`, each larger than 0.
+    ///
+    /// # Errors
+    /// [`LinearError`] where it does not run, or does not stay at rest.
+    pub fn new(mut running: Box<dyn Running + 'a>, ticks: &[u32]) -> Result<Self, LinearError> {
+        let last = ticks.iter().copied().max().unwrap_or(0);
+        running.set(&Factors { position: 0.0, ..Factors::ONE });
+        running.place(0.0)?;
+        running.tick()?;
+        let mut form = Form::default();
+        running.save(&mut form)?;
+        let numbers = form.numbers;
+        let elsewhere = elsewhere(running.as_mut(), &numbers, last)?;
+        running.set(&Factors::ONE);
+        running.place(0.0)?;
+        running.tick()?;
+        let mut kinds: Vec<Option<Kind>> = ticks.iter().map(|_| None).collect();
+        for number in 1..=last {
+            let mut saved = Vec::new();
+            running.save(&mut words(|word| saved.push(word)))?;
+            let before = values(running.as_mut())?;
+            running.tick()?;
+            for (kind, _) in kinds.iter_mut().zip(ticks).filter(|(_, tick)| **tick == number) {
+                *kind = Some(Kind { words: saved.clone(), before: before.clone(), after: values(running.as_mut())? });
+            }
+        }
+        let kinds: Vec<Kind> = kinds.into_iter().flatten().collect();
+        let is_position = |number: &Number| number.name.starts_with(MECHANICS) && !number.is_derived;
+        let origin = numbers.iter().zip(&elsewhere).position(|(number, there)| is_position(number) && *there != 0.0);
+        let position = origin.map_or(1.0, |origin| elsewhere[origin]);
+        let place = elsewhere.iter().map(|there| there / position).collect();
+        let (states, known, scratch) = (Vec::new(), HashMap::new(), (Vec::new(), Vec::new()));
+        let mut matrices = Self { running, numbers, kinds, elsewhere, place, origin, states, known, scratch };
+        matrices.find_states()?;
+        Ok(matrices)
+    }
+
+    /// Names of the states.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.states.iter().map(|&number| self.numbers[number].name.as_str())
+    }
+
+    /// Number of states.
+    #[must_use]
+    pub const fn size(&self) -> usize {
+        self.states.len()
+    }
+
+    /// What acts from the states of everything but the controllers on, directly or not, and lies on a ring.
+    fn find_states(&mut self) -> Result<(), LinearError> {
+        let count = self.numbers.len();
+        let is_start = |number: &Number| !number.name.starts_with(CONTROLLERS) && !number.is_derived;
+        let mut reached: Vec<usize> = (0..count).filter(|&number| is_start(&self.numbers[number])).collect();
+        let mut is_reached: Vec<bool> = (0..count).map(|number| is_start(&self.numbers[number])).collect();
+        let mut columns: Vec<Vec<Vec<f64>>> = self.kinds.iter().map(|_| Vec::new()).collect();
+        let mut next = 0;
+        while next < reached.len() {
+            let number = reached[next];
+            next += 1;
+            for (kind, columns) in columns.iter_mut().enumerate() {
+                let column = self.column(kind, number)?;
+                for (row, _) in column.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+                    if !is_reached[row] && !self.numbers[row].is_derived {
+                        is_reached[row] = true;
+                        reached.push(row);
+                    }
+                }
+                columns.push(column);
+            }
+        }
+        let acts = |j: usize, i: usize| columns.iter().any(|columns| columns[j][reached[i]] != 0.0);
+        let components = Pattern::with_rows(reached.len(), acts).components();
+        let mut states: Vec<usize> = components.into_iter().filter(|one| one.len() > 1).flatten().collect();
+        states.sort_by_key(|&index| reached[index]);
+        for (kind, columns) in columns.iter().enumerate() {
+            let of = |i: usize, j: usize| columns[states[j]][reached[states[i]]];
+            let matrix = DMatrix::from_fn(states.len(), states.len(), of);
+            self.known.insert((kind, Factors::ONE.bits()), matrix);
+        }
+        self.states = states.into_iter().map(|index| reached[index]).collect();
+        let moves = |kind: &Kind, state: usize| {
+            let (before, after) = (kind.before[state], kind.after[state]);
+            (after - before).abs() > REST * before.abs()
+        };
+        match self.states.iter().find(|&&state| self.kinds.iter().any(|kind| moves(kind, state))) {
+            Some(&state) => Err(LinearError::NotAtRest(self.numbers[state].name.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// What all numbers are different by after a tick of a kind, per difference of `number` before it.
+    fn column(&mut self, kind: usize, number: usize) -> Result<Vec<f64>, LinearError> {
+        let Self { running, numbers, kinds, elsewhere, place, origin, scratch: (moved, after), .. } = self;
+        let of = &kinds[kind];
+        moved.clone_from(&of.words);
+        let mut put = |number: usize, value: f64| moved[numbers[number].word] = value.to_bits();
+        let at_rest = of.before[number];
+        let mut size = if at_rest == 0.0 { small() } else { at_rest.abs().log2().ceil().exp2() };
+        if *origin == Some(number) {
+            size = elsewhere[number];
+            for (other, there) in elsewhere.iter().enumerate().filter(|(_, there)| **there != 0.0) {
+                put(other, of.before[other] + there);
+            }
+        } else {
+            let moved_to = at_rest + size;
+            size = moved_to - at_rest;
+            put(number, moved_to);
+        }
+        let mut from = Reader::moved(moved);
+        running.restore(&mut from)?;
+        from.end()?;
+        running.tick()?;
+        after.clear();
+        running.save(&mut Values(after))?;
+        let mut column: Vec<f64> =
+            after.iter().zip(&of.after).map(|(other, at_rest)| by(*other, *at_rest, size)).collect();
+        // All places are told from the origin.
+        if let Some(travel) = origin.map(|origin| column[origin]).filter(|travel| *travel != 0.0) {
+            for (other, (entry, share)) in column.iter_mut().zip(place.iter()).enumerate() {
+                if *share != 0.0 && *origin != Some(other) {
+                    *entry -= share * travel;
+                }
+            }
+        }
+        Ok(column)
+    }
+
+    /// The matrix of a tick of this kind with these gains.
+    ///
+    /// # Errors
+    /// [`LinearError`] where it does not run.
+    pub fn matrix(&mut self, kind: usize, factors: &Factors) -> Result<TickMatrix, LinearError> {
+        let corners = factors.corners();
+        for (corner, _) in &corners {
+            self.derive(kind, corner)?;
+        }
+        let of = |corner: &Factors| &self.known[&(kind, corner.bits())];
+        if let [(corner, _)] = &corners[..] {
+            return Ok(TickMatrix { matrix: of(corner).clone(), magnitude: None });
+        }
+        let size = self.states.len();
+        let mut sum = TickMatrix { matrix: DMatrix::zeros(size, size), magnitude: Some(DMatrix::zeros(size, size)) };
+        let first = of(&corners[0].0);
+        for (corner, share) in &corners {
+            let matrix = of(corner);
+            // What no gain acts on stays what it is, to the bit.
+            sum.matrix.zip_zip_apply(matrix, first, |entry, corner, first| *entry += share * (corner - first));
+            if let Some(magnitude) = &mut sum.magnitude {
+                magnitude.zip_zip_apply(matrix, first, |entry, corner, first| {
+                    let differ = corner.to_bits() != first.to_bits();
+                    *entry += if differ { share.abs() * (corner.abs() + first.abs()) } else { 0.0 };
+                });
+            }
+        }
+        sum.matrix += first;
+        if let Some(magnitude) = &mut sum.magnitude {
+            magnitude.zip_apply(first, |entry, first| *entry += first.abs());
+        }
+        Ok(sum)
+    }
+
+    fn derive(&mut self, kind: usize, corner: &Factors) -> Result<(), LinearError> {
+        let key = (kind, corner.bits());
+        if self.known.contains_key(&key) {
+            return Ok(());
+        }
+        self.running.set(corner);
+        let size = self.states.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        for index in 0..size {
+            let column = self.column(kind, self.states[index])?;
+            for (entry, &row) in matrix.column_mut(index).iter_mut().zip(&self.states) {
+                *entry = column[row];
+            }
+        }
+        self.known.insert(key, matrix);
+        Ok(())
+    }
+}
+
+/// Every number at a place at which the bodies stay to the bit, less what it is at 0; where a position is multiplied on its way from tick to
+/// tick, not all places are such. What changes there, as an integral does, is not of the place.
+fn elsewhere(running: &mut dyn Running, numbers: &[Number], last: u32) -> Result<Vec<f64>, LinearError> {
+    let mut at = |position: f64| {
+        running.place(position)?;
+        // The period is over when everything that a task holds is what it is at rest.
+        (0..=last).try_for_each(|_| running.tick())?;
+        let first = values(running)?;
+        (0..last).try_for_each(|_| running.tick())?;
+        Ok::<_, LinearError>((first, values(running)?))
+    };
+    let (here, _) = at(0.0)?;
+    let mut found = vec![0.0; numbers.len()];
+    for place in 0..PLACES {
+        let (there, later) = at(small() * (1.0 + f64::from(place) / f64::from(PLACES)))?;
+        let all = || there.iter().zip(&later);
+        found = all()
+            .zip(&here)
+            .map(|((there, later), here)| if there == later { by(*there, *here, 1.0) } else { 0.0 })
+            .collect();
+        if all().zip(numbers).all(|((there, later), number)| there == later || !number.name.starts_with(MECHANICS)) {
+            break;
+        }
+    }
+    Ok(found)
+}
+
+/// The difference of two numbers, by `size`; none of the same number, even where it is not finite.
+fn by(other: f64, at_rest: f64, size: f64) -> f64 {
+    if other.to_bits() == at_rest.to_bits() { 0.0 } else { (other - at_rest) / size }
+}
