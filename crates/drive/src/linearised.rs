@@ -61,7 +61,7 @@ impl Blocks {
             position,
         } = self;
         Self {
-            filters: filters.clone(),
+            filters: *filters,
             reference_weight: *reference_weight,
             measurement: measurement.map(|method| match method {
                 measurement::Params::Difference | measurement::Params::Mt(_) => measurement::Params::Difference,

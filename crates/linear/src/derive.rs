@@ -256,16 +256,23 @@ fn elsewhere(running: &mut dyn Running, numbers: &[Number], last: u32) -> Result
         let all = || there.iter().zip(&later);
         found = all()
             .zip(&here)
-            .map(|((there, later), here)| if there == later { by(*there, *here, 1.0) } else { 0.0 })
+            .map(|((there, later), here)| if is_same(*there, *later) { by(*there, *here, 1.0) } else { 0.0 })
             .collect();
-        if all().zip(numbers).all(|((there, later), number)| there == later || !number.name.starts_with(MECHANICS)) {
+        if all()
+            .zip(numbers)
+            .all(|((there, later), number)| is_same(*there, *later) || !number.name.starts_with(MECHANICS))
+        {
             break;
         }
     }
     Ok(found)
 }
 
+const fn is_same(one: f64, other: f64) -> bool {
+    one.to_bits() == other.to_bits()
+}
+
 /// The difference of two numbers, by `size`; none of the same number, even where it is not finite.
 fn by(other: f64, at_rest: f64, size: f64) -> f64 {
-    if other.to_bits() == at_rest.to_bits() { 0.0 } else { (other - at_rest) / size }
+    if is_same(other, at_rest) { 0.0 } else { (other - at_rest) / size }
 }

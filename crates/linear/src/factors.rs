@@ -23,7 +23,7 @@ impl Factors {
     pub(crate) fn corners(&self) -> Vec<(Self, f64)> {
         let mut corners = vec![(*self, 1.0)];
         let mut split = |value: f64, put: &dyn Fn(&mut Self, f64)| {
-            if value == 0.0 || value == 1.0 {
+            if value == 0.0 || value.to_bits() == 1.0_f64.to_bits() {
                 return;
             }
             let with = |(corner, share): &(Self, f64), at: f64, part: f64| {

@@ -299,17 +299,6 @@ impl<const W: usize> Mechanics for ExactChain<W> {
     }
 }
 
-/// Transition of `chain` over a tick of `step` (s), without dry friction and bias: `[Φ Γ]` of the equations of the engine
-/// [`Exact`], the travel of body 0 in the tick (axis coordinate) as their last row.
-///
-/// Of n bodies: rows are n − 1 stretches, n velocities (axis coordinate, per tick) and the travel; columns the same stretches
-/// and velocities, then the efforts on the bodies (own coordinate).
-#[must_use]
-pub fn transition(chain: &Chain, step: f64) -> DMatrix<f64> {
-    let columns: Hold<ROWS> = hold(chain, false, step, 0);
-    DMatrix::from_fn(states(chain, false) + 1, columns.len(), |row, column| columns[column][row])
-}
-
 /// Transition over one tick while the bodies of the set `stuck` do not move.
 fn hold<const W: usize>(chain: &Chain, prescribed: bool, h: f64, stuck: usize) -> Hold<W> {
     let n = chain.bodies().len();

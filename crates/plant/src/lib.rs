@@ -31,7 +31,7 @@ mod wiring;
 pub use chain::{Body, Chain, ChainParameter, Link};
 pub use end_stops::{EndStopError, EndStopParameter, EndStops};
 pub use engine::{Capabilities, Engine, EngineName};
-pub use exact::{Exact, transition};
+pub use exact::Exact;
 pub use fmu::{FmuBody, FmuModel};
 pub use friction::{DryFriction, Friction, FrictionParameter};
 pub use ground_friction::{Grips, GroundFriction};

@@ -3,7 +3,7 @@ use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
     Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, Link, Mechanics,
-    MechanicsError, MechanicsSetup, MjcfModel, Model, transition,
+    MechanicsError, MechanicsSetup, MjcfModel, Model,
 };
 
 const H: f64 = 1.0 / 16_000.0;
@@ -171,37 +171,4 @@ fn an_mjcf_file_is_refused_with_a_way_out() {
 fn an_infinite_effort_ends_the_run() {
     let mut axis = build(two_mass(0.0), Drive::Effort, vec![]);
     assert!(matches!(axis.advance(&effort(f64::NAN)), Err(MechanicsError::Diverged { .. })));
-}
-
-/// Oracle: the engine itself, over a tick with a screw, friction and efforts on the motor.
-#[test]
-fn the_transition_is_what_the_engine_does() {
-    let mut motor =
-        Body { transmission: 0.2, friction: Friction { viscous: 0.03, ..Friction::NONE }, ..body("motor", 4e-3) };
-    motor.coordinate = Coordinate::Rotary;
-    let links = vec![Link { stiffness: 900.0, damping: 0.1 }, Link { stiffness: 300.0, damping: 0.0 }];
-    let chain = Chain::new(vec![motor, body("table", 0.2), body("load", 0.3)], links).unwrap();
-    let initial = vec![
-        BodyState { position: 0.05, velocity: 0.5 },
-        BodyState { position: 0.02, velocity: -0.2 },
-        BodyState { position: 0.03, velocity: 0.3 },
-    ];
-    // Stretches, velocities per tick (axis coordinate), then the effort on the motor.
-    let state = [0.01 - 0.02, 0.02 - 0.03, H * 0.1, H * -0.2, H * 0.3, 2.5];
-    let matrix = transition(&chain, H);
-    assert_eq!((matrix.nrows(), matrix.ncols()), (6, 8));
-    let next = |row: usize| (0..6).map(|column| matrix[(row, column)] * state[column]).sum::<f64>();
-    let mut mechanics = build(chain, Drive::Effort, initial);
-    mechanics.advance(&effort(2.5)).unwrap();
-    let [motor, table, load] = mechanics.bodies() else { panic!("three bodies") };
-    // A dozen roundings of numbers of this size.
-    for (found, expected) in [
-        (next(0), 0.2 * motor.position - table.position),
-        (next(1), table.position - load.position),
-        (next(2) / H, 0.2 * motor.velocity),
-        (next(4) / H, load.velocity),
-        (0.01 + next(5), 0.2 * motor.position),
-    ] {
-        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
-    }
 }

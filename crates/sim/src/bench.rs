@@ -209,19 +209,9 @@ impl Control {
     }
 }
 
-/// Encoders of motor and load, those that there are, in ticks of `h` (s).
-///
-/// # Errors
-/// [`BuildError`] names what is out of its bound.
-pub(crate) fn encoder_inputs(encoders: [Option<Encoder>; 2], h: f64) -> Result<[Option<EncoderInput>; 2], BuildError> {
-    let [motor, load] = encoders;
-    let input = |encoder: Option<Encoder>, number| encoder.map(|one| EncoderInput::new(one, number, h)).transpose();
-    Ok([input(motor, 0)?, input(load, 1)?])
-}
-
 impl EncoderInput {
     /// That of number `number` of the axis, in ticks of `h` (s).
-    fn new(encoder: Encoder, number: u32, h: f64) -> Result<Self, BuildError> {
+    pub(crate) fn new(encoder: Encoder, number: u32, h: f64) -> Result<Self, BuildError> {
         let range = encoder.errors.and_then(|errors| errors.range);
         Ok(Self { encoder: EncoderState::new(encoder, number, h)?, unwrap: range.map(Unwrap::new) })
     }

@@ -35,6 +35,6 @@ pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};
 pub use program::Program;
 pub use run::{AxisFailure, Failure, Outcome, Reason};
 pub use speeds::Speeds;
-pub use stability::{Analysis, MasterLoop, NotAnalysed, analyse_stability, analyse_typed};
+pub use stability::{Analysis, MasterLoop, NotAnalysed, analyse_stability};
 pub use stepper::{States, Stepper};
 pub use thinning::{selected, thinned};

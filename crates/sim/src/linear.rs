@@ -1,5 +1,4 @@
 //! The closed loop at rest, to be made linear: built of linearised parts, moved number by number, ticked by the tick of every run.
-use crate::bench::encoder_inputs;
 use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Mounting, Shaft, Source, State};
 use crate::disturbance::Disturbances;
 use crate::error::BuildError;
@@ -69,16 +68,15 @@ impl AtRest {
         // A commutation that is off would turn the current at rest into torque.
         let turned = |encoder: Encoder| {
             let mut encoder = encoder.linearised();
-            if let Some(errors) = encoder.errors.as_mut().filter(|_| model.point.current.d != 0.0) {
+            if let Some(errors) = encoder.errors.as_mut().filter(|_| model.d_current != 0.0) {
                 errors.commutation = 0.0;
             }
             encoder
         };
-        let encoders = [Some(sensors.motor), sensors.load].map(|encoder| encoder.map(turned));
-        let [motor_encoder, load_encoder] = encoder_inputs(encoders, h)?;
-        let Some(motor_encoder) = motor_encoder else { unreachable!("it was given") };
+        let motor_encoder = EncoderInput::new(turned(sensors.motor), 0, h)?;
+        let load_encoder = sensors.load.map(|encoder| EncoderInput::new(turned(encoder), 1, h)).transpose()?;
         let mut sensor = sensors.current.map(|sensor| sensor.linearised());
-        let (mut current, mut voltage, mut electrical_ratio) = (model.point.current.d, 0.0, 0.0);
+        let (mut current, mut voltage, mut electrical_ratio) = (model.d_current, 0.0, 0.0);
         let power = match &model.source {
             stability::Source::Ideal { gain } => PowerStage::ideal(&servobench_plant::IdealSource {
                 gain: *gain,

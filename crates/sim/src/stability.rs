@@ -4,15 +4,13 @@ use crate::coupled;
 use crate::error::BuildError;
 use crate::linear::{AtRest, WiredSensors};
 use crate::speeds::Speeds;
-use servobench_base::Dq;
 use servobench_drive::Stage;
 use servobench_drive::current::operating_point::Strategy;
 use servobench_metrics::Quantity;
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, Scenario};
 use servobench_stability::{
-    self as stability, Depth, Instability, Loop, Master, OperatingPoint, PositionFeedback, Report, Sensors, Source,
-    VelocitySignal,
+    self as stability, Depth, Instability, Loop, Master, PositionFeedback, Report, Source, VelocitySignal,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -111,8 +109,8 @@ impl Display for NotAnalysed {
             }
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
             Self::Commutation => f.write_str(
-                "a commutation that is late or off turns the current that the d axis has at standstill, which is not analysed; the \
-                 loop around that current in the d axis is",
+                "a commutation that is off turns the current that the d axis has at standstill, which is not analysed; the loop with a \
+                 commutation that is right is",
             ),
             Self::CommutationWithoutMagnets => f.write_str(
                 "a commutation that is off turns the current that gives a motor without magnets its torque, which is not analysed",
@@ -140,13 +138,13 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
     };
     let failed = |error| Ok(Analysis::NotPossible(NotAnalysed::Failed(error)));
     let running = || AtRest::new(&model, &sensors).map(Box::new);
-    let mut report = match stability::analyse_running(&model, running()?, depth) {
+    let mut report = match stability::analyse(&model, running()?, depth) {
         Ok(report) => Box::new(report),
         Err(error) => return failed(error),
     };
     if report.is_stable() {
         let stays = |range| speeds.map_or(f64::INFINITY, |speeds| speeds.longest_within(&range));
-        match stability::analyse_schedule_running(&model, running()?, stays) {
+        match stability::analyse_schedule(&model, running()?, stays) {
             Ok(found) if speeds.is_some() => report.instability = found,
             Ok(found) => without.extend(found.map(|found| NotAnalysed::GainSchedule(Box::new(found)))),
             Err(error) => return failed(error),
@@ -154,19 +152,6 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
     }
     let master = scenario.bus.as_ref().and_then(|bus| master_loop(scenario, bus, &model));
     Ok(Analysis::Done { report, master, without })
-}
-
-/// The same without `speeds`, of the equations that are written out.
-///
-/// # Errors
-/// [`BuildError`] says which part of the scenario cannot be built.
-#[doc(hidden)]
-pub fn analyse_typed(
-    scenario: &Scenario,
-    depth: Depth,
-) -> Result<Result<Report, stability::StabilityError>, BuildError> {
-    let Ok((model, ..)) = linear_loop(scenario)? else { unreachable!("asked for a loop") };
-    Ok(stability::analyse(&model, depth))
 }
 
 /// The position loop that the master closes over `bus`, if it does.
@@ -215,7 +200,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     };
     let bus = scenario.bus.as_ref();
     let closes_position = bus.is_none_or(|bus| !matches!(bus.mode, BusMode::CyclicVelocity | BusMode::ProfileVelocity));
-    let (params, point) = operated(drive, &source);
+    let (params, d_current) = operated(drive, &source);
     let model = Loop {
         drive: params,
         closes_position,
@@ -227,15 +212,14 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         current_tuning: drive.current_tuning,
         source,
         mechanics: plant::checked(chain)?,
-        sensors: sensors(*encoder, drive),
-        point,
+        d_current,
     };
-    if matches!(&model.source, Source::Pmsm(motor) if motor.flux_linkage == 0.0) && model.sensors.commutation != 0.0 {
+    let commutation = encoder.errors.map_or(0.0, |errors| errors.commutation);
+    if matches!(&model.source, Source::Pmsm(motor) if motor.flux_linkage == 0.0) && commutation != 0.0 {
         return Ok(Err(NotAnalysed::CommutationWithoutMagnets));
     }
     let acts = scenario.fmus.iter().any(|fmu| fmu.efforts().next().is_some());
-    let turns =
-        model.point.current != Dq::default() && (model.sensors.motor_latency > 0.0 || model.sensors.commutation != 0.0);
+    let turns = model.d_current != 0.0 && commutation != 0.0;
     let is_wrong = matches!(&scenario.actuator, Actuator::Pmsm { wiring, .. } if !wiring.is_right());
     let left_out = [(acts, NotAnalysed::Fmus), (turns, NotAnalysed::Commutation), (is_wrong, NotAnalysed::Wiring)];
     let without = left_out.into_iter().filter_map(|(is_left_out, what)| is_left_out.then_some(what)).collect();
@@ -245,34 +229,16 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
 /// The drive where it is linearised: without effort, with the d-axis current that it holds then. Where motor or estimate has no magnets,
 /// maximum torque per ampere has no slope there; around any effort it is that of the d-axis current of that effort, since both axes of the
 /// current loop answer alike, and the current of the largest effort is taken.
-fn operated(drive: &Drive, source: &Source) -> (servobench_drive::Params, OperatingPoint) {
+fn operated(drive: &Drive, source: &Source) -> (servobench_drive::Params, f64) {
     let mut params = drive.params.clone();
-    let Stage::Current { params: current, .. } = &mut params.stage else { return (params, OperatingPoint::default()) };
+    let Stage::Current { params: current, .. } = &mut params.stage else { return (params, 0.0) };
     let has_no_magnets =
         matches!(source, Source::Pmsm(motor) if motor.flux_linkage == 0.0) || current.motor.flux_linkage == 0.0;
     if current.operation.strategy == Strategy::Mtpa && has_no_magnets {
         current.d_reference = current.motor.mtpa_at_current(current.max_current);
     }
-    let point = OperatingPoint { current: Dq { d: current.d_reference, q: 0.0 } };
-    (params, point)
-}
-
-/// How late the sensors of `drive` and the `encoder` of its motor are.
-fn sensors(encoder: Encoder, drive: &Drive) -> Sensors {
-    let latency = |encoder: Encoder| encoder.errors.map_or(0.0, |errors| errors.latency);
-    let current = drive.current_sensor;
-    let ratio = drive.params.current_loop().map_or(0.0, |(current, _)| current.motor.electrical_ratio);
-    Sensors {
-        motor_latency: latency(encoder),
-        load_latency: match drive.position_feedback {
-            Feedback::Motor => 0.0,
-            Feedback::Load(encoder) => latency(encoder),
-        },
-        commutation: encoder.errors.map_or(0.0, |errors| ratio * errors.commutation),
-        current_delay: current.map_or(0, |sensor| sensor.delay),
-        current_shift: current.map_or(0.0, |sensor| sensor.shift),
-        current_gain_error: current.map_or([0.0; 2], |sensor| sensor.gain_error),
-    }
+    let d_current = current.d_reference;
+    (params, d_current)
 }
 
 fn velocity_signal(encoder: Encoder) -> VelocitySignal {

@@ -4,13 +4,12 @@
 //! the velocity loop with the position loop open, the position loop; the first that is unstable.
 use crate::boundary;
 use crate::eigen::{self, Block, Eigenvalue};
-use crate::equations::{Derived, Equations};
+use crate::equations::{Closed, Equations};
 use crate::error::StabilityError;
 use crate::model::{Loop, Source};
 use crate::period::Period;
 use crate::pole::Pole;
 use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report};
-use crate::tick::{Closed, Tick};
 use nalgebra::Complex;
 use servobench_base::Coordinate;
 use servobench_base::Dq;
@@ -27,29 +26,13 @@ pub enum Depth {
     Boundaries,
 }
 
-/// Analyses a loop.
-///
-/// # Errors
-/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
-pub fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
-    model.check()?;
-    report(model, Analysis::new(model), depth)
-}
-
 /// Analyses the loop that is `running`, of which `model` says what it is.
 ///
 /// # Errors
 /// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
-pub fn analyse_running<'a>(
-    model: &'a Loop,
-    running: Box<dyn Running + 'a>,
-    depth: Depth,
-) -> Result<Report, StabilityError> {
+pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth) -> Result<Report, StabilityError> {
     model.check()?;
-    report(model, Analysis::running(model, running)?, depth)
-}
-
-fn report<'a>(model: &'a Loop, mut analysis: Analysis<'a>, depth: Depth) -> Result<Report, StabilityError> {
+    let mut analysis = Analysis::new(model, running)?;
     let poles = analysis.poles(analysis.whole())?;
     let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(&analysis.equations, &eigenvalue));
     let is_unstable = unstable.is_some();
@@ -161,14 +144,8 @@ pub(crate) struct Analysis<'a> {
 
 impl<'a> Analysis<'a> {
     /// At standstill.
-    pub(crate) fn new(model: &'a Loop) -> Self {
-        Self { model, equations: Equations::Typed(Tick::new(model)), scheduled: ((1.0, 1.0), None) }
-    }
-
-    /// At standstill, of the loop that is `running`.
-    pub(crate) fn running(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
-        let equations = Equations::Derived(Box::new(Derived::new(model, running)?));
-        Ok(Self { model, equations, scheduled: ((1.0, 1.0), None) })
+    pub(crate) fn new(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
+        Ok(Self { model, equations: Equations::new(model, running)?, scheduled: ((1.0, 1.0), None) })
     }
 
     fn schedule(&mut self, factors: (f64, f64), speed: Option<f64>) {

@@ -6,9 +6,8 @@
 //! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
 //! back within a step, in which it would have gone half of the way.
 use crate::analyse::Poles;
-use crate::equations::Equations;
+use crate::equations::{Closed, Equations};
 use crate::report::GainName;
-use crate::tick::Closed;
 
 /// Gains are scanned to this factor and its reciprocal.
 pub(crate) const REACH: f64 = 1_000.0;

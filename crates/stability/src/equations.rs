@@ -1,10 +1,6 @@
 //! The matrices of a loop's ticks with some of its loops closed and its gains by factors.
 use crate::error::StabilityError;
 use crate::model::Loop;
-use crate::state::{CONTROLLER, CURRENT, MOST_STATES, State};
-use crate::tick::{Closed, Due, Tick};
-use nalgebra::DMatrix;
-use servobench_base::Dq;
 use servobench_drive::Stage;
 use servobench_linear::{CONTROLLERS, Factors, MECHANICS, Matrices, Running, TickMatrix};
 
@@ -15,14 +11,25 @@ const EFFORT: &str = "controllers.effort";
 /// Ends of the names of the motor's currents.
 const CURRENTS: [&str; 2] = [".state.current.d", ".state.current.q"];
 
-/// Where the matrices are from.
-pub(crate) enum Equations<'a> {
-    Typed(Tick<'a>),
-    Derived(Box<Derived<'a>>),
+/// Which loops have their turn at a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Due {
+    pub(crate) position: bool,
+    pub(crate) velocity: bool,
+    pub(crate) current: bool,
 }
 
-/// From the tick that runs.
-pub(crate) struct Derived<'a> {
+/// Which loops are closed; the current loop always is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Closed {
+    pub(crate) position: bool,
+    pub(crate) velocity: bool,
+    /// Whether the shaft turns; a current loop by itself is looked at with the shaft held.
+    pub(crate) shaft: bool,
+}
+
+/// The matrices of a loop that runs, and which of it is closed.
+pub(crate) struct Equations<'a> {
     model: &'a Loop,
     matrices: Matrices<'a>,
     kinds: Vec<Due>,
@@ -32,7 +39,7 @@ pub(crate) struct Derived<'a> {
     scheduled: (f64, f64),
 }
 
-impl<'a> Derived<'a> {
+impl<'a> Equations<'a> {
     pub(crate) fn new(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
         let drive = &model.drive;
         let current = current_every(model);
@@ -51,7 +58,8 @@ impl<'a> Derived<'a> {
         Ok(Self { model, matrices, kinds, names, closed, factors: Factors::ONE, scheduled: (1.0, 1.0) })
     }
 
-    fn matrix(&mut self, due: Due) -> Result<TickMatrix, StabilityError> {
+    /// The matrix of a tick at the end of which the loops `due` turn.
+    pub(crate) fn matrix(&mut self, due: Due) -> Result<TickMatrix, StabilityError> {
         // Where a loop that is open turns with the one below it, there is no tick without it.
         let is_it = |kind: &&Due| kind.current == due.current && kind.velocity == due.velocity;
         let found = self.kinds.iter().find(|kind| **kind == due).or_else(|| self.kinds.iter().find(is_it));
@@ -85,65 +93,38 @@ impl<'a> Derived<'a> {
         }
         Ok(found)
     }
-}
 
-fn current_every(model: &Loop) -> u32 {
-    match &model.drive.stage {
-        Stage::Current { every, .. } => every.ticks(),
-        Stage::Direct { .. } => model.drive.velocity_every.ticks(),
-    }
-}
-
-impl<'a> Equations<'a> {
     /// The same loop with these loops closed and gains so much larger.
-    pub(crate) fn with(&mut self, closed: Closed, factors: Factors) {
-        match self {
-            Self::Typed(tick) => tick.with(closed, factors),
-            Self::Derived(derived) => (derived.closed, derived.factors) = (closed, factors),
-        }
+    pub(crate) const fn with(&mut self, closed: Closed, factors: Factors) {
+        (self.closed, self.factors) = (closed, factors);
     }
 
     /// The same loop with the gains of position and velocity loop by these factors of a gain schedule.
-    pub(crate) fn schedule(&mut self, factors: (f64, f64)) {
-        match self {
-            Self::Typed(tick) => tick.schedule(factors),
-            Self::Derived(derived) => derived.scheduled = factors,
-        }
+    pub(crate) const fn schedule(&mut self, factors: (f64, f64)) {
+        self.scheduled = factors;
     }
 
-    pub(crate) fn closed(&self) -> Closed {
-        match self {
-            Self::Typed(tick) => tick.closed(),
-            Self::Derived(derived) => derived.closed,
-        }
+    pub(crate) const fn closed(&self) -> Closed {
+        self.closed
     }
 
-    pub(crate) fn model(&self) -> &'a Loop {
-        match self {
-            Self::Typed(tick) => tick.model(),
-            Self::Derived(derived) => derived.model,
-        }
+    pub(crate) const fn model(&self) -> &'a Loop {
+        self.model
     }
 
     /// Ticks from turn to turn of the current loop, or of what takes its place.
     pub(crate) fn current_every(&self) -> u32 {
-        current_every(self.model())
+        current_every(self.model)
     }
 
     /// Number of states.
-    pub(crate) fn states(&self) -> usize {
-        match self {
-            Self::Typed(tick) => tick.states(),
-            Self::Derived(derived) => derived.names.len(),
-        }
+    pub(crate) const fn states(&self) -> usize {
+        self.names.len()
     }
 
     /// Which states are of the controllers.
     pub(crate) fn controllers(&self) -> Vec<bool> {
-        match self {
-            Self::Typed(tick) => (0..tick.states()).map(|j| (CONTROLLER..tick.fixed_states()).contains(&j)).collect(),
-            Self::Derived(derived) => derived.names.iter().map(|name| name.starts_with(CONTROLLERS)).collect(),
-        }
+        self.names.iter().map(|name| name.starts_with(CONTROLLERS)).collect()
     }
 
     /// Index of the motor's velocity.
@@ -153,66 +134,41 @@ impl<'a> Equations<'a> {
 
     /// Velocities of the bodies, from the motor on.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = usize> {
-        let bodies = self.model().mechanics.bodies().len();
-        let of = match self {
-            Self::Typed(_) => (bodies - 1..2 * bodies - 1).collect(),
-            Self::Derived(derived) => derived.indices(|name| name == VELOCITY),
-        };
-        of.into_iter()
+        self.indices(|name| name == VELOCITY)
     }
 
     /// Currents of the motor.
     pub(crate) fn currents(&self) -> [Option<usize>; 2] {
-        match self {
-            Self::Typed(_) => [Some(CURRENT), Some(CURRENT + 1)],
-            Self::Derived(derived) => CURRENTS.map(|end| derived.indices(|name| name.ends_with(end)).first().copied()),
-        }
+        CURRENTS.map(|end| self.indices(|name| name.ends_with(end)).next())
+    }
+
+    fn indices(&self, is_one: impl Fn(&str) -> bool) -> impl Iterator<Item = usize> {
+        self.names.iter().enumerate().filter(move |(_, name)| is_one(name)).map(|(index, _)| index)
     }
 
     /// Base tick (s).
     pub(crate) fn h(&self) -> f64 {
-        self.model().drive.base_rate.period()
+        self.model.drive.base_rate.period()
     }
 
     /// Whether there is one pole at 1 within the current loop, because physics wants it: without viscous friction and without a
     /// velocity loop the axis keeps any constant speed, since the integrators hold the current at its reference whatever the
     /// back-EMF. A current that is held over several ticks while the rotor turns is not quite at its reference.
     pub(crate) fn turns_freely(&self) -> bool {
-        let (closed, model) = (self.closed(), self.model());
+        let (closed, model) = (self.closed, self.model);
         let is_open = !closed.velocity || model.drive.velocity.k_p == 0.0;
         let holds_current = match &model.drive.stage {
-            Stage::Current { every, .. } => model.point.current == Dq::default() || every.ticks() == 1,
+            Stage::Current { every, .. } => model.d_current == 0.0 || every.ticks() == 1,
             Stage::Direct { .. } => false,
         };
         let bodies = model.mechanics.bodies();
         closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.friction.linear() == 0.0)
     }
-
-    /// The matrix of a tick at the end of which the loops `due` turn.
-    pub(crate) fn matrix(&mut self, due: Due) -> Result<TickMatrix, StabilityError> {
-        match self {
-            Self::Typed(tick) => Ok(TickMatrix { matrix: typed(tick, due), magnitude: None }),
-            Self::Derived(derived) => derived.matrix(due),
-        }
-    }
 }
 
-impl Derived<'_> {
-    fn indices(&self, is_one: impl Fn(&str) -> bool) -> Vec<usize> {
-        self.names.iter().enumerate().filter(|(_, name)| is_one(name)).map(|(index, _)| index).collect()
+fn current_every(model: &Loop) -> u32 {
+    match &model.drive.stage {
+        Stage::Current { every, .. } => every.ticks(),
+        Stage::Direct { .. } => model.drive.velocity_every.ticks(),
     }
-}
-
-fn typed(tick: &Tick, due: Due) -> DMatrix<f64> {
-    let (size, fixed, late) = (tick.states(), tick.fixed_states(), tick.late_states());
-    debug_assert!(fixed <= MOST_STATES);
-    let mut matrix = DMatrix::zeros(size, size);
-    for column in 0..size {
-        let mut x = State::unit(column, fixed, late);
-        tick.plant(&mut x);
-        tick.control(&mut x, due);
-        matrix.view_mut((0, column), (fixed, 1)).copy_from_slice(&x.to_array()[..fixed]);
-        matrix.view_mut((fixed, column), (late, 1)).copy_from_slice(&x.late);
-    }
-    matrix
 }

@@ -1,11 +1,11 @@
 //! The sampled linear loop of a servo axis: its poles, the name of the loop that is unstable, and the gains at the boundary.
 //!
-//! [`Loop`] says what the axis and its drive are. [`analyse`] writes one base tick of both as linear equations (`tick`), in
-//! the order of events of a run: all rates, delays, filters and the current loop in both axes are in them. The product over the
+//! [`Loop`] says what the axis and its drive are. [`analyse`] takes the matrices of its ticks from the loop that runs
+//! ([`servobench_linear`]): all rates, delays, filters and the current loop in both axes are in them. The product over the
 //! common period of all loops is taken around once; its eigenvalues are the poles.
 //!
 //! ```text
-//! x(t+1) = C_t·P·x(t)                C_t the loops that are due at tick t, P power stage and mechanics
+//! x(t+1) = C_t·P·x(t)                P the mechanics, C_t the loops that are due at tick t, and the power stage
 //! M = (C_0·P)·(C_{N−1}·P)⋯(C_1·P)    the loop is unstable: |λ(M)| > 1
 //! ```
 //! [`analyse_schedule`] does the same with the gains of a gain schedule; [`Master`] is a position loop over a bus.
@@ -16,10 +16,8 @@
 mod analyse;
 mod boundary;
 mod eigen;
-mod electrical;
 mod equations;
 mod error;
-mod late;
 mod master;
 mod model;
 mod ordering;
@@ -27,14 +25,11 @@ mod period;
 mod pole;
 mod report;
 mod schedule;
-mod state;
-mod tick;
 
-pub use analyse::{Depth, analyse, analyse_running};
+pub use analyse::{Depth, analyse};
 pub use error::StabilityError;
-pub use late::Sensors;
 pub use master::Master;
-pub use model::{LEFT_OUT, Loop, OperatingPoint, PositionFeedback, Source, VelocitySignal};
+pub use model::{LEFT_OUT, Loop, PositionFeedback, Source, VelocitySignal};
 pub use pole::Pole;
 pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};
-pub use schedule::{analyse_schedule, analyse_schedule_running};
+pub use schedule::analyse_schedule;

@@ -1,6 +1,5 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
 use crate::StabilityError;
-use crate::late::Sensors;
 use servobench_base::{Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
@@ -27,10 +26,8 @@ pub struct Loop {
     pub source: Source,
     /// The bodies.
     pub mechanics: Chain,
-    /// How late the sensors are.
-    pub sensors: Sensors,
-    /// Where the loop is linearised.
-    pub point: OperatingPoint,
+    /// Current along the d axis at rest (A, peak).
+    pub d_current: f64,
 }
 
 /// Where the drive has the motor's velocity from.
@@ -63,21 +60,12 @@ pub enum Source {
     },
 }
 
-/// Where the loop is linearised: at standstill, with a constant current.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct OperatingPoint {
-    /// Current in the rotor's frame (A, peak). The drive is taken to know the pole pairs where it is not zero.
-    pub current: Dq,
-}
-
 impl Loop {
     /// # Errors
     /// [`StabilityError`] names the first parameter out of its bound.
     pub fn check(&self) -> Result<(), StabilityError> {
         self.drive.check()?;
-        finite("operating point, current d", self.point.current.d)?;
-        finite("operating point, current q", self.point.current.q)?;
-        self.sensors.check()?;
+        finite("current along the d axis at rest", self.d_current)?;
         match (&self.source, &self.drive.stage) {
             (Source::Pmsm(motor), drive::Stage::Current { .. }) => Ok(motor.check()?),
             (Source::Ideal { gain }, drive::Stage::Direct { .. }) => {
@@ -105,7 +93,7 @@ impl Loop {
     pub(crate) fn effort_ratio(&self) -> f64 {
         match (&self.source, &self.drive.stage) {
             (Source::Pmsm(motor), drive::Stage::Current { params, .. }) => {
-                let ampere = Dq { d: self.point.current.d, q: 1.0 };
+                let ampere = Dq { d: self.d_current, q: 1.0 };
                 motor.torque(ampere) / params.motor.effort_constant(params.d_reference)
             }
             (Source::Ideal { gain }, drive::Stage::Direct { gain: estimated }) => gain / estimated,

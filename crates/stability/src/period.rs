@@ -2,9 +2,8 @@
 //!
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
 //! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
-use crate::equations::Equations;
+use crate::equations::{Due, Equations};
 use crate::error::StabilityError;
-use crate::tick::Due;
 use nalgebra::{Complex, DMatrix, DVector};
 use servobench_linear::{Pattern, TickMatrix};
 

@@ -32,34 +32,14 @@ struct At {
 ///
 /// # Errors
 /// [`StabilityError`], as of [`analyse`](crate::analyse).
-pub fn analyse_schedule(
-    model: &Loop,
-    stays: impl Fn(Range<f64>) -> f64,
-) -> Result<Option<Instability>, StabilityError> {
-    model.check()?;
-    of_schedule(model, || Ok(Analysis::new(model)), stays)
-}
-
-/// The same of the loop that is `running`.
-///
-/// # Errors
-/// [`StabilityError`], as of [`analyse`](crate::analyse).
-pub fn analyse_schedule_running<'a>(
+pub fn analyse_schedule<'a>(
     model: &'a Loop,
     running: Box<dyn Running + 'a>,
     stays: impl Fn(Range<f64>) -> f64,
 ) -> Result<Option<Instability>, StabilityError> {
     model.check()?;
-    of_schedule(model, || Analysis::running(model, running), stays)
-}
-
-fn of_schedule<'a>(
-    model: &'a Loop,
-    analysis: impl FnOnce() -> Result<Analysis<'a>, StabilityError>,
-    stays: impl Fn(Range<f64>) -> f64,
-) -> Result<Option<Instability>, StabilityError> {
     let Some(schedule) = &model.drive.blocks.schedule else { return Ok(None) };
-    let mut analysis = analysis()?;
+    let mut analysis = Analysis::new(model, running)?;
     let mut speeds = Vec::new();
     for share in shares(schedule) {
         let speed = schedule.from + share * (schedule.to - schedule.from);

@@ -88,7 +88,7 @@ impl CurrentSensor {
     /// True where both read the same share of their phase and nothing else, so that the vector is read by that share.
     fn errs_alike(&self) -> bool {
         let Self { offset, gain_error: [a, b], noise, seed: _, converter, delay: _, shift: _ } = *self;
-        offset == [0.0; 2] && a.to_bits() == b.to_bits() && noise == 0.0 && converter.is_none()
+        offset.iter().all(|offset| *offset == 0.0) && a.to_bits() == b.to_bits() && noise == 0.0 && converter.is_none()
     }
 
     /// In ticks of `h` (s).

@@ -1,5 +1,4 @@
 //! The analysis of the linear loop against runs.
-mod agreement;
 mod deviation;
 mod files;
 mod modes;

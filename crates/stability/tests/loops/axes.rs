@@ -2,9 +2,10 @@
 use servobench_base::Coordinate;
 use servobench_base::{Divider, Dq, Rate};
 use servobench_drive::{self as drive, current, feedforward, velocity};
-use servobench_plant::{Body, Chain, Friction, Link, pmsm};
+use servobench_plant::{Body, Chain, Encoder, EncoderErrors, Friction, Link, pmsm};
+use servobench_sim::{AtRest, WiredSensors};
 use servobench_stability::{
-    Depth, Loop, OperatingPoint, PositionFeedback, Report, Sensors, Source, VelocitySignal, analyse,
+    Depth, Loop, PositionFeedback, Report, Source, StabilityError, VelocitySignal, analyse as analyse_running,
 };
 
 pub(crate) const TAU: f64 = std::f64::consts::TAU;
@@ -51,8 +52,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
         current_tuning: None,
         source: Source::Ideal { gain: 1.0 },
         mechanics,
-        sensors: Sensors::IDEAL,
-        point: OperatingPoint::default(),
+        d_current: 0.0,
     }
 }
 
@@ -105,6 +105,26 @@ pub(crate) fn servo(tuning: Tuning, mechanics: Chain) -> Loop {
         source: Source::Pmsm(MOTOR),
         ..rest
     }
+}
+
+/// Sensors as `model` has them, whose encoder on the motor is as late as this (s).
+pub(crate) fn sensors(model: &Loop, latency: f64) -> WiredSensors {
+    let errors = EncoderErrors { latency, ..EncoderErrors::default() };
+    let increment = (model.velocity_signal == VelocitySignal::Differences).then_some(1e-9);
+    let motor = Encoder { increment, errors: (latency > 0.0).then_some(errors) };
+    let load = (model.position_feedback == PositionFeedback::Load).then(Encoder::default);
+    WiredSensors { motor, load, current: None }
+}
+
+/// The loop that `model` describes, as it runs.
+pub(crate) fn running(model: &Loop) -> Box<AtRest> {
+    Box::new(AtRest::new(model, &sensors(model, 0.0)).unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// # Errors
+/// As of [`analyse_running`].
+pub(crate) fn analyse(model: &Loop, depth: Depth) -> Result<Report, StabilityError> {
+    analyse_running(model, running(model), depth)
 }
 
 pub(crate) fn report(model: &Loop) -> Report {

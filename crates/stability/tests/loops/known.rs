@@ -1,7 +1,7 @@
 //! Axes that were run: which of them are unstable is known from runs with an initial deviation.
-use crate::axes::{TAU, Tuning, body, chain, ideal, report, servo};
+use crate::axes::{TAU, Tuning, analyse, body, chain, ideal, report, servo};
 use servobench_plant::Chain;
-use servobench_stability::{Depth, Loop, LoopName, PositionFeedback, VelocitySignal, analyse};
+use servobench_stability::{Depth, Loop, LoopName, PositionFeedback, VelocitySignal};
 use std::time::Instant;
 
 const STIFF: f64 = 7e5;

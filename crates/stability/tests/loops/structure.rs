@@ -1,8 +1,7 @@
 //! What no loop reaches is out of the verdict by structure.
-use crate::axes::{Tuning, body, chain, ideal, report, servo};
-use servobench_base::Dq;
+use crate::axes::{Tuning, analyse, body, chain, ideal, report, running, servo};
 use servobench_drive::{self as drive, Parameter};
-use servobench_stability::{Depth, Loop, LoopName, OperatingPoint, StabilityError, VelocitySignal, analyse};
+use servobench_stability::{Depth, Loop, LoopName, StabilityError, VelocitySignal, analyse as analyse_running};
 
 const TUNING: Tuning =
     Tuning { current: 1200.0, velocity: 0.01 * 377.0, integral_time: 0.01, filter_time: 0.0, position: 40.0 };
@@ -80,7 +79,12 @@ fn decoupling_ten_times_the_back_emf_is_the_current_loops_fault() {
 #[test]
 fn a_holding_current_of_a_round_rotor_hardly_moves_the_boundary() {
     let model = servo(TUNING, chain(vec![body(0.01, 0.0)], &[]));
-    let held = Loop { point: OperatingPoint { current: Dq { d: 0.0, q: 5.0 } }, ..model.clone() };
+    let held = {
+        let mut held = Loop { d_current: -5.0, ..model.clone() };
+        let drive::Stage::Current { params, .. } = &mut held.drive.stage else { panic!("a current loop") };
+        params.d_reference = held.d_current;
+        held
+    };
     let factor = |model: &Loop| report(model).loops[1].boundaries.unwrap().above.unwrap().factor;
     let (free, held) = (factor(&model), factor(&held));
     assert!((free / held - 1.0).abs() < 0.02 && free.to_bits() != held.to_bits(), "{free} {held}");
@@ -88,12 +92,13 @@ fn a_holding_current_of_a_round_rotor_hardly_moves_the_boundary() {
 
 #[test]
 fn what_cannot_be_analysed_is_said() {
-    let mut model = ideal(12_000, 1, 3.0, three_bodies());
+    let right = ideal(12_000, 1, 3.0, three_bodies());
+    let mut model = right.clone();
     model.drive.position_gain = f64::NAN;
-    let error = analyse(&model, Depth::Verdict).unwrap_err();
+    let error = analyse_running(&model, running(&right), Depth::Verdict).unwrap_err();
     assert!(matches!(error, StabilityError::Drive(error) if error.name == Parameter::POSITION_GAIN));
-    let mixed = Loop { source: servo(TUNING, three_bodies()).source, ..ideal(12_000, 1, 3.0, three_bodies()) };
-    assert!(matches!(analyse(&mixed, Depth::Verdict), Err(StabilityError::SourceDoesNotFit)));
+    let mixed = Loop { source: servo(TUNING, three_bodies()).source, ..right.clone() };
+    assert!(matches!(analyse_running(&mixed, running(&right), Depth::Verdict), Err(StabilityError::SourceDoesNotFit)));
     // 1e300 N·s/m on 10 g is a pole of −1e298 a tick.
     let model = ideal(12_000, 1, 1e300, chain(vec![body(0.01, 0.0)], &[]));
     let error = analyse(&model, Depth::Verdict).unwrap_err();
