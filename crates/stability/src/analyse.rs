@@ -75,7 +75,7 @@ impl Poles {
 
     /// The largest outside of the unit circle, by more than rounding.
     pub(crate) fn outside(&self) -> Option<Eigenvalue> {
-        let mut outside: Vec<_> = self.values.iter().copied().filter(|(_, value)| value.norm() > 1.0).collect();
+        let mut outside: Vec<_> = self.values.iter().copied().filter(|(_, value)| value.norm_sqr() > 1.0).collect();
         outside.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
         outside
             .into_iter()

@@ -86,9 +86,9 @@ impl Scan<'_, '_> {
     fn step(&mut self, poles: Option<&Poles>, beside: f64) -> f64 {
         let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return LONGEST_STEP };
         let mut steps = (LONGEST_STEP, SHORTEST_STEP);
-        for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm() > DELAY) {
+        for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm_sqr() > DELAY * DELAY) {
             let of_block = moved.values.iter().filter(|(other, _)| other == block).map(|(_, moved)| moved);
-            let Some(moved) = of_block.min_by(|a, b| (*a - pole).norm().total_cmp(&(*b - pole).norm())) else {
+            let Some(moved) = of_block.min_by(|a, b| (*a - pole).norm_sqr().total_cmp(&(*b - pole).norm_sqr())) else {
                 continue;
             };
             let way = (moved.norm() - pole.norm()).abs().max(ALONG * (moved - pole).norm());

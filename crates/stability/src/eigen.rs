@@ -18,11 +18,10 @@
 //! Source: Golub & Van Loan, *Matrix Computations*, 4th ed., §7.2.2; Higham, *Accuracy and Stability*, 2nd ed., §3.
 use crate::error::StabilityError;
 use crate::period::{ComplexVector, Period};
-use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
+use crate::qr;
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix};
 
-/// Iterations that the QR algorithm is granted, in all.
-const ITERATIONS: usize = 3_000;
 /// Bound of the relative error of what a tick does to a vector, by the number of states: 4·u.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 2.0;
 
@@ -51,7 +50,7 @@ pub(crate) struct Eigenvalue {
 /// # Errors
 /// [`StabilityError::NotConverged`].
 pub(crate) fn blocks(period: &Period) -> Result<Vec<Block>, StabilityError> {
-    period.pattern.loops(&period.controllers).into_iter().map(|states| Block::new(period, states)).collect()
+    period.loops.iter().map(|states| Block::new(period, states.clone())).collect()
 }
 
 impl Block {
@@ -59,9 +58,8 @@ impl Block {
         let size = states.len();
         let mut balanced = DMatrix::from_fn(size, size, |i, j| period.monodromy[(states[i], states[j])]);
         let scales = balance_parlett_reinsch(&mut balanced).iter().copied().collect();
-        let schur = Schur::try_new(balanced.clone(), f64::EPSILON, ITERATIONS)
-            .ok_or(StabilityError::NotConverged { iterations: ITERATIONS })?;
-        let eigenvalues = schur.complex_eigenvalues().iter().copied().collect();
+        let eigenvalues =
+            qr::eigenvalues(&balanced).ok_or(StabilityError::NotConverged { iterations: qr::ITERATIONS })?;
         Ok(Self { states, balanced, scales, eigenvalues })
     }
 

@@ -3,6 +3,7 @@ use crate::error::StabilityError;
 use crate::model::Loop;
 use servobench_drive::Stage;
 use servobench_linear::{CONTROLLERS, Factors, MECHANICS, Matrices, Running, TickMatrix};
+use std::rc::Rc;
 
 /// Names of velocities of the bodies, from the motor on.
 const VELOCITY: &str = "mechanics.velocity";
@@ -37,6 +38,8 @@ pub(crate) struct Equations<'a> {
     closed: Closed,
     factors: Factors,
     scheduled: (f64, f64),
+    /// The loops of what was closed last: no gain changes what acts on what.
+    loops: Option<(Closed, Rc<Vec<Vec<usize>>>)>,
 }
 
 impl<'a> Equations<'a> {
@@ -55,7 +58,7 @@ impl<'a> Equations<'a> {
         let matrices = Matrices::new(running, &ticks)?;
         let names = matrices.names().map(str::to_owned).collect();
         let closed = Closed { position: model.closes_position, velocity: true, shaft: true };
-        Ok(Self { model, matrices, kinds, names, closed, factors: Factors::ONE, scheduled: (1.0, 1.0) })
+        Ok(Self { model, matrices, kinds, names, closed, factors: Factors::ONE, scheduled: (1.0, 1.0), loops: None })
     }
 
     /// The matrix of a tick at the end of which the loops `due` turn.
@@ -144,6 +147,15 @@ impl<'a> Equations<'a> {
 
     fn indices(&self, is_one: impl Fn(&str) -> bool) -> impl Iterator<Item = usize> {
         self.names.iter().enumerate().filter(move |(_, name)| is_one(name)).map(|(index, _)| index)
+    }
+
+    /// States of the loops, where they are known.
+    pub(crate) fn known_loops(&self) -> Option<Rc<Vec<Vec<usize>>>> {
+        self.loops.as_ref().filter(|(closed, _)| *closed == self.closed).map(|(_, loops)| Rc::clone(loops))
+    }
+
+    pub(crate) fn keep_loops(&mut self, loops: &Rc<Vec<Vec<usize>>>) {
+        self.loops = Some((self.closed, Rc::clone(loops)));
     }
 
     /// Base tick (s).

@@ -27,10 +27,10 @@ pub enum StabilityError {
     },
     /// The QR iteration gave up.
     #[error(
-        "the poles of the loop cannot be computed: the QR iteration did not converge after {iterations} iterations"
+        "the poles of the loop cannot be computed: the QR iteration did not converge after {iterations} iterations for one of them"
     )]
     NotConverged {
         /// How many were granted.
-        iterations: usize,
+        iterations: u32,
     },
 }

@@ -23,6 +23,7 @@ mod model;
 mod ordering;
 mod period;
 mod pole;
+mod qr;
 mod report;
 mod schedule;
 

@@ -6,6 +6,7 @@ use crate::equations::{Due, Equations};
 use crate::error::StabilityError;
 use nalgebra::{Complex, DMatrix, DVector};
 use servobench_linear::{Pattern, TickMatrix};
+use std::rc::Rc;
 
 /// Largest entry of a product whose columns can still be squared and summed.
 pub(crate) const LARGEST: f64 = 1e150;
@@ -20,39 +21,46 @@ pub(crate) struct Period {
     ticks: Vec<usize>,
     /// The product of all.
     pub(crate) monodromy: DMatrix<f64>,
-    pub(crate) pattern: Pattern,
-    /// Which states are of the controllers.
-    pub(crate) controllers: Vec<bool>,
+    /// States of each loop.
+    pub(crate) loops: Rc<Vec<Vec<usize>>>,
     /// Length of a tick (s).
     pub(crate) h: f64,
 }
 
-/// A matrix and its pattern.
-#[derive(Clone)]
-struct Product(DMatrix<f64>, Pattern);
-
-impl Product {
-    fn identity(size: usize) -> Self {
-        Self(DMatrix::identity(size, size), Pattern::identity(size))
-    }
-
-    fn after(&self, first: &Self) -> Self {
-        Self(&self.0 * &first.0, self.1.after(&first.1))
-    }
-
-    fn power(&self, mut exponent: u32) -> Self {
-        let (mut power, mut square) = (Self::identity(self.0.nrows()), self.clone());
-        while exponent > 0 {
-            if exponent & 1 == 1 {
-                power = square.after(&power);
-            }
-            exponent >>= 1;
-            if exponent > 0 {
-                square = square.after(&square);
-            }
+/// `matrix` to the power of `exponent`; `None` for 1.
+fn power<T: Clone>(matrix: &T, mut exponent: u32, after: impl Fn(&T, &T) -> T) -> Option<T> {
+    let (mut power, mut square) = (None, matrix.clone());
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power = Some(power.map_or_else(|| square.clone(), |power| after(&square, &power)));
         }
-        power
+        exponent >>= 1;
+        if exponent > 0 {
+            square = after(&square, &square);
+        }
     }
+    power
+}
+
+/// The product over a period of what is there for each kind of tick: each loop's period is a whole number of the periods of the loop
+/// below it.
+fn product<T: Clone>(
+    of: impl Fn(Due) -> T,
+    all: Due,
+    [current, velocity, position]: [u32; 3],
+    after: impl Fn(&T, &T) -> T + Copy,
+) -> T {
+    let behind = |last: T, before: Option<T>| before.map_or_else(|| last.clone(), |before| after(&last, &before));
+    let idle = Due { position: false, velocity: false, current: false };
+    let idle = if current > 1 { power(&of(idle), current - 1, after) } else { None };
+    let current_period = |due: Due| behind(of(due), idle.clone());
+    let velocity_period = |due: Due| {
+        let inner = Due { position: false, velocity: false, current: true };
+        let count = velocity / current - 1;
+        behind(current_period(due), if count > 0 { power(&current_period(inner), count, after) } else { None })
+    };
+    let (inner, count) = (Due { position: false, ..all }, position / velocity - 1);
+    behind(velocity_period(all), if count > 0 { power(&velocity_period(inner), count, after) } else { None })
 }
 
 impl Period {
@@ -67,7 +75,6 @@ impl Period {
         let velocity = if closed.shaft { velocity } else { current };
         let position = if closed.position { drive.position_every.ticks() } else { velocity };
 
-        let idle = Due { position: false, velocity: false, current: false };
         let all = Due { position: closed.position, velocity: closed.shaft, current: true };
         let mut kinds: Vec<(Due, TickMatrix)> = Vec::new();
         let mut ticks = Vec::new();
@@ -83,28 +90,20 @@ impl Period {
                 kinds.push((due, equations.matrix(due)?));
             }
         }
-        let product = |due: Due| {
-            let kind = kinds.iter().find(|(kind, _)| *kind == due);
-            kind.map_or_else(
-                || Product::identity(equations.states()),
-                |(_, tick)| Product(tick.matrix.clone(), Pattern::of(&tick.matrix)),
-            )
-        };
-        // Each loop's period is a whole number of the periods of the loop below it.
-        let idle = product(idle).power(current - 1);
-        let current_period = |due: Due| product(due).after(&idle);
-        let velocity_period = |due: Due| {
-            let inner = Due { position: false, velocity: false, current: true };
-            current_period(due).after(&current_period(inner).power(velocity / current - 1))
-        };
-        let inner = Due { position: false, ..all };
-        let whole = velocity_period(all).after(&velocity_period(inner).power(position / velocity - 1));
+        let of = |due: Due| kinds.iter().find(|(kind, _)| *kind == due).map(|(_, tick)| &tick.matrix);
+        let missing = || DMatrix::identity(equations.states(), equations.states());
+        let rates = [current, velocity, position];
+        let monodromy = product(|due| of(due).cloned().unwrap_or_else(missing), all, rates, |last, first| last * first);
         // NaN, too.
-        if !whole.0.iter().all(|entry| entry.abs() < LARGEST) {
+        if !monodromy.iter().all(|entry| entry.abs() < LARGEST) {
             return Err(StabilityError::Overflow { ticks: position });
         }
-        let (controllers, h) = (equations.controllers(), equations.h());
-        Ok(Self { kinds, ticks, monodromy: whole.0, pattern: whole.1, controllers, h })
+        let loops = equations.known_loops().unwrap_or_else(|| {
+            let pattern = |due| of(due).map_or_else(|| Pattern::identity(equations.states()), Pattern::of);
+            Rc::new(product(pattern, all, rates, Pattern::after).loops(&equations.controllers()))
+        });
+        equations.keep_loops(&loops);
+        Ok(Self { kinds, ticks, monodromy, loops, h: equations.h() })
     }
 
     /// Length (s).
