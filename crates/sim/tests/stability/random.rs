@@ -137,7 +137,22 @@ pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     if random.unit() < 0.5 {
         late(random, &mut scenario);
     }
+    hold_a_current(random, &mut scenario);
     scenario
+}
+
+/// A current along the d axis, of some loops with a right commutation.
+fn hold_a_current(random: &mut Random, scenario: &mut Scenario) {
+    let is_right =
+        scenario.actuator.encoder().and_then(|encoder| encoder.errors).is_none_or(|errors| errors.commutation == 0.0);
+    let (d, is_held) = (-random.logarithmic(0.1, 3.0), is_right && random.unit() < 0.3);
+    let Actuator::Pmsm { drive, .. } = &mut scenario.actuator else { return };
+    if let (true, Stage::Current { params, .. }) = (is_held, &mut drive.params.stage) {
+        params.d_reference = d;
+        if let Some(sensor) = &mut drive.current_sensor {
+            sensor.gain_error = [sensor.gain_error[0]; 2];
+        }
+    }
 }
 
 /// Sensors that are late: by some cycles and a share of a tick; current sensors that read too much, and a commutation that is off.
@@ -152,6 +167,9 @@ fn late(random: &mut Random, scenario: &mut Scenario) {
     let mut current = CurrentSensor { delay: random.one_of(&[0, 0, 1, 2]), ..CurrentSensor::default() };
     current.shift = if random.unit() < 0.5 { random.unit() * tick } else { 0.0 };
     current.gain_error = [random.logarithmic(0.8, 1.25) - 1.0; 2];
+    if random.unit() < 0.3 {
+        current.gain_error[1] *= random.logarithmic(0.5, 2.0);
+    }
     let commutation = if random.unit() < 0.4 { random.unit() - 0.5 } else { 0.0 };
     let drive = match &mut scenario.actuator {
         Actuator::Pmsm { encoder, drive, motor: pmsm, .. } => {
