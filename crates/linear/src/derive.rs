@@ -29,6 +29,19 @@ pub struct TickMatrix {
     pub magnitude: Option<DMatrix<f64>>,
 }
 
+/// A tick with inputs and outputs: x(k+1) = A·x(k) + B·u(k), y(k+1) = C·x(k) + D·u(k).
+#[derive(Debug, Clone, PartialEq)]
+pub struct System {
+    /// A.
+    pub a: DMatrix<f64>,
+    /// B.
+    pub b: DMatrix<f64>,
+    /// C.
+    pub c: DMatrix<f64>,
+    /// D.
+    pub d: DMatrix<f64>,
+}
+
 /// A loop that runs, and the matrices of its ticks as far as they were asked for.
 pub struct Matrices<'a> {
     running: Box<dyn Running + 'a>,
@@ -219,22 +232,46 @@ impl<'a> Matrices<'a> {
         Ok(sum)
     }
 
+    /// A tick of this kind with the gains as they are, from states and `inputs` to states and `outputs`: numbers by their names, of several
+    /// with one name the first. A number that a tick sets before it reads it is no input.
+    ///
+    /// # Errors
+    /// [`LinearError`] where it does not run, or has no such number.
+    pub fn system(&mut self, kind: usize, inputs: &[&str], outputs: &[&str]) -> Result<System, LinearError> {
+        let index = |name: &&str| {
+            let found = self.numbers.iter().position(|number| number.name == **name);
+            found.ok_or_else(|| LinearError::NoSuchNumber((*name).to_owned()))
+        };
+        let with = |names: &[&str]| names.iter().map(index).collect::<Result<Vec<_>, _>>();
+        let (inputs, outputs) = (with(inputs)?, with(outputs)?);
+        let states = self.states.clone();
+        self.running.set(&Factors::ONE);
+        let mut block = |rows: &[usize], columns: &[usize]| self.block(kind, rows, columns);
+        let (a, b) = (block(&states, &states)?, block(&states, &inputs)?);
+        Ok(System { a, b, c: block(&outputs, &states)?, d: block(&outputs, &inputs)? })
+    }
+
     fn derive(&mut self, kind: usize, corner: &Factors) -> Result<(), LinearError> {
         let key = (kind, corner.bits());
-        if self.known.contains_key(&key) {
-            return Ok(());
+        if !self.known.contains_key(&key) {
+            self.running.set(corner);
+            let states = self.states.clone();
+            let matrix = self.block(kind, &states, &states)?;
+            self.known.insert(key, matrix);
         }
-        self.running.set(corner);
-        let size = self.states.len();
-        let mut matrix = DMatrix::zeros(size, size);
-        for index in 0..size {
-            let column = self.column(kind, self.states[index])?;
-            for (entry, &row) in matrix.column_mut(index).iter_mut().zip(&self.states) {
+        Ok(())
+    }
+
+    /// What the numbers `rows` are different by after a tick, per difference of the numbers `columns` before it.
+    fn block(&mut self, kind: usize, rows: &[usize], columns: &[usize]) -> Result<DMatrix<f64>, LinearError> {
+        let mut block = DMatrix::zeros(rows.len(), columns.len());
+        for (index, &number) in columns.iter().enumerate() {
+            let column = self.column(kind, number)?;
+            for (entry, &row) in block.column_mut(index).iter_mut().zip(rows) {
                 *entry = column[row];
             }
         }
-        self.known.insert(key, matrix);
-        Ok(())
+        Ok(block)
     }
 }
 
@@ -276,3 +313,6 @@ const fn is_same(one: f64, other: f64) -> bool {
 fn by(other: f64, at_rest: f64, size: f64) -> f64 {
     if is_same(other, at_rest) { 0.0 } else { (other - at_rest) / size }
 }
+
+#[cfg(test)]
+mod tests;

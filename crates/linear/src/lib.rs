@@ -26,7 +26,7 @@ mod factors;
 mod form;
 mod structure;
 
-pub use derive::{Matrices, TickMatrix};
+pub use derive::{Matrices, System, TickMatrix};
 pub use error::LinearError;
 pub use factors::Factors;
 pub use form::Form;
