@@ -11,7 +11,7 @@
 //! | file | content |
 //! |---|---|
 //! | `recordings.txt` | a hash of each channel, signal, move, event, call and line of the log of each recording |
-//! | `results.txt` | verdict, requirements, metrics and limits of each run, as `results.json` has them |
+//! | `results.txt` | verdict, requirements, metrics and limits of each run, as `results.json` has them, without its digests |
 //! | `said.txt` | what `check` and `run` say of each scenario |
 //! | `plans.txt` | what `plan --json` says |
 //! | `fmus.txt` | hashes of the files in exported FMUs, the libraries apart, and of what the FMUs put out |
