@@ -58,7 +58,7 @@ mod units;
 
 pub use mailbox::Mailbox;
 pub use params::{Control, Params, Settings};
-pub use position_loop::{Derivative, PositionGains};
+pub use position_loop::{Derivative, Law, PositionGains, PositionLoop};
 pub use sequencer::Sequencing;
 pub use units::Units;
 
@@ -67,7 +67,6 @@ use drive_profile::DriveProfile;
 use effort::{Limit, Ramp};
 use homing::Procedure;
 use position::Position;
-use position_loop::PositionLoop;
 use sequencer::{Sequencer, Wanted};
 use servobench_base::{Setpoint, Stateful, Tick};
 use servobench_cia402::{Actuals, Commands, ControlBit, Mode, StatusBit};

@@ -5,6 +5,7 @@ mod control;
 use crate::disturbance::Disturbances;
 use crate::external::{Controller, External};
 use crate::loose_sensors::LooseSensors;
+use crate::master_at_rest::MasterAtRest;
 use crate::network::{Network, Prompt};
 use crate::program::Program;
 use crate::run::Reason;
@@ -67,6 +68,8 @@ pub(crate) enum Source {
     Program(Box<Program>),
     /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
     Network(Box<Network>, #[state(constant)] f64),
+    /// A master closes the position loop over a bus, and nothing moves: to make the loop linear.
+    Master(Box<MasterAtRest>),
 }
 
 /// Position and its derivatives.
@@ -199,6 +202,10 @@ impl ClosedLoop {
                 control.show(self.mounting.direction, network.cuts_velocity(), now);
                 command
             }
+            Source::Master(master) => {
+                let demand = master.step(control.closing_position(&sensors));
+                control.step(&demand, EffortLimits::NONE, &sensors)
+            }
         }
     }
 
@@ -214,6 +221,7 @@ impl ClosedLoop {
                 };
             }
             Source::Network(network, _) => now.ask(network.request(self.base_rate.time(Tick(k)))),
+            Source::Master(_) => {}
         }
     }
 
@@ -265,7 +273,7 @@ impl ClosedLoop {
     fn check(&mut self) -> Result<(), Reason> {
         match &mut self.state.source {
             Source::Network(network, _) => network.failure().map_or(Ok(()), |reason| Err(Reason::Program(reason))),
-            Source::Program(_) => Ok(()),
+            Source::Program(_) | Source::Master(_) => Ok(()),
         }
     }
 

@@ -16,6 +16,7 @@ mod limit_watch;
 mod linear;
 mod loose_sensors;
 mod machine;
+mod master_at_rest;
 mod multi_axis;
 mod network;
 mod program;
@@ -31,6 +32,7 @@ pub use coupled::{ConnectionDelay, FmuDoubt, FmuOpener, NoFmus, replaces_the_dri
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};
 pub use linear::{AtRest, WiredSensors};
+pub use master_at_rest::MasterOverBus;
 pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};
 pub use program::Program;
 pub use run::{AxisFailure, Failure, Outcome, Reason};

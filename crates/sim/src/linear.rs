@@ -3,6 +3,7 @@ use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Mounting, Shaft, Sou
 use crate::disturbance::Disturbances;
 use crate::error::BuildError;
 use crate::external::External;
+use crate::master_at_rest::{MasterAtRest, MasterOverBus};
 use crate::program::Program;
 use servobench_base::state::{Part, Reader, Stateful as _, Writer, words};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Rate, Setpoint};
@@ -58,7 +59,11 @@ impl AtRest {
     ///
     /// # Errors
     /// [`BuildError`] says which part cannot be built.
-    pub fn new(model: &stability::Loop, sensors: &WiredSensors) -> Result<Self, BuildError> {
+    pub fn new(
+        model: &stability::Loop,
+        sensors: &WiredSensors,
+        master: Option<&MasterOverBus>,
+    ) -> Result<Self, BuildError> {
         let base_rate = model.drive.base_rate;
         let h = base_rate.period();
         let mut params = model.drive.linearised();
@@ -107,7 +112,10 @@ impl AtRest {
         let closed = ClosedLoop {
             base_rate,
             state: State {
-                source: Source::Program(Box::new(Program::standing())),
+                source: match master {
+                    None => Source::Program(Box::new(Program::standing())),
+                    Some(master) => Source::Master(Box::new(MasterAtRest::new(master, &params))),
+                },
                 begun: None,
                 upcoming: None,
                 control: Some(control),
@@ -144,7 +152,7 @@ impl AtRest {
     }
 
     fn write(&mut self, to: &mut dyn Writer) -> Result<(), servobench_plant::MechanicsError> {
-        let State { source: _, begun: _, upcoming: _, control, sensors: _, power, motor_before: _, shaft } =
+        let State { source, begun: _, upcoming: _, control, sensors: _, power, motor_before: _, shaft } =
             &self.closed.state;
         to.enter(Part::field("mechanics"));
         self.closed.mechanics.save(to)?;
@@ -153,6 +161,9 @@ impl AtRest {
             part(to, "controllers", |to| {
                 part(to, "drive", |to| state.save(to));
                 part(to, "effort", |to| shaft.effort.save(to));
+                if let Source::Master(master) = source {
+                    part(to, "master", |to| master.save(to));
+                }
             });
             for EncoderInput { encoder, unwrap: _ } in
                 [Some(motor_encoder), load_encoder.as_ref()].into_iter().flatten()
@@ -165,11 +176,14 @@ impl AtRest {
     }
 
     fn read(&mut self, from: &mut Reader<'_>) -> Result<(), LinearError> {
-        let State { control, power, shaft, .. } = &mut self.closed.state;
+        let State { source, control, power, shaft, .. } = &mut self.closed.state;
         self.closed.mechanics.restore(from).map_err(|error| LinearError::Stopped(error.to_string()))?;
         if let Some(Control { params: _, state, motor_encoder, load_encoder }) = control {
             state.restore(from)?;
             shaft.effort.restore(from)?;
+            if let Source::Master(master) = source {
+                master.restore(from)?;
+            }
             for input in [Some(motor_encoder), load_encoder.as_mut()].into_iter().flatten() {
                 input.encoder.restore(from)?;
             }
@@ -252,5 +266,8 @@ impl Running for AtRest {
             }
         }
         control.params = params;
+        if let Source::Master(master) = &mut self.closed.state.source {
+            master.set(factors.position);
+        }
     }
 }

@@ -3,14 +3,16 @@ use crate::bench::plant;
 use crate::coupled;
 use crate::error::BuildError;
 use crate::linear::{AtRest, WiredSensors};
+use crate::master_at_rest::MasterOverBus;
 use crate::speeds::Speeds;
+use servobench_base::Divider;
 use servobench_drive::Stage;
 use servobench_drive::current::operating_point::Strategy;
 use servobench_metrics::Quantity;
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, Scenario};
 use servobench_stability::{
-    self as stability, Depth, Instability, Loop, Master, PositionFeedback, Report, Source, VelocitySignal,
+    self as stability, Depth, Instability, Loop, PositionFeedback, Report, Source, VelocitySignal,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -39,10 +41,6 @@ pub struct MasterLoop {
     pub largest: f64,
 }
 
-/// How far off [`MasterLoop::largest`] can be: 3 % as it takes a position that is no whole number of cycles old, and as much again
-/// as it takes the velocity loop.
-const BOUND_OFF: f64 = 0.06;
-
 impl MasterLoop {
     /// Factor by which the gain may grow.
     #[must_use]
@@ -50,10 +48,10 @@ impl MasterLoop {
         self.largest / self.gain
     }
 
-    /// True where the gain is beyond the largest one, by more than that can be off.
+    /// True where the gain is beyond the largest one.
     #[must_use]
     pub fn is_unstable(&self) -> bool {
-        self.gain > self.largest * (1.0 + BOUND_OFF)
+        self.gain > self.largest
     }
 }
 
@@ -137,7 +135,7 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
         Err(why) => return Ok(Analysis::NotPossible(why)),
     };
     let failed = |error| Ok(Analysis::NotPossible(NotAnalysed::Failed(error)));
-    let running = || AtRest::new(&model, &sensors).map(Box::new);
+    let running = || AtRest::new(&model, &sensors, None).map(Box::new);
     let mut report = match stability::analyse(&model, running()?, depth) {
         Ok(report) => Box::new(report),
         Err(error) => return failed(error),
@@ -150,25 +148,31 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
             Err(error) => return failed(error),
         }
     }
-    let master = scenario.bus.as_ref().and_then(|bus| master_loop(scenario, bus, &model));
-    Ok(Analysis::Done { report, master, without })
+    match scenario.bus.as_ref().filter(|_| report.is_stable()).and_then(over_bus) {
+        None => Ok(Analysis::Done { report, master: None, without }),
+        Some(master) => match master_loop(&master, model, &sensors)? {
+            Ok(master) => Ok(Analysis::Done { report, master: Some(master), without }),
+            Err(error) => failed(error),
+        },
+    }
 }
 
 /// The position loop that the master closes over `bus`, if it does.
-fn master_loop(scenario: &Scenario, bus: &Bus, model: &Loop) -> Option<MasterLoop> {
+fn over_bus(bus: &Bus) -> Option<MasterOverBus> {
     let gains = bus.position_loop.filter(|gains| gains.gain > 0.0)?;
-    let tick = scenario.base_rate.period();
-    let cycle = f64::from(bus.cycle) * tick;
-    // The answer is as old as a step of the drive.
-    let age = f64::from(model.drive.position_every.ticks()) * tick;
-    let master = Master {
-        gain: gains.gain,
-        integral_time: gains.integral_time,
-        derivative: gains.derivative.map(|derivative| (derivative.time, derivative.filter)),
-        cycle,
-        round_trip: f64::from(2 * bus.delay + 1) * cycle + age,
-    };
-    Some(MasterLoop { gain: gains.gain, largest: master.largest_gain(model) })
+    Some(MasterOverBus { gains, cycle: Divider::new(bus.cycle)?, delay: bus.delay as usize })
+}
+
+/// The largest gain of `master` above the loops of `model`.
+fn master_loop(
+    master: &MasterOverBus,
+    model: Loop,
+    sensors: &WiredSensors,
+) -> Result<Result<MasterLoop, stability::StabilityError>, BuildError> {
+    let model = Loop { master_cycle: Some(master.cycle), ..model };
+    let running = Box::new(AtRest::new(&model, sensors, Some(master))?);
+    let gain = master.gains.gain;
+    Ok(stability::position_gain_margin(&model, running).map(|factor| MasterLoop { gain, largest: factor * gain }))
 }
 
 type Found = Result<(Loop, WiredSensors, Vec<NotAnalysed>), NotAnalysed>;
@@ -204,6 +208,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     let model = Loop {
         drive: params,
         closes_position,
+        master_cycle: None,
         velocity_signal: velocity_signal(*encoder),
         position_feedback: match drive.position_feedback {
             Feedback::Motor => PositionFeedback::Motor,

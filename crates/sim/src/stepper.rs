@@ -106,7 +106,7 @@ impl Stepper {
     #[must_use]
     pub fn states(&self) -> States {
         match &self.axis().closed_loop.state.source {
-            Source::Program(_) => States::default(),
+            Source::Program(_) | Source::Master(_) => States::default(),
             Source::Network(network, _) => network.states(),
         }
     }

@@ -53,6 +53,20 @@ pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth
     Ok(Report { instability, largest, slowest_oscillating, slowest_real, loops, warnings: model.warnings() })
 }
 
+/// The factor on the gain of the position loop, nearest to 1, up to which the whole loop is stable: below 1 where it is not, and 0 where no
+/// gain makes it so.
+///
+/// # Errors
+/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
+pub fn position_gain_margin<'a>(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<f64, StabilityError> {
+    model.check()?;
+    let mut analysis = Analysis::new(model, running)?;
+    let whole = analysis.whole();
+    let is_unstable = analysis.unstable(whole)?.is_some();
+    let [below, above] = boundary::nearest(&mut analysis.equations, whole, GainName::Position, is_unstable);
+    Ok(if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) })
+}
+
 /// The poles of the loops that a tick closes.
 pub(crate) struct Poles {
     period: Period,
@@ -173,8 +187,7 @@ impl<'a> Analysis<'a> {
     /// All loops that have a gain.
     fn whole(&self) -> Closed {
         let closes_velocity = self.model.drive.velocity.k_p > 0.0;
-        let closes_position = self.model.closes_position && self.model.drive.position_gain > 0.0;
-        Closed { position: closes_position && closes_velocity, velocity: closes_velocity, shaft: true }
+        Closed { position: self.model.has_position_loop() && closes_velocity, velocity: closes_velocity, shaft: true }
     }
 
     /// The loop `name` with the loops around it open.

@@ -1,6 +1,7 @@
 //! The matrices of a loop's ticks with some of its loops closed and its gains by factors.
 use crate::error::StabilityError;
 use crate::model::Loop;
+use servobench_base::Divider;
 use servobench_drive::Stage;
 use servobench_linear::{CONTROLLERS, Factors, MECHANICS, Matrices, Running, TickMatrix};
 use std::rc::Rc;
@@ -12,12 +13,39 @@ const EFFORT: &str = "controllers.effort";
 /// Ends of the names of the motor's currents.
 const CURRENTS: [&str; 2] = [".state.current.d", ".state.current.q"];
 
-/// Which loops have their turn at a tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Due {
-    pub(crate) position: bool,
-    pub(crate) velocity: bool,
-    pub(crate) current: bool,
+/// Ticks that have one matrix.
+#[derive(Debug, Clone, Copy)]
+struct Kind {
+    /// Number of the first of them.
+    tick: u32,
+    turns: Turns,
+}
+
+/// Gains that act at a tick.
+#[derive(Debug, Clone, Copy)]
+struct Turns {
+    position: bool,
+    velocity: bool,
+    current: bool,
+}
+
+/// The order of kinds in a period.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Order {
+    /// Cycles of the tasks in ticks, from 1 on: each is a whole number of the one before.
+    pub(crate) every: Vec<u32>,
+    /// Kinds of the last ticks of the longest of these cycles, as many as there are in a period. Those of the shorter ones end by the kinds
+    /// 0, 1, ….
+    pub(crate) ends: Vec<usize>,
+}
+
+impl Order {
+    /// The kind of each tick of a period.
+    pub(crate) fn ticks(&self) -> Vec<usize> {
+        let Some((cycle, below)) = self.every.split_last() else { return Vec::new() };
+        let kind = |tick: u32| below.iter().rposition(|every| tick.is_multiple_of(*every)).unwrap_or(0);
+        self.ends.iter().flat_map(|&end| (1..*cycle).map(kind).chain([end])).collect()
+    }
 }
 
 /// Which loops are closed; the current loop always is.
@@ -33,7 +61,10 @@ pub(crate) struct Closed {
 pub(crate) struct Equations<'a> {
     model: &'a Loop,
     matrices: Matrices<'a>,
-    kinds: Vec<Due>,
+    /// By tasks that are faster than a step of the position loop, from every tick on, and behind them those of the steps in a period.
+    kinds: Vec<Kind>,
+    /// Ticks from step to step of the position loop: of what closes it, or of what interpolates between its cycles.
+    step: u32,
     names: Vec<String>,
     closed: Closed,
     factors: Factors,
@@ -45,30 +76,38 @@ pub(crate) struct Equations<'a> {
 impl<'a> Equations<'a> {
     pub(crate) fn new(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
         let drive = &model.drive;
-        let current = current_every(model);
-        let (velocity, position) = (drive.velocity_every.ticks(), drive.position_every.ticks());
-        let mut kinds = Vec::new();
-        let mut ticks: Vec<u32> = Vec::new();
-        for tick in [position, velocity, current, 1] {
-            if !ticks.contains(&tick) {
-                ticks.push(tick);
-                kinds.push(Due { position: tick == position, velocity: tick >= velocity, current: tick >= current });
-            }
-        }
+        let (current, velocity, step) =
+            (current_every(model), drive.velocity_every.ticks(), drive.position_every.ticks());
+        let position = model.master_cycle.map_or(step, Divider::ticks);
+        let mut faster = vec![1, current, velocity];
+        faster.retain(|&every| every < step);
+        faster.dedup();
+        // The drive goes from one velocity of a master to the next, so that each of its steps is another.
+        let ticks: Vec<u32> = faster.into_iter().chain((1..=position / step).map(|number| number * step)).collect();
+        let of = |&tick: &u32| Kind {
+            tick,
+            turns: Turns { position: tick == position, velocity: tick >= velocity, current: tick >= current },
+        };
+        let kinds = ticks.iter().map(of).collect();
         let matrices = Matrices::new(running, &ticks)?;
         let names = matrices.names().map(str::to_owned).collect();
-        let closed = Closed { position: model.closes_position, velocity: true, shaft: true };
-        Ok(Self { model, matrices, kinds, names, closed, factors: Factors::ONE, scheduled: (1.0, 1.0), loops: None })
+        let closed = Closed { position: model.has_position_loop(), velocity: true, shaft: true };
+        Ok(Self {
+            model,
+            matrices,
+            kinds,
+            step,
+            names,
+            closed,
+            factors: Factors::ONE,
+            scheduled: (1.0, 1.0),
+            loops: None,
+        })
     }
 
-    /// The matrix of a tick at the end of which the loops `due` turn.
-    pub(crate) fn matrix(&mut self, due: Due) -> Result<TickMatrix, StabilityError> {
-        // Where a loop that is open turns with the one below it, there is no tick without it.
-        let is_it = |kind: &&Due| kind.current == due.current && kind.velocity == due.velocity;
-        let found = self.kinds.iter().find(|kind| **kind == due).or_else(|| self.kinds.iter().find(is_it));
-        let found = found.or_else(|| self.kinds.iter().rfind(|kind| kind.current == due.current));
-        let kind = found.copied().unwrap_or(due);
-        let index = self.kinds.iter().position(|other| *other == kind).unwrap_or(0);
+    /// The matrix of a tick of this kind.
+    pub(crate) fn matrix(&mut self, index: usize) -> Result<TickMatrix, StabilityError> {
+        let kind = self.kinds[index].turns;
         let (closed, factors, one) = (self.closed, self.factors, Factors::ONE);
         let by = |is_due: bool, is_closed: bool, factor: f64| match (is_due, is_closed) {
             (false, _) => 1.0,
@@ -107,17 +146,22 @@ impl<'a> Equations<'a> {
         self.scheduled = factors;
     }
 
-    pub(crate) const fn closed(&self) -> Closed {
-        self.closed
-    }
-
     pub(crate) const fn model(&self) -> &'a Loop {
         self.model
     }
 
-    /// Ticks from turn to turn of the current loop, or of what takes its place.
-    pub(crate) fn current_every(&self) -> u32 {
-        current_every(self.model)
+    /// The order of ticks in the period of the loops that are closed: one that is open does not lengthen it, since what is below it repeats
+    /// faster.
+    pub(crate) fn order(&self) -> Order {
+        let Closed { position, shaft, .. } = self.closed;
+        let faster: Vec<u32> = self.kinds.iter().map(|kind| kind.tick).take_while(|tick| *tick < self.step).collect();
+        let is_slowest = |kind: &Kind| if shaft { kind.turns.velocity } else { kind.turns.current };
+        let slowest = self.kinds.iter().position(is_slowest).unwrap_or(0);
+        if let Some(every) = faster.get(..=slowest).filter(|_| !position) {
+            return Order { every: every.to_vec(), ends: vec![slowest] };
+        }
+        let steps = faster.len()..if position { self.kinds.len() } else { faster.len() + 1 };
+        Order { every: faster.into_iter().chain([self.step]).collect(), ends: steps.collect() }
     }
 
     /// Number of states.

@@ -23,7 +23,7 @@ pub enum StabilityError {
     )]
     Overflow {
         /// Length of the period (base ticks).
-        ticks: u32,
+        ticks: usize,
     },
     /// The QR iteration gave up.
     #[error(

@@ -8,7 +8,7 @@
 //! x(t+1) = C_t·P·x(t)                P the mechanics, C_t the loops that are due at tick t, and the power stage
 //! M = (C_0·P)·(C_{N−1}·P)⋯(C_1·P)    the loop is unstable: |λ(M)| > 1
 //! ```
-//! [`analyse_schedule`] does the same with the gains of a gain schedule; [`Master`] is a position loop over a bus.
+//! [`analyse_schedule`] does the same with the gains of a gain schedule.
 //!
 //! Friction, saturation and quantisation are not in it: [`LEFT_OUT`].
 //! Source: Bittanti & Colaneri, *Periodic Systems*, 2009, ch. 3 (monodromy matrix of a multirate loop).
@@ -18,7 +18,6 @@ mod boundary;
 mod eigen;
 mod equations;
 mod error;
-mod master;
 mod model;
 mod ordering;
 mod period;
@@ -27,9 +26,8 @@ mod qr;
 mod report;
 mod schedule;
 
-pub use analyse::{Depth, analyse};
+pub use analyse::{Depth, analyse, position_gain_margin};
 pub use error::StabilityError;
-pub use master::Master;
 pub use model::{LEFT_OUT, Loop, PositionFeedback, Source, VelocitySignal};
 pub use pole::Pole;
 pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};

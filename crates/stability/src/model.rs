@@ -1,6 +1,6 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
 use crate::StabilityError;
-use servobench_base::{Dq, finite, positive};
+use servobench_base::{Divider, Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
 use servobench_plant::{Chain, pmsm};
@@ -16,6 +16,8 @@ pub struct Loop {
     pub drive: drive::Params,
     /// Whether the drive closes a position loop.
     pub closes_position: bool,
+    /// Cycle of the master that closes a position loop over a bus, in its place.
+    pub master_cycle: Option<Divider>,
     /// Where the drive has the motor's velocity from.
     pub velocity_signal: VelocitySignal,
     /// Which position closes the position loop.
@@ -75,6 +77,11 @@ impl Loop {
                 Err(StabilityError::SourceDoesNotFit)
             }
         }
+    }
+
+    /// Whether a position loop is closed, by the drive or by a master.
+    pub(crate) fn has_position_loop(&self) -> bool {
+        self.master_cycle.is_some() || (self.closes_position && self.drive.position_gain > 0.0)
     }
 
     /// Whether all current gains, those of both axes by the same factor, are one number in the scenario.

@@ -2,7 +2,7 @@
 //!
 //! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
 //! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
-use crate::equations::{Due, Equations};
+use crate::equations::{Equations, Order};
 use crate::error::StabilityError;
 use nalgebra::{Complex, DMatrix, DVector};
 use servobench_linear::{Pattern, TickMatrix};
@@ -15,8 +15,8 @@ pub(crate) type ComplexVector = DVector<Complex<f64>>;
 
 /// The ticks of a common period.
 pub(crate) struct Period {
-    /// What is due, and the matrix of such a tick: `C·P`.
-    kinds: Vec<(Due, TickMatrix)>,
+    /// The matrix of a tick of each level.
+    kinds: Vec<TickMatrix>,
     /// Index into `kinds` of each tick of the period, the one at which all loops turn last.
     ticks: Vec<usize>,
     /// The product of all.
@@ -42,25 +42,21 @@ fn power<T: Clone>(matrix: &T, mut exponent: u32, after: impl Fn(&T, &T) -> T) -
     power
 }
 
-/// The product over a period of what is there for each kind of tick: each loop's period is a whole number of the periods of the loop
-/// below it.
-fn product<T: Clone>(
-    of: impl Fn(Due) -> T,
-    all: Due,
-    [current, velocity, position]: [u32; 3],
-    after: impl Fn(&T, &T) -> T + Copy,
-) -> T {
-    let behind = |last: T, before: Option<T>| before.map_or_else(|| last.clone(), |before| after(&last, &before));
-    let idle = Due { position: false, velocity: false, current: false };
-    let idle = if current > 1 { power(&of(idle), current - 1, after) } else { None };
-    let current_period = |due: Due| behind(of(due), idle.clone());
-    let velocity_period = |due: Due| {
-        let inner = Due { position: false, velocity: false, current: true };
-        let count = velocity / current - 1;
-        behind(current_period(due), if count > 0 { power(&current_period(inner), count, after) } else { None })
-    };
-    let (inner, count) = (Due { position: false, ..all }, position / velocity - 1);
-    behind(velocity_period(all), if count > 0 { power(&velocity_period(inner), count, after) } else { None })
+/// The product over a period of what is there for each kind of ticks.
+fn product<T: Clone>(of: impl Fn(usize) -> T, order: &Order, after: impl Fn(&T, &T) -> T + Copy) -> T {
+    let Order { every, ends } = order;
+    // Over a cycle, by the kind of its last tick: as many cycles of the task below, the others of which end by a tick of that.
+    let mut below: Vec<T> = (1..every.len()).map(|kind| of(kind - 1)).collect();
+    let mut ends: Vec<T> = ends.iter().map(|&kind| of(kind)).collect();
+    for level in 1..every.len() {
+        if let Some(before) = power(&below[level - 1], every[level] / every[level - 1] - 1, after) {
+            for last in below[level..].iter_mut().chain(&mut ends) {
+                *last = after(last, &before);
+            }
+        }
+    }
+    let all = ends.into_iter().reduce(|before, last| after(&last, &before));
+    all.unwrap_or_else(|| of(0))
 }
 
 impl Period {
@@ -69,38 +65,18 @@ impl Period {
     /// # Errors
     /// [`StabilityError`] when the loop does not run, [`StabilityError::Overflow`] when the product is beyond what can be computed with.
     pub(crate) fn new(equations: &mut Equations) -> Result<Self, StabilityError> {
-        let (drive, current, closed) = (&equations.model().drive, equations.current_every(), equations.closed());
-        // A loop that is open does not lengthen the period: what is below it repeats faster.
-        let velocity = drive.velocity_every.ticks();
-        let velocity = if closed.shaft { velocity } else { current };
-        let position = if closed.position { drive.position_every.ticks() } else { velocity };
-
-        let all = Due { position: closed.position, velocity: closed.shaft, current: true };
-        let mut kinds: Vec<(Due, TickMatrix)> = Vec::new();
-        let mut ticks = Vec::new();
-        for k in 1..=position {
-            let due = Due {
-                position: all.position && k == position,
-                velocity: all.velocity && k.is_multiple_of(velocity),
-                current: k.is_multiple_of(current),
-            };
-            let index = kinds.iter().position(|(kind, _)| *kind == due);
-            ticks.push(index.unwrap_or(kinds.len()));
-            if index.is_none() {
-                kinds.push((due, equations.matrix(due)?));
-            }
-        }
-        let of = |due: Due| kinds.iter().find(|(kind, _)| *kind == due).map(|(_, tick)| &tick.matrix);
-        let missing = || DMatrix::identity(equations.states(), equations.states());
-        let rates = [current, velocity, position];
-        let monodromy = product(|due| of(due).cloned().unwrap_or_else(missing), all, rates, |last, first| last * first);
+        let order = equations.order();
+        let used = order.ends.iter().max().map_or(0, |last| last + 1);
+        let kinds: Vec<TickMatrix> = (0..used).map(|kind| equations.matrix(kind)).collect::<Result<_, _>>()?;
+        let ticks = order.ticks();
+        let monodromy = product(|kind| kinds[kind].matrix.clone(), &order, |last, first| last * first);
         // NaN, too.
         if !monodromy.iter().all(|entry| entry.abs() < LARGEST) {
-            return Err(StabilityError::Overflow { ticks: position });
+            return Err(StabilityError::Overflow { ticks: ticks.len() });
         }
         let loops = equations.known_loops().unwrap_or_else(|| {
-            let pattern = |due| of(due).map_or_else(|| Pattern::identity(equations.states()), Pattern::of);
-            Rc::new(product(pattern, all, rates, Pattern::after).loops(&equations.controllers()))
+            let pattern = |kind: usize| Pattern::of(&kinds[kind].matrix);
+            Rc::new(product(pattern, &order, Pattern::after).loops(&equations.controllers()))
         });
         equations.keep_loops(&loops);
         Ok(Self { kinds, ticks, monodromy, loops, h: equations.h() })
@@ -113,13 +89,13 @@ impl Period {
 
     /// Matrices of the ticks in order.
     pub(crate) fn matrices(&self) -> impl DoubleEndedIterator<Item = &DMatrix<f64>> {
-        self.ticks.iter().map(|&kind| &self.kinds[kind].1.matrix)
+        self.ticks.iter().map(|&kind| &self.kinds[kind].matrix)
     }
 
     /// What the entries of these matrices are sums of.
     pub(crate) fn magnitudes(&self) -> impl Iterator<Item = &DMatrix<f64>> {
         let of = |&kind: &usize| {
-            let tick = &self.kinds[kind].1;
+            let tick = &self.kinds[kind];
             tick.magnitude.as_ref().unwrap_or(&tick.matrix)
         };
         self.ticks.iter().map(of)

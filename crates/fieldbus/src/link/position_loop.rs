@@ -117,14 +117,15 @@ impl PositionGains {
     }
 }
 
-/// What the loop commands.
+/// Law of the position loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Law {
-    pub(crate) gains: PositionGains,
+pub struct Law {
+    /// Its gains.
+    pub gains: PositionGains,
     /// Share of the velocity of the set-point that goes straight on.
-    pub(crate) feedforward: f64,
+    pub feedforward: f64,
     /// Largest velocity that is commanded (m/s or rad/s).
-    pub(crate) limit: f64,
+    pub limit: f64,
 }
 
 /// A set-point that was put out.
@@ -138,7 +139,7 @@ struct PutOut {
 
 /// The set-points that were put out, and what the axis is off by.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
-pub(crate) struct PositionLoop {
+pub struct PositionLoop {
     kept: [PutOut; KEPT],
     newest: usize,
     count: usize,
@@ -152,7 +153,8 @@ pub(crate) struct PositionLoop {
 }
 
 impl PositionLoop {
-    pub(crate) const OPEN: Self = Self {
+    /// Nothing put out, nothing received.
+    pub const OPEN: Self = Self {
         kept: [PutOut { tick: 0, x: 0.0, v: 0.0 }; KEPT],
         newest: 0,
         count: 0,
@@ -169,14 +171,14 @@ impl PositionLoop {
     }
 
     /// Takes what is put out at `tick`.
-    pub(crate) fn put_out(&mut self, tick: u64, setpoint: &Setpoint) {
+    pub fn put_out(&mut self, tick: u64, setpoint: &Setpoint) {
         self.newest = (self.newest + 1) % KEPT;
         self.kept[self.newest] = PutOut { tick, x: setpoint.x, v: setpoint.v };
         self.count = (self.count + 1).min(KEPT);
     }
 
     /// Takes the position, received `now`, of an axis that should be where the set-point of `tick` was.
-    pub(crate) fn receive(&mut self, gains: &PositionGains, position: f64, tick: u64, now: u64, seconds_per_tick: f64) {
+    pub fn receive(&mut self, gains: &PositionGains, position: f64, tick: u64, now: u64, seconds_per_tick: f64) {
         let before = self.error;
         self.error = self.at(tick, seconds_per_tick).map_or(0.0, |reference| reference - position);
         if let (Some(Derivative { time, filter }), Some(then)) = (gains.derivative, self.received) {
@@ -190,7 +192,7 @@ impl PositionLoop {
 
     /// The velocity that is commanded over a cycle of `cycle` (s) while the set-point goes at `v`, and whether the limit cut it. The
     /// integral begins with what keeps the axis at its velocity.
-    pub(crate) fn velocity(&mut self, law: &Law, v: f64, cycle: f64) -> (f64, bool) {
+    pub fn velocity(&mut self, law: &Law, v: f64, cycle: f64) -> (f64, bool) {
         let Law { gains: PositionGains { gain, integral_time, derivative }, feedforward, limit } = *law;
         let mut wanted = gain * self.error + feedforward * v;
         if derivative.is_some() {

@@ -102,6 +102,14 @@ impl Control {
         drive::step(&self.params, &mut self.state, demand, limits, sensors)
     }
 
+    /// Position that closes the position loop (axis coordinate).
+    pub(super) fn closing_position(&self, sensors: &Sensors) -> f64 {
+        match sensors.feedback {
+            Feedback::Motor => self.params.transmission * sensors.motor_position,
+            Feedback::Load(position) => position,
+        }
+    }
+
     /// The drive as its bus interface sees it.
     pub(super) fn measurement(&self, sensors: &Sensors, now: &Instant, switches: SwitchReading) -> Measurement {
         let Self { params, state, .. } = self;

@@ -47,6 +47,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
             stage: drive::Stage::Direct { gain: 1.0 },
         },
         closes_position: false,
+        master_cycle: None,
         velocity_signal: VelocitySignal::Encoder,
         position_feedback: PositionFeedback::Motor,
         current_tuning: None,
@@ -118,7 +119,7 @@ pub(crate) fn sensors(model: &Loop, latency: f64) -> WiredSensors {
 
 /// The loop that `model` describes, as it runs.
 pub(crate) fn running(model: &Loop) -> Box<AtRest> {
-    Box::new(AtRest::new(model, &sensors(model, 0.0)).unwrap_or_else(|error| panic!("{error}")))
+    Box::new(AtRest::new(model, &sensors(model, 0.0), None).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// # Errors

@@ -65,7 +65,7 @@ fn a_late_encoder_is_a_dead_time() {
         let velocity_signal = VelocitySignal::Differences;
         let model = ideal(12_000, every, 0.02 * mass / h, chain(vec![body(mass, 0.0)], &[]));
         let model = Loop { velocity_signal, ..model };
-        let late = AtRest::new(&model, &sensors(&model, latency * h)).unwrap();
+        let late = AtRest::new(&model, &sensors(&model, latency * h), None).unwrap();
         let report = analyse_running(&model, Box::new(late), Depth::Boundaries).unwrap();
         report.loops[0].boundaries.unwrap().above.unwrap().gain * h / mass
     };
