@@ -8,6 +8,8 @@ use std::collections::HashMap;
 /// Exponent of two of what a number is moved by that is zero at rest: its square underflows, and what a thousand times a thousand units
 /// make of it does not.
 const SMALL: i32 = -600;
+/// What is left of a sum whose parts meet, as a share of them: roundings of some ten numbers.
+const MEETS: f64 = 4096.0 * f64::EPSILON;
 /// Places that are tried.
 const PLACES: u32 = 64;
 /// What a number at rest may change by in a tick, as a share of it: roundings of a sum of some ten numbers.
@@ -52,6 +54,8 @@ pub struct Matrices<'a> {
     elsewhere: Vec<f64>,
     place: Vec<f64>,
     origin: Option<usize>,
+    /// True where controllers hold something at rest.
+    is_operated: bool,
     /// Numbers that are states.
     states: Vec<usize>,
     /// Of a kind and factors of 0 and 1, by their bits.
@@ -102,8 +106,11 @@ impl<'a> Matrices<'a> {
         let origin = numbers.iter().zip(&elsewhere).position(|(number, there)| is_position(number) && *there != 0.0);
         let position = origin.map_or(1.0, |origin| elsewhere[origin]);
         let place = elsewhere.iter().map(|there| there / position).collect();
+        let is_held = |(number, value): (&Number, &f64)| number.name.starts_with(CONTROLLERS) && *value != 0.0;
+        let is_operated = kinds.first().is_some_and(|kind| numbers.iter().zip(&kind.before).any(is_held));
         let (states, known, scratch) = (Vec::new(), HashMap::new(), (Vec::new(), Vec::new()));
-        let mut matrices = Self { running, numbers, kinds, elsewhere, place, origin, states, known, scratch };
+        let mut matrices =
+            Self { running, numbers, kinds, elsewhere, place, origin, is_operated, states, known, scratch };
         matrices.find_states()?;
         Ok(matrices)
     }
@@ -163,6 +170,27 @@ impl<'a> Matrices<'a> {
 
     /// What all numbers are different by after a tick of a kind, per difference of `number` before it.
     fn column(&mut self, kind: usize, number: usize) -> Result<Vec<f64>, LinearError> {
+        let mut column = self.moved(kind, number)?;
+        if self.origin == Some(number) && self.is_operated {
+            // Parts of the place that are turned with it meet again but for roundings: what is left of their sum is none.
+            let mut sums = vec![0.0; column.len()];
+            let shares = self.place.clone();
+            for (other, share) in shares.iter().enumerate().filter(|(other, share)| *other != number && **share != 0.0)
+            {
+                for (sum, entry) in sums.iter_mut().zip(self.moved(kind, other)?) {
+                    *sum += (share * entry).abs();
+                }
+            }
+            for (row, (entry, sum)) in column.iter_mut().zip(sums).enumerate() {
+                if row != number && entry.abs() <= MEETS * sum {
+                    *entry = 0.0;
+                }
+            }
+        }
+        Ok(column)
+    }
+
+    fn moved(&mut self, kind: usize, number: usize) -> Result<Vec<f64>, LinearError> {
         let Self { running, numbers, kinds, elsewhere, place, origin, scratch: (moved, after), .. } = self;
         let of = &kinds[kind];
         moved.clone_from(&of.words);
@@ -245,7 +273,7 @@ impl<'a> Matrices<'a> {
         let with = |names: &[&str]| names.iter().map(index).collect::<Result<Vec<_>, _>>();
         let (inputs, outputs) = (with(inputs)?, with(outputs)?);
         let states = self.states.clone();
-        self.running.set(&Factors::ONE);
+        self.at_rest(kind, &Factors::ONE)?;
         let mut block = |rows: &[usize], columns: &[usize]| self.block(kind, rows, columns);
         let (a, b) = (block(&states, &states)?, block(&states, &inputs)?);
         Ok(System { a, b, c: block(&outputs, &states)?, d: block(&outputs, &inputs)? })
@@ -254,11 +282,21 @@ impl<'a> Matrices<'a> {
     fn derive(&mut self, kind: usize, corner: &Factors) -> Result<(), LinearError> {
         let key = (kind, corner.bits());
         if !self.known.contains_key(&key) {
-            self.running.set(corner);
+            self.at_rest(kind, corner)?;
             let states = self.states.clone();
             let matrix = self.block(kind, &states, &states)?;
             self.known.insert(key, matrix);
         }
+        Ok(())
+    }
+
+    /// Has these gains from now on, with which the loop at rest may be another by roundings.
+    fn at_rest(&mut self, kind: usize, factors: &Factors) -> Result<(), LinearError> {
+        self.running.set(factors);
+        let of = &mut self.kinds[kind];
+        self.running.restore(&mut Reader::new(&of.words))?;
+        self.running.tick()?;
+        of.after = values(self.running.as_mut())?;
         Ok(())
     }
 
@@ -293,7 +331,11 @@ fn elsewhere(running: &mut dyn Running, numbers: &[Number], last: u32) -> Result
         let all = || there.iter().zip(&later);
         found = all()
             .zip(&here)
-            .map(|((there, later), here)| if is_same(*there, *later) { by(*there, *here, 1.0) } else { 0.0 })
+            .map(
+                |((there, later), here)| {
+                    if (there - later).abs() <= REST * there.abs() { by(*there, *here, 1.0) } else { 0.0 }
+                },
+            )
             .collect();
         if all()
             .zip(numbers)

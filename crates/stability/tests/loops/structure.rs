@@ -1,7 +1,10 @@
 //! What no loop reaches is out of the verdict by structure.
-use crate::axes::{Tuning, analyse, body, chain, ideal, report, running, servo};
+use crate::axes::{Tuning, analyse, body, chain, ideal, report, running, sensors, servo, ticks};
 use servobench_drive::{self as drive, Parameter};
+use servobench_plant::CurrentSensor;
+use servobench_sim::{AtRest, WiredSensors};
 use servobench_stability::{Depth, Loop, LoopName, StabilityError, VelocitySignal, analyse as analyse_running};
+use servobench_testkit::Random;
 
 const TUNING: Tuning =
     Tuning { current: 1200.0, velocity: 0.01 * 377.0, integral_time: 0.01, filter_time: 0.0, position: 40.0 };
@@ -40,6 +43,36 @@ fn a_position_that_nobody_holds_is_in_no_loop() {
             let velocity = report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap();
             assert!(velocity.least_damped.unwrap().magnitude < 0.999, "no pole at 1: {velocity:?}");
             assert_eq!(report.loops.len(), 2 + usize::from(closes_position));
+        }
+    }
+}
+
+/// The same where currents and voltages of a d current turn with the rotor: they meet again but for roundings.
+#[test]
+fn a_position_that_a_current_turns_with_is_in_no_loop() {
+    let mut random = Random::seeded(5);
+    for _ in 0..12 {
+        let transmission = random.logarithmic(1e-3, 1e-2);
+        let mut motor = body(0.01, 0.0);
+        motor.transmission = transmission;
+        let load = body(0.01 / (transmission * transmission), 0.0);
+        let link = (random.logarithmic(3e3, 3e4) * load.inertia, random.logarithmic(3.0, 30.0) * load.inertia);
+        let mut model = servo(Tuning { velocity: 0.4, position: 0.0, ..TUNING }, chain(vec![motor, load], &[link]));
+        model.velocity_signal = VelocitySignal::Differences;
+        (model.drive.velocity_every, model.drive.position_every) = (ticks(8), ticks(16));
+        model.drive.transmission = transmission;
+        let drive::Stage::Current { params, every } = &mut model.drive.stage else { panic!("a current loop") };
+        *every = ticks(2);
+        params.d_reference = -random.logarithmic(0.1, 5.0);
+        model.d_current = params.d_reference;
+        let gain_error = [random.logarithmic(0.9, 1.1) - 1.0; 2];
+        let late = CurrentSensor { gain_error, delay: 1, shift: 1e-5, ..CurrentSensor::default() };
+        let sensors = WiredSensors { current: Some(late), ..sensors(&model, 62.5e-6) };
+        let running = Box::new(AtRest::new(&model, &sensors).unwrap());
+        let report = analyse_running(&model, running, Depth::Boundaries).unwrap();
+        let velocity = report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap();
+        for pole in [report.largest, report.slowest_real, velocity.least_damped].into_iter().flatten() {
+            assert!((pole.magnitude - 1.0).abs() > 1e-5, "no pole at 1: {pole:?}");
         }
     }
 }
