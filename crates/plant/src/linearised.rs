@@ -3,7 +3,7 @@
 //! Every field is named here, so that a new one does not compile before somebody has said whether it stays.
 use crate::pmsm::{self, Effects};
 use crate::sensor::{CurrentSensor, Encoder, EncoderErrors};
-use crate::{Body, Chain, Friction, IdealSource};
+use crate::{Body, Chain, Friction, IdealSource, inverter};
 
 impl Friction {
     /// Its part that is proportional to the velocity.
@@ -43,6 +43,15 @@ impl Effects {
     pub fn linearised(&self, p: &pmsm::Params) -> pmsm::Params {
         let Self { cogging: _, flux_harmonics: _, iron: _, phase_resistance: _, temperature, flux_map: _ } = self;
         temperature.map_or(*p, |temperature| temperature.motor(p, temperature.start))
+    }
+}
+
+impl inverter::Params {
+    /// The motor with the data `p` behind the devices that conduct: of the inverter their resistance alone is linear.
+    #[must_use]
+    pub fn linearised(&self, p: &pmsm::Params) -> pmsm::Params {
+        let Self { modulation: _, carrier: _, dead_time: _, device_drop: _, on_resistance } = *self;
+        pmsm::Params { resistance: p.resistance + on_resistance, ..*p }
     }
 }
 

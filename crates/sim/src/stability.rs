@@ -189,8 +189,10 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
     };
     let (drive, source, encoder) = match &scenario.actuator {
         Actuator::Prescribed | Actuator::Off(_) => return Ok(Err(NotAnalysed::NoDrive)),
-        Actuator::Pmsm { motor, effects, encoder, drive, .. } => {
-            (drive, Source::Pmsm(effects.linearised(motor)), encoder)
+        Actuator::Pmsm { motor, effects, inverter, encoder, drive, .. } => {
+            let motor = effects.linearised(motor);
+            let motor = inverter.as_ref().map_or(motor, |inverter| inverter.linearised(&motor));
+            (drive, Source::Pmsm(motor), encoder)
         }
         Actuator::IdealSource { source, encoder, drive } => (drive, Source::Ideal { gain: source.gain }, encoder),
     };
