@@ -68,7 +68,7 @@ fn a_position_that_a_current_turns_with_is_in_no_loop() {
         let gain_error = [random.logarithmic(0.9, 1.1) - 1.0; 2];
         let late = CurrentSensor { gain_error, delay: 1, shift: 1e-5, ..CurrentSensor::default() };
         let sensors = WiredSensors { current: Some(late), ..sensors(&model, 62.5e-6) };
-        let running = Box::new(AtRest::new(&model, &sensors).unwrap());
+        let running = Box::new(AtRest::new(&model, &sensors, None).unwrap());
         let report = analyse_running(&model, running, Depth::Boundaries).unwrap();
         let velocity = report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap();
         for pole in [report.largest, report.slowest_real, velocity.least_damped].into_iter().flatten() {
