@@ -10,7 +10,7 @@ use crate::workspace::{Workspace, run as run_command};
 /// [`Failure`] of the build or of the run.
 pub(crate) fn run(workspace: &Workspace, json: bool) -> Result<(), Failure> {
     let mut bench = workspace.cargo(["bench", "--quiet", "--package", "servobench-tests"]);
-    bench.args(["--bench", "closed_loop", "--bench", "hardware", "--bench", "run"]);
+    bench.args(["--bench", "closed_loop", "--bench", "hardware", "--bench", "run", "--bench", "linear"]);
     match wheel::MUJOCO.ensure(workspace) {
         Ok(_) => {
             bench.args(["--features", "mujoco"]);
