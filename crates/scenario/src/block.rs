@@ -6,7 +6,7 @@ use crate::list::Many;
 use crate::nearest::suggestion;
 use crate::simple::{Name, OneOf};
 use crate::source::At;
-use crate::table::OpenTable;
+use crate::table::{GroupKey, OpenTable};
 use crate::tree::Node;
 use serde_json::{Value as Json, json};
 use servobench_config::quantities::VELOCITY;
@@ -111,8 +111,7 @@ impl BlockInputs {
         Self(slots)
     }
 
-    /// Of each key its name, its meaning and its schema.
-    pub(crate) fn schemas(moment: Moment) -> Vec<(&'static str, [&'static str; 1], Json)> {
+    pub(crate) fn schemas(moment: Moment) -> Vec<GroupKey<1>> {
         let of = |input: Input| {
             let meaning = match moment {
                 Moment::Start => input.meaning_with_default(),
@@ -130,7 +129,7 @@ impl BlockInputs {
                 InputType::Choice(names) => Name::schema(&names),
                 InputType::ParameterValue => f64::schema(&parameter_value(&Slot::Absent)),
             };
-            (input.key(), [meaning], schema)
+            (input.key(), ("", [meaning]), schema)
         };
         moment.inputs().map(of).collect()
     }

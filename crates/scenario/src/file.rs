@@ -30,7 +30,7 @@ pub(crate) use motor_effects::{Cogging, FluxHarmonic, IronLoss, Temperature, The
 pub(crate) use plc::{Call, CamSwitch, Condition, Plc, TrackOptions, Update};
 pub(crate) use program::{Disturbance, ProgramStep};
 pub(crate) use requirements::{Expect, ExpectedOn, RequirementTable, Tolerance};
-pub(crate) use sensors::{CurrentSensor, Encoder, EncoderKeys, LoadEncoder};
+pub(crate) use sensors::{CurrentSensor, Encoder, Mount};
 pub(crate) use setpoint::{Rockwell, Setpoint, Shaper, TableOfPoints};
 
 use crate::format::FORMAT;

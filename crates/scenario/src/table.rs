@@ -24,10 +24,55 @@ use serde_json::{Map, Value as Json, json};
 /// ```
 /// Each key becomes a field `Slot<Type>`; the struct also knows the `span` of its header. What follows `..` is a group of keys that is
 /// listed elsewhere.
+///
+/// A table whose keys depend on where it stands, as an encoder's on the body that it sits on, is `struct Name of (place: Place)`, and its
+/// specifications know `place`.
+///
+/// A table may set the parameters of another crate: `struct Name sets Parameters`. With `key: Type = specification => field` the key sets
+/// that field of the `parameters`; where it is absent, the field has its default.
 macro_rules! table {
     (
         $(#[doc = $table_doc:literal])+
-        pub(crate) struct $table:ident $(requires [$($required:literal),+])? {
+        pub(crate) struct $table:ident $(of ($place:ident: $place_type:ty))? sets $parameters:ty {
+            $(
+                $(#[doc = $doc:literal])*
+                $field:ident: $type:ty = $spec:expr $(=> $set:ident $(.$inner:ident)? $([$index:literal])?)?,
+            )+
+            $(..$group:ident: $group_type:ty = $group_spec:expr)?
+        }
+    ) => {
+        $crate::table::table! {
+            $(#[doc = $table_doc])+
+            pub(crate) struct $table $(of ($place: $place_type))? {
+                $($(#[doc = $doc])* $field: $type = $spec,)+
+                $(..$group: $group_type = $group_spec)?
+            }
+        }
+
+        impl $table {
+            /// The parameters that the keys set, with the default of wrong ones, and whether all are right.
+            pub(crate) fn parameters(&self) -> ($parameters, Result<(), $crate::field::Reported>) {
+                let (mut parameters, mut are_right) = (<$parameters>::default(), Ok(()));
+                $($(
+                    match self.$field.optional() {
+                        Ok(Some(value)) => parameters.$set$(.$inner)?$([$index])? = *value,
+                        Ok(None) => {}
+                        Err(reported) => are_right = Err(reported),
+                    }
+                )?)+
+                (parameters, are_right)
+            }
+        }
+
+        impl $crate::table::Keys for $table {
+            fn spans(&self) -> Vec<(&'static str, Option<$crate::source::Span>)> {
+                vec![$((stringify!($field), self.$field.span()),)+]
+            }
+        }
+    };
+    (
+        $(#[doc = $table_doc:literal])+
+        pub(crate) struct $table:ident $(of ($place:ident: $place_type:ty))? $(requires [$($required:literal),+])? {
             $(
                 $(#[doc = $doc:literal])*
                 $field:ident $(as $name:literal)? : $type:ty = $spec:expr,
@@ -50,12 +95,11 @@ macro_rules! table {
             )?
         }
 
-        impl $crate::field::Field for $table {
-
+        impl $crate::field::Field<$crate::table::or_unit!($($place_type)?)> for $table {
             fn decode(
                 path: &str,
                 node: &$crate::tree::Node,
-                (): &(),
+                &$crate::table::or_unit!($($place)?): &$crate::table::or_unit!($($place_type)?),
                 report: &mut $crate::diagnostic::Report,
             ) -> Option<Self> {
                 let keys = [$($crate::table::key_name!($field $(as $name)?),)+];
@@ -69,7 +113,7 @@ macro_rules! table {
                 })
             }
 
-            fn schema((): &()) -> serde_json::Value {
+            fn schema(&$crate::table::or_unit!($($place)?): &$crate::table::or_unit!($($place_type)?)) -> serde_json::Value {
                 let required: &[&str] = &[$($($required),+)?];
                 let keys = [$((
                     $crate::table::key_name!($field $(as $name)?),
@@ -78,7 +122,7 @@ macro_rules! table {
                 ),)+];
                 $(
                     let group = <$group_type>::schemas($group_spec);
-                    let group = group.iter().map(|(key, doc, schema)| (*key, ("", doc.as_slice()), schema.clone()));
+                    let group = group.iter().map(|(key, (meaning, doc), schema)| (*key, (*meaning, doc.as_slice()), schema.clone()));
                     let keys = keys.into_iter().chain(group);
                 )?
                 $crate::table::object_schema(&[$($table_doc,)+], required, keys.into_iter().collect())
@@ -97,8 +141,25 @@ macro_rules! key_name {
     };
 }
 
+/// Type or pattern, or those of nothing.
+macro_rules! or_unit {
+    () => {
+        ()
+    };
+    ($given:tt) => {
+        $given
+    };
+}
+
 pub(crate) use key_name;
+pub(crate) use or_unit;
 pub(crate) use table;
+
+/// A table whose keys can be listed.
+pub(crate) trait Keys {
+    /// Its keys, those of groups apart, and where they are.
+    fn spans(&self) -> Vec<(&'static str, Option<Span>)>;
+}
 
 /// A table that is being read.
 pub(crate) struct OpenTable<'a> {
@@ -188,6 +249,9 @@ fn of_key((meaning, key): (&str, &[&str])) -> String {
 
 /// What documents a key: the meaning that the owner of its parameter gives, and the lines of the key.
 pub(crate) type KeyDoc<'a> = (&'a str, &'a [&'a str]);
+
+/// A key of a group: its name, what documents it as in [`KeyDoc`], and its schema.
+pub(crate) type GroupKey<const LINES: usize> = (&'static str, (&'static str, [&'static str; LINES]), Json);
 
 pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, KeyDoc<'_>, Json)>) -> Json {
     let mut properties = Map::new();

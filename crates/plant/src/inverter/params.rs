@@ -1,4 +1,5 @@
 //! What an inverter that is not ideal is like.
+use crate::pmsm;
 use servobench_base::ParamError;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{FREQUENCY, RESISTANCE, TIME, VOLTAGE};
@@ -46,10 +47,23 @@ pub struct Params {
     pub on_resistance: f64,
 }
 
+impl Default for Params {
+    fn default() -> Self {
+        Self::IDEAL
+    }
+}
+
 impl Params {
     /// An inverter without any effect.
     pub const IDEAL: Self =
         Self { modulation: Modulation::Averaged, carrier: 0.0, dead_time: 0.0, device_drop: 0.0, on_resistance: 0.0 };
+
+    /// The motor with the data `p` behind the devices that conduct: of the inverter their resistance alone is linear.
+    #[must_use]
+    pub fn linearised(&self, p: &pmsm::Params) -> pmsm::Params {
+        let Self { modulation: _, carrier: _, dead_time: _, device_drop: _, on_resistance } = *self;
+        pmsm::Params { resistance: p.resistance + on_resistance, ..*p }
+    }
 
     /// Whether it gives just what it is asked for.
     #[must_use]

@@ -85,6 +85,13 @@ impl Converter {
 }
 
 impl CurrentSensor {
+    /// As late as it is, and with its gains; without offsets, noise, steps and range.
+    #[must_use]
+    pub fn linearised(&self) -> Self {
+        let Self { offset: _, gain_error, noise: _, seed: _, converter: _, delay, shift } = *self;
+        Self { gain_error, delay, shift, ..Self::default() }
+    }
+
     /// True where both read the same share of their phase and nothing else, so that the vector is read by that share.
     fn errs_alike(&self) -> bool {
         let Self { offset, gain_error: [a, b], noise, seed: _, converter, delay: _, shift: _ } = *self;

@@ -73,11 +73,13 @@ pub struct Encoder {
 /// Errors of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EncoderErrors {
-    /// Signals of a sine–cosine encoder; `None` where nothing errs with their period.
-    pub signals: Option<Signals>,
-    /// Eccentricity over radius of the disc.
+    /// Signals of a sine–cosine encoder.
+    pub signals: Signals,
+    /// Eccentricity of the disc (m).
     pub eccentricity: f64,
-    /// Angle at which it makes no error (rad).
+    /// Radius at which the disc is read (m); of no meaning without eccentricity.
+    pub radius: f64,
+    /// Angle at which the eccentricity makes no error (rad).
     pub eccentricity_angle: f64,
     /// What it reads at zero (rad or m). The drive knows it for its commutation, but takes the axis to be there.
     pub zero: f64,
@@ -94,9 +96,34 @@ pub struct EncoderErrors {
 }
 
 impl EncoderErrors {
+    /// Whether anything errs.
+    #[must_use]
+    pub fn errs(&self) -> bool {
+        let Self { signals, radius, eccentricity_angle, seed, .. } = *self;
+        let signals = Signals::ideal(signals.period);
+        *self != Self { signals, radius, eccentricity_angle, seed, ..Self::default() }
+    }
+
+    /// Part that the linear loop has. Every field is named here: a new one does not compile until it is decided.
+    fn linearised(&self) -> Self {
+        let Self {
+            signals: _,
+            eccentricity: _,
+            radius: _,
+            eccentricity_angle: _,
+            zero: _,
+            commutation,
+            noise: _,
+            seed: _,
+            latency,
+            range: _,
+        } = *self;
+        Self { commutation, latency, ..Self::default() }
+    }
+
     /// Whether what it reads is the motion of its body, but for a constant.
     fn is_faithful(&self) -> bool {
-        self.signals.is_none() && self.eccentricity == 0.0 && self.noise == 0.0 && self.latency == 0.0
+        !self.signals.errs() && self.eccentricity == 0.0 && self.noise == 0.0 && self.latency == 0.0
     }
 }
 
@@ -131,23 +158,33 @@ impl Encoder {
         ] {
             parameter.check_in_words(value)?;
         }
-        if errors.eccentricity >= 1.0 {
-            let bound = "less than the radius of the disc";
-            return Err(ParamError { name: P::ECCENTRICITY.name, value: errors.eccentricity, bound });
+        if errors.eccentricity > 0.0 {
+            P::RADIUS.check_in_words(errors.radius)?;
+            if errors.eccentricity >= errors.radius {
+                let bound = "less than the radius of the disc";
+                return Err(ParamError { name: P::ECCENTRICITY.name, value: errors.eccentricity, bound });
+            }
         }
-        if let Some(signals) = errors.signals {
-            P::SIGNAL_PERIOD.check_in_words(signals.period)?;
-            signals.check()?;
+        if errors.signals.errs() {
+            P::SIGNAL_PERIOD.check_in_words(errors.signals.period)?;
+            errors.signals.check()?;
         }
         Ok(())
+    }
+
+    /// As late as it is, and with the commutation that is off by as much; without increments, noise and errors that repeat. Where the
+    /// one that it stands for gives positions alone, so must it be read.
+    #[must_use]
+    pub fn linearised(&self) -> Self {
+        let Self { increment: _, errors } = *self;
+        Self { increment: None, errors: errors.as_ref().map(EncoderErrors::linearised) }
     }
 
     /// Distance of two positions that it tells apart: an increment or, if that is wider, the error of its signals within a period; 0
     /// of one that is ideal but for noise.
     #[must_use]
     pub fn resolution(&self) -> f64 {
-        let signals = self.errors.and_then(|errors| errors.signals);
-        self.increment.unwrap_or_default().max(signals.map_or(0.0, |signals| signals.error_width()))
+        self.increment.unwrap_or_default().max(self.errors.map_or(0.0, |errors| errors.signals.error_width()))
     }
 
     /// Whether it gives the velocity, too.
@@ -241,7 +278,7 @@ impl Erring {
             errors,
             noise: Noise::new(errors.seed, 2 + number),
             past: (errors.latency > 0.0).then(|| Past::new(errors.latency, h)),
-            evaluation: errors.signals.map(Evaluation::new),
+            evaluation: errors.signals.errs().then(|| Evaluation::new(errors.signals)),
             timing: None,
             gives_velocity: encoder.gives_velocity(),
             to_rotor: errors.commutation - errors.zero,
@@ -260,7 +297,7 @@ impl Erring {
         };
         if errors.eccentricity > 0.0 {
             let from_centre = ElectricalAngle(position - errors.eccentricity_angle).rotation();
-            position += errors.eccentricity * from_centre.sin;
+            position += errors.eccentricity / errors.radius * from_centre.sin;
         }
         if let Some(evaluation) = &mut self.evaluation {
             position = evaluation.read(position, self.taken as f64 * self.h);
@@ -315,7 +352,7 @@ mod tests {
     #[test]
     fn what_it_tells_apart_is_an_increment_or_the_error_of_its_signals() {
         let signals = Signals { amplitude_error: 0.02, ..Signals::ideal(20e-6) };
-        let errors = Some(EncoderErrors { signals: Some(signals), ..EncoderErrors::default() });
+        let errors = Some(EncoderErrors { signals, ..EncoderErrors::default() });
         let resolution = |increment, errors| Encoder { increment, errors }.resolution();
         for (increment, expected) in [(None, 0.0), (Some(1e-9), 1e-9)] {
             assert!((resolution(increment, None) - expected).abs() < 1e-24);
@@ -337,15 +374,18 @@ mod tests {
     #[test]
     fn eccentricity_is_an_error_once_per_turn() {
         let ratio = 6e-4;
-        let mut encoder = erring(None, EncoderErrors { eccentricity: ratio, ..EncoderErrors::default() });
+        let mut encoder =
+            erring(None, EncoderErrors { eccentricity: ratio * 0.02, radius: 0.02, ..EncoderErrors::default() });
         for k in 0..100 {
             let angle = 0.0711 * f64::from(k);
             let geometric = angle - (ratio * angle.sin()).atan2(1.0 + ratio * angle.cos());
             let (found, mirrored) = (encoder.read(at(angle)).position, 2.0 * angle - geometric);
             assert!((found - mirrored).abs() < ratio * ratio / 2.0 * 1.001, "{angle}: {found} {mirrored}");
         }
-        let mut turned =
-            erring(None, EncoderErrors { eccentricity: ratio, eccentricity_angle: 0.4, ..EncoderErrors::default() });
+        let mut turned = erring(
+            None,
+            EncoderErrors { eccentricity: ratio, radius: 1.0, eccentricity_angle: 0.4, ..EncoderErrors::default() },
+        );
         assert!((turned.read(at(0.4)).position - 0.4).abs() < 1e-16);
         assert!((turned.read(at(0.4 + TAU / 4.0)).position - 0.4 - TAU / 4.0 - ratio).abs() < 1e-15);
     }
@@ -423,8 +463,8 @@ mod tests {
             "`noise of the encoder` must be finite and not negative, got -1"
         );
         assert!(said(EncoderErrors { latency: 0.02, ..none }).contains("`latency of the encoder`"));
-        assert!(said(EncoderErrors { eccentricity: 1.0, ..none }).contains("less than the radius"));
-        let signals = Some(Signals { offset: [2.0, 0.0], ..Signals::ideal(1e-3) });
+        assert!(said(EncoderErrors { eccentricity: 0.02, radius: 0.02, ..none }).contains("less than the radius"));
+        let signals = Signals { offset: [2.0, 0.0], ..Signals::ideal(1e-3) };
         assert!(said(EncoderErrors { signals, ..none }).contains("go round zero"));
     }
 }

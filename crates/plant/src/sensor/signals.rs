@@ -32,9 +32,9 @@ servobench_config::choices! {
 }
 
 /// Signals of a sine–cosine encoder.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Signals {
-    /// Signal period (rad or m).
+    /// Signal period (rad or m); of no meaning while nothing errs with it.
     pub period: f64,
     /// Share by which the amplitude of the cosine is larger than that of the sine.
     pub amplitude_error: f64,
@@ -60,6 +60,12 @@ impl Signals {
     #[must_use]
     pub const fn ideal(period: f64) -> Self {
         Self { period, amplitude_error: 0.0, offset: [0.0; 2], phase_error: 0.0, lost: None }
+    }
+
+    /// Whether anything errs with their period.
+    #[must_use]
+    pub fn errs(&self) -> bool {
+        *self != Self::ideal(self.period)
     }
 
     /// Width, from lowest to highest, of the error of the position within a signal period (rad or m), to first order in the errors;

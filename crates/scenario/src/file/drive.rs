@@ -2,7 +2,9 @@
 use super::inverter::{Inverter, Link};
 use super::supervision::Supervision;
 use crate::field::{Either, EitherMeasure};
-use crate::file::{CoggingHarmonic, CurrentSensor, DeadTimeCompensation, GainSchedule, I2t, LoadEncoder, TorqueFilter};
+use crate::file::{
+    CoggingHarmonic, CurrentSensor, DeadTimeCompensation, Encoder, GainSchedule, I2t, Mount, TorqueFilter,
+};
 use crate::list::{Automatic, Many, Share};
 use crate::object_table::ObjectTable;
 use crate::simple::OneOf;
@@ -82,7 +84,7 @@ table! {
         /// What the firmware believes of the axis; default: the truth.
         estimate: Estimate = (),
         /// Encoder on the load; default: none.
-        load_encoder: LoadEncoder = (),
+        load_encoder: Encoder = Mount::Load,
         /// What the master writes into the drive's objects (CiA 402) before the first cycle of `[bus]`: whole numbers by index and
         /// sub-index.
         objects: ObjectTable = (),

@@ -2,22 +2,22 @@
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;
-use servobench_plant::inverter::{LinkParameter, Modulation, Parameter};
+use servobench_plant::inverter::{LinkParameter, Modulation, Parameter, Params};
 
 table! {
     /// What the inverter does beside giving the voltage that it is asked for: docs/inverter.md. Each key is an effect of its own.
-    pub(crate) struct Inverter {
+    pub(crate) struct Inverter sets Params {
         /// How it makes its voltage; default: "averaged".
-        modulation: Modulation = OneOf,
+        modulation: Modulation = OneOf => modulation,
         /// Frequency of the carrier, and of the switching; `dead_time` and "switching" need it. With "switching" it divides the base rate
         /// or is a multiple of it.
         carrier: Rate = "16 kHz",
         /// default: none.
-        dead_time: f64 = Parameter::DEAD_TIME,
+        dead_time: f64 = Parameter::DEAD_TIME => dead_time,
         /// default: none.
-        device_drop: f64 = Parameter::DEVICE_DROP,
+        device_drop: f64 = Parameter::DEVICE_DROP => device_drop,
         /// default: none.
-        on_resistance: f64 = Parameter::ON_RESISTANCE,
+        on_resistance: f64 = Parameter::ON_RESISTANCE => on_resistance,
     }
 }
 

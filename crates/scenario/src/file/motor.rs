@@ -1,9 +1,9 @@
 //! `[motor]`: what moves the axis.
 use crate::field::{Either, EitherMeasure};
-use crate::file::Encoder;
 use crate::file::motor_effects::{
     Cogging, Connection, FluxHarmonic, FluxMap, IronLoss, Saturation, Temperature, Thermal,
 };
+use crate::file::{Encoder, Mount};
 use crate::list::Many;
 use crate::simple::OneOf;
 use crate::table::table;
@@ -84,6 +84,6 @@ table! {
         /// How it is connected to the inverter; default: as it should be.
         connection: Connection = (),
         /// Encoder on the motor; default: ideal.
-        encoder: Encoder = (),
+        encoder: Encoder = Mount::Motor,
     }
 }

@@ -291,7 +291,7 @@ fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report:
 
 fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedback> {
     let encoder = match drive.load_encoder.optional().ok()? {
-        Some(encoder) => Some(sensors::encoder(encoder.keys(), report.axis, report).ok()?),
+        Some(encoder) => Some(sensors::encoder(encoder, report.axis, report).ok()?),
         None => None,
     };
     match (&drive.position_feedback, encoder) {

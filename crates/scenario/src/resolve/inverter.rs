@@ -15,27 +15,22 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
         report.warning(span, "the inverter is not used: an ideal source has none", "");
         return Ok(None);
     }
-    let number = |slot: &Slot<f64>| slot.optional().map(|value| value.copied().unwrap_or(0.0));
-    let modulation = given.modulation.optional()?.copied().unwrap_or(Modulation::Averaged);
-    let dead_time = number(&given.dead_time)?;
+    let (mut params, are_right) = given.parameters();
     let carrier = given.carrier.optional()?.copied();
-    if carrier.is_none() && (dead_time > 0.0 || modulation == Modulation::Switching) {
+    if carrier.is_none() && (params.dead_time > 0.0 || params.modulation == Modulation::Switching) {
         report.missing("drive.inverter", "carrier", given.span);
         return Err(Reported);
     }
     if let (Some(carrier), Some(at)) = (carrier, given.dead_time.at()) {
         check_dead_time(carrier, at.value, report, at.span)?;
     }
-    if let (Modulation::Switching, Some(carrier), Some(base_rate)) = (modulation, given.carrier.at(), known.base_rate) {
+    if let (Modulation::Switching, Some(carrier), Some(base_rate)) =
+        (params.modulation, given.carrier.at(), known.base_rate)
+    {
         check_carrier(drive, carrier, base_rate, report)?;
     }
-    let params = Params {
-        modulation,
-        carrier: carrier.map_or(0.0, |carrier| f64::from(carrier.hertz())),
-        dead_time,
-        device_drop: number(&given.device_drop)?,
-        on_resistance: number(&given.on_resistance)?,
-    };
+    are_right?;
+    params.carrier = carrier.map_or(0.0, |carrier| f64::from(carrier.hertz()));
     Ok((!params.is_ideal()).then_some(params))
 }
 

@@ -212,5 +212,5 @@ fn ideal_source(motor: &file::Motor, report: &mut Report) -> Option<IdealSource>
 
 fn encoder(slot: &Slot<file::Encoder>, report: &mut Report) -> Option<Encoder> {
     let Some(encoder) = slot.optional().ok()? else { return Some(Encoder::default()) };
-    sensors::encoder(encoder.keys(), report.motor, report).ok()
+    sensors::encoder(encoder, report.motor, report).ok()
 }

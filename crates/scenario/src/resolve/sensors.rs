@@ -2,25 +2,14 @@
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
-use crate::file::EncoderKeys;
 use crate::resolve::{Alternative, one_of, refuse};
 use servobench_base::{Coordinate, Rate};
-use servobench_plant::{Converter, CurrentSensor, Encoder, EncoderErrors, Signals};
+use servobench_plant::{Converter, CurrentSensor, Encoder, EncoderErrors};
 use std::f64::consts::TAU;
-
-/// A number that is 0 where it is not given.
-fn number(slot: &Slot<f64>) -> Result<f64, Reported> {
-    slot.optional().map(|value| value.copied().unwrap_or(0.0))
-}
-
-/// A count that is 0 where it is not given.
-fn whole(slot: &Slot<u32>) -> Result<u32, Reported> {
-    slot.optional().map(|value| value.copied().unwrap_or(0))
-}
 
 /// An encoder on a body of `motion`.
 pub(super) fn encoder(
-    keys: EncoderKeys<'_>,
+    keys: &file::Encoder,
     motion: Option<Coordinate>,
     report: &mut Report,
 ) -> Result<Encoder, Reported> {
@@ -67,28 +56,20 @@ pub(super) fn encoder(
             steps.map(|steps| need_period(period, keys, report).map(|period| period / f64::from(*steps))).transpose()?
         }
     };
-    let errors = EncoderErrors {
-        signals: signals(keys, period, report)?,
-        eccentricity: eccentricity(keys, report)?,
-        eccentricity_angle: number(keys.eccentricity_angle)?,
-        zero: number(keys.zero_offset)?,
-        commutation: 0.0,
-        noise: number(keys.noise)?,
-        seed: whole(keys.seed)?,
-        latency: number(keys.latency)?,
-        range: keys.turn_bits.optional()?.map(|bits| TAU * (1_u64 << bits) as f64),
-    };
-    Ok(Encoder { increment, errors: if_any(errors) })
+    let (mut errors, are_right) = keys.parameters();
+    if let Some(track) = keys.lost_track.optional()? {
+        errors.signals.lost = Some((*track, keys.lost_at.optional()?.copied().unwrap_or(0.0)));
+    }
+    if errors.signals.errs() {
+        errors.signals.period = need_period(period, keys, report)?;
+    }
+    check_eccentricity(&errors, keys, report)?;
+    are_right?;
+    errors.range = keys.turn_bits.optional()?.map(|bits| TAU * (1_u64 << bits) as f64);
+    Ok(Encoder { increment, errors: errors.errs().then_some(errors) })
 }
 
-/// What errs at all.
-fn if_any(errors: EncoderErrors) -> Option<EncoderErrors> {
-    let none =
-        EncoderErrors { seed: errors.seed, eccentricity_angle: errors.eccentricity_angle, ..EncoderErrors::default() };
-    (errors != none).then_some(errors)
-}
-
-fn need_period(period: Option<f64>, keys: EncoderKeys<'_>, report: &mut Report) -> Result<f64, Reported> {
+fn need_period(period: Option<f64>, keys: &file::Encoder, report: &mut Report) -> Result<f64, Reported> {
     period.ok_or_else(|| {
         report.error(
             keys.span,
@@ -99,39 +80,23 @@ fn need_period(period: Option<f64>, keys: EncoderKeys<'_>, report: &mut Report) 
     })
 }
 
-/// Errors of the signals; `None` where they have none.
-fn signals(keys: EncoderKeys<'_>, period: Option<f64>, report: &mut Report) -> Result<Option<Signals>, Reported> {
-    let lost_at = number(keys.lost_at)?;
-    let found = Signals {
-        amplitude_error: number(keys.amplitude_error)?,
-        offset: [number(keys.offset_cosine)?, number(keys.offset_sine)?],
-        phase_error: number(keys.phase_error)?,
-        lost: keys.lost_track.optional()?.map(|track| (*track, lost_at)),
-        ..Signals::ideal(1.0)
-    };
-    if found == Signals::ideal(1.0) {
-        return Ok(None);
-    }
-    Ok(Some(Signals { period: need_period(period, keys, report)?, ..found }))
-}
-
-/// Eccentricity over radius.
-fn eccentricity(keys: EncoderKeys<'_>, report: &mut Report) -> Result<f64, Reported> {
-    let eccentricity = number(keys.eccentricity)?;
+/// The disc of an eccentric encoder is read at a radius that is larger than its eccentricity.
+fn check_eccentricity(errors: &EncoderErrors, keys: &file::Encoder, report: &mut Report) -> Result<(), Reported> {
+    let EncoderErrors { eccentricity, radius, .. } = *errors;
     if eccentricity == 0.0 {
-        return Ok(0.0);
+        return Ok(());
     }
-    let Some(radius) = keys.disc_radius.optional()? else {
+    if keys.disc_radius.optional()?.is_none() {
         report.error(keys.span, "an `eccentricity` needs the radius at which the disc is read", "give `disc_radius`");
         return Err(Reported);
-    };
-    if eccentricity >= *radius {
+    }
+    if eccentricity >= radius {
         let span = keys.eccentricity.span().unwrap_or(keys.span);
         let message = format!("`eccentricity` of {eccentricity} m is not less than `disc_radius`, {radius} m");
         report.error(span, message, "give less");
         return Err(Reported);
     }
-    Ok(eccentricity / radius)
+    Ok(())
 }
 
 /// The encoder of a synchronous motor of `electrical_ratio`, for whose commutation it is read, too.
@@ -141,16 +106,16 @@ pub(super) fn with_commutation(
     electrical_ratio: f64,
 ) -> Result<Encoder, Reported> {
     let Some(given) = slot.optional()? else { return Ok(encoder) };
-    let commutation = number(&given.commutation_offset)? / electrical_ratio;
-    let errors = if_any(EncoderErrors { commutation, ..encoder.errors.unwrap_or_default() });
-    Ok(Encoder { errors, ..encoder })
+    let Some(offset) = given.commutation.offset.optional()? else { return Ok(encoder) };
+    let errors = EncoderErrors { commutation: offset / electrical_ratio, ..encoder.errors.unwrap_or_default() };
+    Ok(Encoder { errors: errors.errs().then_some(errors), ..encoder })
 }
 
 /// An ideal source is not commutated.
 pub(super) fn refuse_commutation(slot: &Slot<file::Encoder>, report: &mut Report) {
     if let Some(given) = slot.given() {
         let why = "belongs to a synchronous motor, this is an ideal source";
-        refuse(&[("commutation_offset", given.commutation_offset.span())], why, "", report);
+        refuse(&[("commutation_offset", given.commutation.offset.span())], why, "", report);
     }
 }
 
@@ -177,14 +142,8 @@ pub(super) fn current(
         report.error(at.span, message, "for whole cycles of the current loop there is `delay`");
         return Err(Reported);
     }
-    let sensor = CurrentSensor {
-        offset: [number(&given.offset_a)?, number(&given.offset_b)?],
-        gain_error: [number(&given.gain_error_a)?, number(&given.gain_error_b)?],
-        noise: number(&given.noise)?,
-        seed: whole(&given.seed)?,
-        converter,
-        delay: whole(&given.delay)?,
-        shift: number(&given.shift)?,
-    };
+    let (sensor, are_right) = given.parameters();
+    are_right?;
+    let sensor = CurrentSensor { converter, ..sensor };
     Ok((sensor != CurrentSensor { seed: sensor.seed, ..CurrentSensor::default() }).then_some(sensor))
 }

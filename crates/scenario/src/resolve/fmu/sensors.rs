@@ -1,9 +1,10 @@
 //! The sensors of an axis whose drive an FMU replaces: only what is given to an FMU is measured.
 use crate::diagnostic::Report;
-use crate::file::{CurrentSensor, EncoderKeys, File};
+use crate::file::{Encoder, File};
 use crate::resolve::refuse;
 use crate::scenario::{Fmu, InputSource};
-use crate::source::{Authority, Span};
+use crate::source::Authority;
+use crate::table::Keys as _;
 use servobench_signals::Signal;
 
 /// Refuses the errors of sensors that no FMU is given, and warns of a resolution that none is.
@@ -12,9 +13,9 @@ pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Rep
     let motor = file.motor.given().and_then(|motor| motor.encoder.given());
     if let Some(encoder) = motor {
         if !given(Signal::MeasuredMotorPosition) {
-            encoder_is_idle(encoder.keys(), Signal::MeasuredMotorPosition, report);
+            encoder_is_idle(encoder, Signal::MeasuredMotorPosition, report);
         }
-        let commutation = [("commutation_offset", encoder.commutation_offset.span())];
+        let commutation = [("commutation_offset", encoder.commutation.offset.span())];
         let why = "is not used: the voltage of an FMU in place of the drive is in the frame of the rotor itself";
         refuse(&commutation, why, "leave it out", report);
     }
@@ -22,7 +23,7 @@ pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Rep
     if let Some(encoder) = drive.and_then(|drive| drive.load_encoder.given())
         && !given(Signal::MeasuredLoadPosition)
     {
-        encoder_is_idle(encoder.keys(), Signal::MeasuredLoadPosition, report);
+        encoder_is_idle(encoder, Signal::MeasuredLoadPosition, report);
     }
     let sensor = drive.and_then(|drive| drive.current.given()?.sensor.given());
     if let Some(sensor) = sensor
@@ -33,51 +34,22 @@ pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Rep
         } else {
             "leave it out: an FMU that gives `effort.motor` stands for the motor, too"
         };
-        refuse(&errors_of(sensor), "is not used: no FMU is given the measured current", help, report);
+        refuse(&sensor.spans(), "is not used: no FMU is given the measured current", help, report);
     }
 }
 
 /// What of an encoder changes nothing, as no FMU is given `signal`.
-fn encoder_is_idle(keys: EncoderKeys<'_>, signal: Signal, report: &mut Report) {
+fn encoder_is_idle(encoder: &Encoder, signal: Signal, report: &mut Report) {
     let why = format!("is not used: an FMU replaces the drive, and none is given `{}`", signal.name());
     let help = format!("connect an input to `{}`, or leave it out", signal.name());
-    let errors = [
-        ("amplitude_error", keys.amplitude_error.span()),
-        ("offset_sine", keys.offset_sine.span()),
-        ("offset_cosine", keys.offset_cosine.span()),
-        ("phase_error", keys.phase_error.span()),
-        ("lost_track", keys.lost_track.span()),
-        ("eccentricity", keys.eccentricity.span()),
-        ("zero_offset", keys.zero_offset.span()),
-        ("noise", keys.noise.span()),
-        ("latency", keys.latency.span()),
-        ("turn_bits", keys.turn_bits.span()),
-    ];
+    let resolution = ["counts_per_rev", "step", "interpolation", "signal_period", "lines_per_rev"];
+    let (of_resolution, errors): (Vec<_>, Vec<_>) =
+        encoder.spans().into_iter().partition(|(key, _)| resolution.contains(key));
     refuse(&errors, &why, &help, report);
     // An FMU that stands for a drive with its encoder counts itself.
-    let resolutions = [
-        ("counts_per_rev", keys.counts_per_rev.span()),
-        ("step", keys.step.span()),
-        ("interpolation", keys.interpolation.span()),
-    ];
-    for (key, span) in resolutions {
+    for (key, span) in of_resolution {
         if let Some(span) = span.filter(|span| span.source.authority() != Authority::Model) {
             report.warning(span, format!("`{key}` {why}"), help.as_str());
         }
     }
-}
-
-/// The keys by which current sensors err.
-fn errors_of(sensor: &CurrentSensor) -> [(&'static str, Option<Span>); 9] {
-    [
-        ("offset_a", sensor.offset_a.span()),
-        ("offset_b", sensor.offset_b.span()),
-        ("gain_error_a", sensor.gain_error_a.span()),
-        ("gain_error_b", sensor.gain_error_b.span()),
-        ("noise", sensor.noise.span()),
-        ("bits", sensor.bits.span()),
-        ("range", sensor.range.span()),
-        ("delay", sensor.delay.span()),
-        ("shift", sensor.shift.span()),
-    ]
 }
