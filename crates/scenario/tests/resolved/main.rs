@@ -5,6 +5,7 @@ mod loops;
 mod motor_effects;
 mod motors;
 mod moves;
+mod sensors;
 mod tables;
 
 use servobench_base::{Coordinate, Dq, Setpoint};
