@@ -5,7 +5,7 @@
 use servobench_plant::Exact;
 use servobench_scenario::Scenario;
 use servobench_sim::{Analysis, Bench, analyse_stability};
-use servobench_suite::Depth;
+use servobench_stability::Depth;
 use servobench_tests::scenario_file;
 use std::time::{Duration, Instant};
 
