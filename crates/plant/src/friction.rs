@@ -88,7 +88,7 @@ impl Friction {
         self.viscous
     }
 
-    /// Whether there is no more than the linear part: [`grip`](Self::grip) then never does anything.
+    /// Whether there is no more than the linear part: it then never holds the body, and adds nothing to that part.
     #[must_use]
     #[inline]
     pub fn is_linear(&self) -> bool {
