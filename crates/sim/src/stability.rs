@@ -37,36 +37,33 @@ pub enum Analysis {
 pub struct MasterLoop {
     /// Its gain (1/s).
     pub gain: f64,
-    /// The largest gain with which it is stable (1/s).
-    pub largest: f64,
+    /// The largest gain with which it is stable (1/s); `None` where it is and nothing but the verdict was asked for, or the loops below it
+    /// are not.
+    pub largest: Option<f64>,
 }
 
 impl MasterLoop {
-    /// Factor by which the gain may grow.
-    #[must_use]
-    pub fn margin(&self) -> f64 {
-        self.largest / self.gain
-    }
-
     /// True where the gain is beyond the largest one.
     #[must_use]
     pub fn is_unstable(&self) -> bool {
-        self.gain > self.largest
+        self.largest.is_some_and(|largest| self.gain > largest)
     }
 }
 
 /// Why it is unstable, in words.
 impl Display for MasterLoop {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let [gain, largest] = [self.gain, self.largest].map(|gain| Quantity::new(gain, "1/s"));
+        let gain = Quantity::new(self.gain, "1/s");
         write!(
             f,
-            "the loop is unstable: position loop of the master, gain {gain}: with the round trip of the bus and the "
+            "the loop is unstable: position loop of the master, gain {gain}: with the round trip of the bus and the velocity loop of the drive "
         )?;
-        if self.largest > 0.0 {
-            write!(f, "velocity loop of the drive it is stable to {largest} ({} ×)", Quantity::new(self.margin(), ""))
-        } else {
-            f.write_str("velocity loop of the drive no gain makes it stable")
+        match self.largest.filter(|largest| *largest > 0.0) {
+            Some(largest) => {
+                let (factor, largest) = (Quantity::new(largest / self.gain, ""), Quantity::new(largest, "1/s"));
+                write!(f, "it is stable to {largest} ({factor} ×)")
+            }
+            None => f.write_str("no gain makes it stable"),
         }
     }
 }
@@ -148,12 +145,16 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
             Err(error) => return failed(error),
         }
     }
-    match scenario.bus.as_ref().filter(|_| report.is_stable()).and_then(over_bus) {
-        None => Ok(Analysis::Done { report, master: None, without }),
-        Some(master) => match master_loop(&master, model, &sensors)? {
-            Ok(master) => Ok(Analysis::Done { report, master: Some(master), without }),
-            Err(error) => failed(error),
-        },
+    let Some(master) = scenario.bus.as_ref().and_then(over_bus) else {
+        return Ok(Analysis::Done { report, master: None, without });
+    };
+    let largest = if report.is_stable() { largest_gain(&master, model, &sensors, depth)? } else { Ok(None) };
+    match largest {
+        Ok(largest) => {
+            let master = Some(MasterLoop { gain: master.gains.gain, largest });
+            Ok(Analysis::Done { report, master, without })
+        }
+        Err(error) => failed(error),
     }
 }
 
@@ -163,16 +164,17 @@ fn over_bus(bus: &Bus) -> Option<MasterOverBus> {
     Some(MasterOverBus { gains, cycle: Divider::new(bus.cycle)?, delay: bus.delay as usize })
 }
 
-/// The largest gain of `master` above the loops of `model`.
-fn master_loop(
+/// The largest gain of `master` above the loops of `model`, as far as it is asked for.
+fn largest_gain(
     master: &MasterOverBus,
     model: Loop,
     sensors: &WiredSensors,
-) -> Result<Result<MasterLoop, stability::StabilityError>, BuildError> {
+    depth: Depth,
+) -> Result<Result<Option<f64>, stability::StabilityError>, BuildError> {
     let model = Loop { master_cycle: Some(master.cycle), ..model };
     let running = Box::new(AtRest::new(&model, sensors, Some(master))?);
-    let gain = master.gains.gain;
-    Ok(stability::position_gain_margin(&model, running).map(|factor| MasterLoop { gain, largest: factor * gain }))
+    let margin = stability::position_gain_margin(&model, running, depth);
+    Ok(margin.map(|factor| factor.map(|factor| factor * master.gains.gain)))
 }
 
 type Found = Result<(Loop, WiredSensors, Vec<NotAnalysed>), NotAnalysed>;

@@ -54,17 +54,24 @@ pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth
 }
 
 /// The factor on the gain of the position loop, nearest to 1, up to which the whole loop is stable: below 1 where it is not, and 0 where no
-/// gain makes it so.
+/// gain makes it so. `None` where it is stable and nothing but the verdict is asked for.
 ///
 /// # Errors
 /// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
-pub fn position_gain_margin<'a>(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<f64, StabilityError> {
+pub fn position_gain_margin<'a>(
+    model: &'a Loop,
+    running: Box<dyn Running + 'a>,
+    depth: Depth,
+) -> Result<Option<f64>, StabilityError> {
     model.check()?;
     let mut analysis = Analysis::new(model, running)?;
     let whole = analysis.whole();
     let is_unstable = analysis.unstable(whole)?.is_some();
+    if depth == Depth::Verdict && !is_unstable {
+        return Ok(None);
+    }
     let [below, above] = boundary::nearest(&mut analysis.equations, whole, GainName::Position, is_unstable);
-    Ok(if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) })
+    Ok(Some(if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) }))
 }
 
 /// The poles of the loops that a tick closes.

@@ -1,7 +1,7 @@
 //! The linear loop in `check` and in a run: both report the same.
 use servobench_metrics::{Requirement, Standing};
 use servobench_plant::{EngineName, Exact};
-use servobench_sim::{Analysis, analyse_stability};
+use servobench_sim::{Analysis, MasterLoop, analyse_stability};
 use servobench_stability::Depth;
 use servobench_suite::{Doubt, Engines, Job, Preview, Run, Source, Workers, execute, jobs, preview};
 use std::path::{Path, PathBuf};
@@ -109,10 +109,12 @@ fn a_master_is_stable_up_to_its_bound_as_runs_are() {
                 .replace("mode = \"csv\"\n", &format!("mode = \"csv\"\n{gains}"));
             job(text.replace("520 1/s", &format!("{gain} 1/s")))
         };
-        let analysis = analyse_stability(&with(100.0).scenario, Depth::Verdict, None).unwrap();
-        let Analysis::Done { master: Some(master), .. } = analysis else { panic!("{analysis:?}") };
+        let analysis = analyse_stability(&with(100.0).scenario, Depth::Boundaries, None).unwrap();
+        let Analysis::Done { master: Some(MasterLoop { largest: Some(largest), .. }), .. } = analysis else {
+            panic!("{analysis:?}")
+        };
         for factor in [1.0 / 1.005, 1.005] {
-            let recording = run(&with(factor * master.largest)).recording;
+            let recording = run(&with(factor * largest)).recording;
             let positions = recording.channel("load.position").unwrap();
             let swing = |tenths: std::ops::Range<usize>| {
                 let part = &positions[positions.len() / 10 * tenths.start..positions.len() / 10 * tenths.end];
@@ -120,8 +122,7 @@ fn a_master_is_stable_up_to_its_bound_as_runs_are() {
                     - part.iter().copied().fold(f64::INFINITY, f64::min)
             };
             let [earlier, later] = [swing(5..7), swing(8..10)];
-            let what =
-                format!("{velocity} {cycle} {gains:?}: {factor} of {}: {earlier:e} m, {later:e} m", master.largest);
+            let what = format!("{velocity} {cycle} {gains:?}: {factor} of {largest}: {earlier:e} m, {later:e} m");
             println!("{what}");
             assert_eq!(later > earlier, factor > 1.0, "{what}");
         }

@@ -1,6 +1,6 @@
 //! The position loop that a master closes over a bus.
 use crate::files::scenario;
-use servobench_sim::{Analysis, analyse_stability};
+use servobench_sim::{Analysis, MasterLoop, analyse_stability};
 use servobench_stability::Depth;
 use std::f64::consts::{PI, TAU};
 
@@ -33,10 +33,12 @@ fn largest((velocity, delay, cycle): (f64, u32, f64), gains: &str) -> [f64; 2] {
     let bus =
         format!("cycle = \"{cycle} ms\"\nmode = \"csv\"\ndelay = {delay}\nunits = {{ drive = 1, axis = \"1 nm\" }}\n");
     let scenario = scenario(&format!("{axis}[bus]\n{bus}position_gain = \"10 1/s\"\n{gains}"));
-    let analysis = analyse_stability(&scenario, Depth::Verdict, None);
-    let Ok(Analysis::Done { master: Some(master), .. }) = analysis else { panic!("{analysis:?}") };
+    let analysis = analyse_stability(&scenario, Depth::Boundaries, None);
+    let Ok(Analysis::Done { master: Some(MasterLoop { largest: Some(largest), .. }), .. }) = analysis else {
+        panic!("{analysis:?}")
+    };
     let (age, lag) = (0.125, 1e3 / (TAU * velocity));
-    [master.largest * 1e-3 * cycle, f64::from(2 * delay + 1) + (age + lag) / cycle]
+    [largest * 1e-3 * cycle, f64::from(2 * delay + 1) + (age + lag) / cycle]
 }
 
 /// Oracle: K·T = 2·tan(π·T/(4·D)) of docs/fieldbus.md, with the lag of the velocity loop added to the round trip D, which a lag is but for

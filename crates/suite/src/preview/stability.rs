@@ -31,7 +31,7 @@ impl LoopStability {
         if !report.is_stable() || master.is_some_and(|master| master.is_unstable()) {
             words.insert(0, "unstable".to_owned());
         }
-        words.extend(master.as_ref().map(of_master));
+        words.extend(master.as_ref().and_then(of_master));
         if self.is_scheduled {
             words.push("margins of the gains at standstill".to_owned());
         }
@@ -74,9 +74,11 @@ fn key_of_gain(gain: GainName) -> &'static str {
 }
 
 /// The gain of the position loop in the master, and how far it is from its bound.
-fn of_master(master: &MasterLoop) -> String {
-    let [gain, largest] = [master.gain, master.largest].map(|gain| Quantity::new(gain, "1/s"));
-    format!("master's position gain {gain} to {} × ({largest})", Quantity::new(master.margin(), ""))
+fn of_master(master: &MasterLoop) -> Option<String> {
+    let largest = master.largest?;
+    let factor = Quantity::new(largest / master.gain, "");
+    let [gain, largest] = [master.gain, largest].map(|gain| Quantity::new(gain, "1/s"));
+    Some(format!("master's position gain {gain} to {factor} × ({largest})"))
 }
 
 /// By how much the gain of a loop may change until the verdict on the whole loop does.
