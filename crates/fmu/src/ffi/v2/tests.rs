@@ -248,6 +248,60 @@ fn a_saved_state_goes_on_to_the_bit_and_so_do_its_bytes() {
     }
 }
 
+/// A word of the state that is another, under a checksum that is right: who does that is refused, or has an axis that nobody simulated, and
+/// the host lives.
+#[test]
+fn a_forged_state_ends_no_host() {
+    let mut random = Random::seeded(41);
+    let room = Room::new(Part::Axis);
+    let (one, other) = (begun(&room), begun(&room));
+    one.step_to(0..300);
+    let (mut state, mut size) = (ptr::null_mut(), 0);
+    // SAFETY: places and buffers are those of living values, of the size that was asked for.
+    let bytes = unsafe {
+        assert_eq!(fmi2GetFMUstate(one.c, &raw mut state), Status::OK);
+        assert_eq!(fmi2SerializedFMUstateSize(one.c, state, &raw mut size), Status::OK);
+        let mut bytes: Vec<c_char> = vec![0; size];
+        assert_eq!(fmi2SerializeFMUstate(one.c, state, bytes.as_mut_ptr(), size), Status::OK);
+        bytes
+    };
+    let words = size / 8;
+    let mut taken = 0;
+    for _ in 0..2_000 {
+        let (mut forged, mut copy) = (bytes.clone(), ptr::null_mut());
+        let word = 6 + random.index(words - 7);
+        let value = [0, 1, 255, u64::MAX, f64::NAN.to_bits(), 1e300_f64.to_bits(), random.index(1 << 40) as u64];
+        let put = |forged: &mut [c_char], word: usize, value: u64| {
+            for (place, byte) in forged[8 * word..].iter_mut().zip(value.to_le_bytes()) {
+                *place = byte.cast_signed();
+            }
+        };
+        put(&mut forged, word, random.one_of(&value));
+        let unsigned: Vec<u8> = forged[..size - 8].iter().map(|byte| byte.cast_unsigned()).collect();
+        put(&mut forged, words - 1, twox_hash::XxHash64::oneshot(0, &unsigned));
+        // SAFETY: as above; a state that is given is freed.
+        unsafe {
+            if fmi2DeSerializeFMUstate(other.c, forged.as_ptr(), size, &raw mut copy) != Status::OK {
+                continue;
+            }
+            if fmi2SetFMUstate(other.c, copy) == Status::OK {
+                taken += 1;
+                let (from, h) = (300.0 / 16e3, 1.0 / 16e3);
+                for k in 0..20 {
+                    if fmi2DoStep(other.c, from + f64::from(k) * h, h, 1) != Status::OK {
+                        break;
+                    }
+                }
+            }
+            assert_eq!(fmi2FreeFMUstate(other.c, &raw mut copy), Status::OK);
+            assert_eq!(fmi2SetFMUstate(other.c, state), Status::OK, "a way out of an error");
+        }
+    }
+    assert!(taken > 500, "most numbers are as good as others: {taken}");
+    // SAFETY: the state is that of above and lives.
+    unsafe { assert_eq!(fmi2FreeFMUstate(one.c, &raw mut state), Status::OK) };
+}
+
 /// Oracle: §4.2.4. After an error only reset, a saved state and the end are left.
 #[test]
 fn a_call_in_the_wrong_state_is_refused() {
