@@ -86,20 +86,22 @@ fn the_loop_that_is_shown_is_the_one_that_is_closed() {
     assert!(screen(&of_drive).contains(", position 10.0 Hz at 8.00 kHz"), "{}", screen(&of_drive));
 }
 
-/// Oracle: runs 0.5 % to both sides of the bound, over which a deviation fades or grows.
+/// Oracle: runs 0.5 % to both sides of the bound, over which a deviation fades or grows; 2 % with a derivative, since below that the increments
+/// of the bus are larger than what grows.
 #[test]
 fn a_master_is_stable_up_to_its_bound_as_runs_are() {
     let text = changed("master-beyond-its-bound.toml", "axis = \"0.1 um\"", "axis = \"1 nm\"").text;
     let text = text.replace("[run]\n", "[run]\nduration = \"3 s\"\n");
-    for (velocity, cycle, gains) in [
-        ("bandwidth = \"600 Hz\", kind = \"p\"", "1 ms", ""),
-        ("bandwidth = \"60 Hz\", kind = \"p\"", "1 ms", ""),
-        ("bandwidth = \"100 Hz\", integral_time = \"20 ms\"", "2 ms", ""),
-        ("bandwidth = \"200 Hz\", kind = \"p\"", "1 ms", "position_integral_time = \"30 ms\"\n"),
+    for (velocity, cycle, gains, share) in [
+        ("bandwidth = \"600 Hz\", kind = \"p\"", "1 ms", "", 0.005),
+        ("bandwidth = \"60 Hz\", kind = \"p\"", "1 ms", "", 0.005),
+        ("bandwidth = \"100 Hz\", integral_time = \"20 ms\"", "2 ms", "", 0.005),
+        ("bandwidth = \"200 Hz\", kind = \"p\"", "1 ms", "position_integral_time = \"30 ms\"\n", 0.005),
         (
             "bandwidth = \"200 Hz\", kind = \"p\"",
             "2 ms",
             "position_integral_time = \"60 ms\"\nposition_derivative_time = \"1 ms\"\n",
+            0.02,
         ),
     ] {
         let with = |gain: f64| {
@@ -113,7 +115,7 @@ fn a_master_is_stable_up_to_its_bound_as_runs_are() {
         let Analysis::Done { master: Some(MasterLoop { largest: Some(largest), .. }), .. } = analysis else {
             panic!("{analysis:?}")
         };
-        for factor in [1.0 / 1.005, 1.005] {
+        for factor in [1.0 / (1.0 + share), 1.0 + share] {
             let recording = run(&with(factor * largest)).recording;
             let positions = recording.channel("load.position").unwrap();
             let swing = |tenths: std::ops::Range<usize>| {
