@@ -102,7 +102,7 @@ pub struct Params {
     pub dead_time: Option<dead_time::Params>,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Integrators (V).

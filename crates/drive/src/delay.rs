@@ -30,7 +30,7 @@ pub struct Params {
     share: f64,
 }
 
-/// All that a snapshot must hold: the last set-points.
+/// State from tick to tick: the last set-points.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct State {
     kept: [Setpoint; CAPACITY + 2],

@@ -37,7 +37,7 @@ pub struct Params {
     pub filter_time: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Value of the last cycle; none before the first one.

@@ -126,7 +126,7 @@ pub struct Outputs {
     pub fault: Option<Fault>,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {

@@ -93,7 +93,7 @@ pub struct Params {
     count: usize,
 }
 
-/// All that a snapshot must hold: s_1 and s_2 of each filter (N·m or N).
+/// State from tick to tick: s_1 and s_2 of each filter (N·m or N).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// One pair for each filter.

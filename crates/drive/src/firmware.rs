@@ -77,7 +77,7 @@ enum Closed {
     None,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct State {
     delay: delay::State,

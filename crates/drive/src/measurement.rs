@@ -46,7 +46,7 @@ pub enum Params {
     Observer(observer::Params),
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     mt: mt::State,

@@ -49,7 +49,7 @@ pub struct Params {
     pub reaction: Reaction,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Load Θ.

@@ -30,7 +30,7 @@ pub struct Params {
     pub derivative: Option<derivative::Params>,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Integral I (axis coordinate).

@@ -195,7 +195,7 @@ impl Swings {
     }
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// What was found first.

@@ -4,7 +4,7 @@
 //! the range in between. The first one is taken as it is, which is all that a drive knows when it is switched on.
 
 use servobench_base::Stateful;
-/// Where the drive is: all that a snapshot must hold.
+/// Where the drive is: its state from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Unwrap {
     #[state(constant)]

@@ -39,7 +39,7 @@ pub struct Params {
     pub max_effort: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct State {
     /// Integrator effort (N·m or N).

@@ -87,7 +87,7 @@ pub struct Input<'a> {
     pub external_fault: bool,
 }
 
-/// All that a snapshot of a link must hold.
+/// State of a link from cycle to cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     command: AxisCommand,

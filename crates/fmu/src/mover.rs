@@ -41,7 +41,7 @@ servobench_base::saved_as!(Move: (Start, u64), |one: &Move| (one.start, one.begu
 
 impl Move {
     /// # Errors
-    /// What the planner says of a move that it cannot plan.
+    /// [`PlanError`] of a move that the planner cannot plan.
     fn new(start: Start, begun: u64) -> Result<Self, PlanError> {
         Ok(Self { plan: start.plan()?, start, begun })
     }
@@ -74,7 +74,7 @@ impl Mover {
     /// The set-point at tick `k`, with the override `factor`.
     ///
     /// # Errors
-    /// What the planner says of a move that it cannot plan.
+    /// [`PlanError`] of a move that the planner cannot plan.
     pub(crate) fn at(
         &mut self,
         k: u64,

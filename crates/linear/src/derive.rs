@@ -8,11 +8,11 @@ use std::collections::HashMap;
 /// Exponent of two of what a number is moved by that is zero at rest: its square underflows, and what a thousand times a thousand units
 /// make of it does not.
 const SMALL: i32 = -600;
-/// What is left of a sum whose parts meet, as a share of them: roundings of some ten numbers.
+/// Share of the parts of a sum that is left where they meet: roundings of some ten numbers.
 const MEETS: f64 = 4096.0 * f64::EPSILON;
 /// Places that are tried.
 const PLACES: u32 = 64;
-/// What a number at rest may change by in a tick, as a share of it: roundings of a sum of some ten numbers.
+/// Share of a number at rest that it may change by in a tick: roundings of a sum of some ten numbers.
 const REST: f64 = 64.0 * f64::EPSILON;
 
 /// The loop at rest before a tick of a kind, and after it.
@@ -27,7 +27,7 @@ struct Kind {
 pub struct TickMatrix {
     /// A.
     pub matrix: DMatrix<f64>,
-    /// What each entry is a sum of, by magnitude: its rounding is in proportion to that. `None` where it is the entry itself.
+    /// Magnitudes of the sums that the entries are, to which their roundings are in proportion; `None` where they are the entries themselves.
     pub magnitude: Option<DMatrix<f64>>,
 }
 
@@ -58,12 +58,12 @@ pub struct Matrices<'a> {
     is_operated: bool,
     /// Numbers that are states.
     states: Vec<usize>,
-    /// Of a kind and factors of 0 and 1, by their bits.
+    /// Matrices that were derived, by their kind and the bits of their factors.
     known: HashMap<(usize, u8), DMatrix<f64>>,
     scratch: (Vec<u64>, Vec<f64>),
 }
 
-/// What is moved.
+/// Size by which a number moves that is zero at rest.
 fn small() -> f64 {
     f64::from(SMALL).exp2()
 }
@@ -75,7 +75,7 @@ fn values(running: &mut dyn Running) -> Result<Vec<f64>, LinearError> {
 }
 
 impl<'a> Matrices<'a> {
-    /// Of `running`, whose first tick is number 0; of kind i is tick number `ticks[i]`, each larger than 0.
+    /// The matrices of `running`, whose first tick is number 0; of kind i is tick number `ticks[i]`, each larger than 0.
     ///
     /// # Errors
     /// [`LinearError`] where it does not run, or does not stay at rest.
@@ -126,7 +126,7 @@ impl<'a> Matrices<'a> {
         self.states.len()
     }
 
-    /// What acts from the states of everything but the controllers on, directly or not, and lies on a ring.
+    /// Numbers that everything but the controllers acts on, directly or not, and that lie on a ring.
     fn find_states(&mut self) -> Result<(), LinearError> {
         let count = self.numbers.len();
         let is_start = |number: &Number| !number.name.starts_with(CONTROLLERS) && !number.is_derived;
@@ -168,7 +168,7 @@ impl<'a> Matrices<'a> {
         }
     }
 
-    /// What all numbers are different by after a tick of a kind, per difference of `number` before it.
+    /// Differences of all numbers after a tick of a kind, per difference of `number` before it.
     fn column(&mut self, kind: usize, number: usize) -> Result<Vec<f64>, LinearError> {
         let mut column = self.moved(kind, number)?;
         if self.origin == Some(number) && self.is_operated {
@@ -300,7 +300,7 @@ impl<'a> Matrices<'a> {
         Ok(())
     }
 
-    /// What the numbers `rows` are different by after a tick, per difference of the numbers `columns` before it.
+    /// Differences of the numbers `rows` after a tick, per difference of the numbers `columns` before it.
     fn block(&mut self, kind: usize, rows: &[usize], columns: &[usize]) -> Result<DMatrix<f64>, LinearError> {
         let mut block = DMatrix::zeros(rows.len(), columns.len());
         for (index, &number) in columns.iter().enumerate() {

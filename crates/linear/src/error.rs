@@ -8,10 +8,10 @@ pub enum LinearError {
     /// A state that was saved cannot be restored.
     #[error(transparent)]
     Damaged(#[from] Damaged),
-    /// It does not run.
+    /// The loop does not run.
     #[error("the loop that is to be made linear does not run: {0}")]
     Stopped(String),
-    /// It does not stay where it is brought to rest.
+    /// The loop does not stay where it is brought to rest.
     #[error("the loop that is to be made linear does not stay at rest: `{0}` changes")]
     NotAtRest(String),
     /// A number that its rest is told by.

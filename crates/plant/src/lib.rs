@@ -1,6 +1,6 @@
 //! Physics of a servo axis: motor, inverter, sensors, friction, mechanics. Knows nothing of controllers.
 //!
-//! Each block is `Params` (constant in a run), `State` (all that a snapshot must hold), an input and a step.
+//! Each block is `Params` (constant in a run), `State` (what a tick leaves to the next one), an input and a step.
 //! Mechanics is a trait, because it has several engines; the engine [`Exact`] lives here, the others in crates of
 //! their own.
 

@@ -84,7 +84,7 @@ pub struct Params {
     pub flux_linkage: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Stator current in the rotor frame (A, peak).

@@ -105,7 +105,7 @@ impl Wiring {
     }
 }
 
-/// A cable at work: all that a snapshot must hold.
+/// A cable at work: its state from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Cable {
     #[state(constant)]

@@ -66,7 +66,7 @@ pub struct Params {
     pub weakening: Option<Weakening>,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// What the feedback takes from the voltage (V), not above 0.

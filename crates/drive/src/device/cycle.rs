@@ -30,7 +30,7 @@ pub enum CycleEvent {
     Between,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
     /// Steps until the next cycle begins; none before the first frame.

@@ -9,7 +9,7 @@ use crate::modes::Moment;
 use crate::modes::stop::Ramp;
 use servobench_base::Stateful;
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct State {
     held: Option<Held>,

@@ -5,7 +5,7 @@ use super::Params;
 use servobench_base::Stateful;
 use servobench_cia402::touch_probe::{ENABLED, Edge, Function};
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
     function: u16,

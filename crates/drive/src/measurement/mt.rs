@@ -35,7 +35,7 @@ pub struct Params {
     pub step: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Cycles so far.

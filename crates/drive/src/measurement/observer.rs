@@ -49,7 +49,7 @@ pub struct Params {
     pub compensation: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// Measured position less the observed one (rad or m).

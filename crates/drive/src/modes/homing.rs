@@ -75,7 +75,7 @@ impl Params {
     }
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     phase: Phase,

@@ -78,7 +78,7 @@ impl Params {
     }
 }
 
-/// All that a snapshot must hold, beside the buffer.
+/// State from tick to tick, beside the buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     phase: Phase,

@@ -82,7 +82,7 @@ pub struct Brake {
     pub off: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct LinkState {
     /// Voltage of the capacitor (V).

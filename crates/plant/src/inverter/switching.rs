@@ -47,7 +47,7 @@ pub(crate) struct Switching {
     resistance: f64,
 }
 
-/// Where the bridge is; all that a snapshot must hold beside the current.
+/// Where the bridge is; its state from tick to tick beside the current.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Bridge {
     /// Ticks since the period began.

@@ -131,7 +131,7 @@ impl CurrentSensor {
     }
 }
 
-/// The sensors at work: all that a snapshot must hold.
+/// The sensors at work: their state from tick to tick.
 #[derive(Debug, Clone, Stateful)]
 pub(crate) struct State {
     #[state(constant)]

@@ -16,7 +16,7 @@ pub struct Edge {
     pub offset: f64,
 }
 
-/// Times edges; all that a snapshot must hold.
+/// Times edges; its state from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct Timing {
     /// Position at the last tick, and the increment that was read of it.

@@ -204,7 +204,7 @@ impl Encoder {
     }
 }
 
-/// An encoder at work: all that a snapshot must hold.
+/// An encoder at work: its state from tick to tick.
 #[derive(Debug, Clone, Stateful)]
 pub struct EncoderState {
     #[state(constant)]

@@ -5,7 +5,7 @@
 use crate::mechanics::BodyState;
 use servobench_base::state::{Damaged, Reader, Stateful, Value as _, Writer};
 
-/// The last states of a body: all that a snapshot must hold.
+/// The last states of a body.
 #[derive(Debug, Clone)]
 pub(super) struct Past {
     /// From the oldest on, in a ring.

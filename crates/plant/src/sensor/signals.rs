@@ -90,7 +90,7 @@ impl Signals {
     }
 }
 
-/// The evaluation of the signals: all that a snapshot must hold.
+/// The evaluation of the signals: its state from tick to tick.
 #[derive(Debug, Clone, Stateful)]
 pub(super) struct Evaluation {
     #[state(constant)]

@@ -12,7 +12,7 @@ pub struct Params {
     pub steps: u32,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     effort: Linear,

@@ -48,7 +48,7 @@ impl Params {
     }
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// The last targets, the newest last: as many as the interpolation needs.

@@ -15,7 +15,7 @@ pub struct Params {
     pub velocity: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     velocity: Linear,

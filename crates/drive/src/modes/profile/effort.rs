@@ -12,7 +12,7 @@ pub struct Params {
     pub slope: f64,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// Effort of the next step.

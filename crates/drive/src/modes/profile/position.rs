@@ -74,7 +74,7 @@ fn asks(now: &Moment) -> bool {
     now.targets.controlword.has(ControlBit::ModeSpecific4)
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     way: Option<Way>,

@@ -33,7 +33,7 @@ pub struct Params {
     pub threshold: Window,
 }
 
-/// All that a snapshot must hold.
+/// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     /// Velocity of the next step, on linear ramps.
