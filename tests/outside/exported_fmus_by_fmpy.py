@@ -4,14 +4,19 @@ For every part of some scenarios and both versions of the standard:
 - `fmpy.validation` finds nothing in the model description: schema, names, model structure, start values, units;
 - the axis, simulated by FMPy at the base rate, gives what a run of the scenario records, to the bit;
 - the toolbox makes one FMU of drive and mechanics, which FMPy simulates: what it gives is the axis in one, to the bit;
-- a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them;
+- a saved state, and its bytes in another instance, go on to the bit, as FMPy calls them; the bytes are few at any length of the run, and
+  with one that is damaged they are refused;
 - without a word on times FMPy simulates the whole program (`DefaultExperiment`);
 - a step that never fits ends FMPy's simulation with an error: what is discarded it asks for again without end.
 """
 
+import contextlib
+import io
 import logging
+import random
 import signal
 import tempfile
+import time
 from pathlib import Path
 
 import fmpy
@@ -31,6 +36,8 @@ BODIES = ("motor.", "table.", "load.")
 # Steps in base ticks that no whole number of them makes, and the status error of both versions.
 MISFITS = (0.3, 0.5, 1.5, 2.01)
 ERROR = 3
+# Most bytes of a saved state.
+MOST_BYTES = 1 << 16
 # Real time for a simulation of some steps (s).
 CALL_TIMEOUT = 60
 
@@ -78,12 +85,13 @@ def check_container(folder: Path, version: int, rate: int, axis: str) -> None:
         raise SystemExit(f"FMI {version}: drive and mechanics in a container differ by {abs(found - wanted).max()} m")
 
 
-def check_states(fmu: str, rate: int) -> None:
-    """Saves a state and its bytes, goes on, and goes on from them again."""
+def check_states(fmu: str, rate: int) -> str:
+    """Saves a state and its bytes, goes on, and goes on from them again; damages the bytes. Says how many they are, and what they take."""
     description = fmpy.read_model_description(fmu)
     slave = {"2.0": FMU2Slave, "3.0": FMU3Slave}[description.fmiVersion]
     is_two = slave is FMU2Slave
-    references = [one.valueReference for one in description.modelVariables if one.causality == "output"]
+    given = [one for one in description.modelVariables if one.causality == "output"]
+    references = [one.valueReference for one in given if one.type in ("Real", "Float64")]
     folder = fmpy.extract(fmu, f"{fmu}.unpacked")
 
     def begun():  # type: ignore[no-untyped-def]
@@ -109,22 +117,47 @@ def check_states(fmu: str, rate: int) -> None:
 
     one, other = begun(), begun()
     outputs(one, 0)
-    if is_two:
-        state = one.getFMUstate()
-        copy = other.deSerializeFMUstate(one.serializeFMUstate(state))
-        restore = [(one, one.setFMUstate, state), (other, other.setFMUstate, copy)]
-    else:
-        state = one.getFMUState()
-        copy = other.deserializeFMUState(one.serializeFMUState(state))
-        restore = [(one, one.setFMUState, state), (other, other.setFMUState, copy)]
+    # FMPy has names for both versions that differ in their capitals.
+    calls = ["getFMUstate", "serializeFMUstate", "deSerializeFMUstate", "setFMUstate"]
+    if not is_two:
+        calls = ["getFMUState", "serializeFMUState", "deserializeFMUState", "setFMUState"]
+    get, serialize = (getattr(one, call) for call in calls[:2])
+    deserialize = getattr(other, calls[2])
+
+    def now() -> bytes:
+        return bytes(serialize(get()))
+
+    state = get()
+    content = now()
+    restore = [(one, getattr(one, calls[3]), state), (other, getattr(other, calls[3]), deserialize(content))]
+    accepted = 0
+    draws = random.Random(40)
+    for _ in range(1_000):
+        damaged = bytearray(content)
+        damaged[draws.randrange(len(damaged))] ^= 1 << draws.randrange(8)
+        # FMPy prints what the FMU says of each.
+        with contextlib.suppress(FMICallException), contextlib.redirect_stdout(io.StringIO()):
+            deserialize(bytes(damaged))
+            accepted += 1
+    if accepted:
+        raise SystemExit(f"{fmu}: {accepted} states with a damaged byte were accepted")
     wanted = outputs(one, 500)
     for instance, go_back, saved in restore:
         go_back(saved)
         if outputs(instance, 500) != wanted:
             raise SystemExit(f"{fmu}: what follows a saved state is not what followed it")
+    one.doStep(currentCommunicationPoint=1_000 / rate, communicationStepSize=4_000 / rate)
+    times, later = [], b""
+    for _ in range(20):
+        begin = time.perf_counter()
+        later = now()
+        times.append(time.perf_counter() - begin)
+    if max(len(content), len(later)) > MOST_BYTES:
+        raise SystemExit(f"{fmu}: a state has {len(content)} bytes, {len(later)} later; {MOST_BYTES} is the most")
     for instance in (one, other):
         instance.terminate()
         instance.freeInstance()
+    return f"a state has {len(content)} bytes at tick 500 and {len(later)} at 5 000, saved in {1e6 * min(times):.0f} us"
 
 
 def check_default(name: str, fmu: str, channels: dict[str, numpy.ndarray], rate: int) -> None:
@@ -172,9 +205,10 @@ def main() -> None:
                 equal = check_run(f"{scenario}, FMI {version}", axis, rate, channels)
                 size = Path(axis).stat().st_size
                 print(f"{scenario:<16} FMI {version}: valid, {size / 1e6:.1f} MB, {equal} values equal to the bit", end="")
+                if scenario != SCENARIOS[1]:
+                    print(f"; {check_states(axis, rate)}", end="")
                 if scenario == SCENARIOS[0]:
                     check_container(folder, version, rate, axis)
-                    check_states(axis, rate)
                     check_default(f"{scenario}, FMI {version}", axis, channels, rate)
                     for part in PARTS:
                         check_misfits(f"FMI {version}, {part}", str(folder / f"{part}{version}.fmu"), rate)
