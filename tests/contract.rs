@@ -201,6 +201,7 @@ fn an_engine_simulates_what_its_capabilities_list() {
             actuator: "motor".into(),
             transmission: 1.0,
             axis: None,
+            is_smooth: false,
         }),
         Model::Fmu(Box::new(FmuModel {
             file,

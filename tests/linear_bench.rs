@@ -18,7 +18,7 @@ fn time(work: impl FnOnce()) -> Duration {
 }
 
 fn analyse(scenario: &Scenario, depth: Depth) {
-    let analysis = analyse_stability(scenario, depth, None).unwrap();
+    let analysis = analyse_stability(scenario, depth, None, None).unwrap();
     assert!(matches!(analysis, Analysis::Done { .. }), "{analysis:?}");
 }
 

@@ -59,6 +59,7 @@ fn build(engine: &dyn Engine, xml: &str, initial: &[BodyState]) -> Box<dyn Mecha
         actuator: "drive".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: initial.to_vec() };
     engine.build(&setup).unwrap_or_else(|error| panic!("{error}"))

@@ -38,6 +38,7 @@ fn mjcf(xml: &str, [motor_joint, load_joint, actuator]: [&str; 3]) -> Model {
         actuator: actuator.into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     })
 }
 

@@ -33,9 +33,13 @@
 //!
 //! Restoring is in place: parameters, tables and plans stay where they are.
 #[cfg(feature = "std")]
+mod form;
+#[cfg(feature = "std")]
 mod texts;
 mod values;
 
+#[cfg(feature = "std")]
+pub use form::{Form, Number};
 pub use servobench_state_derive::Stateful;
 use thiserror::Error;
 

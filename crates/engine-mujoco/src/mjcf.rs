@@ -5,7 +5,7 @@ mod parts;
 use crate::NAME;
 use crate::simulation::{self, Data};
 use limits::Limits;
-use mujoco_rs::prelude::{MjtEnableBit, MjtState};
+use mujoco_rs::prelude::{MjtDisableBit, MjtEnableBit, MjtState};
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
 use servobench_base::state::{Damaged, Part, Reader, Stateful as _, Writer};
 use servobench_plant::{
@@ -41,6 +41,9 @@ const PARTS: [(u32, Part); 5] = [
     (MjtState::mjSTATE_ACT as u32, Part::field("act")),
     (REST, Part::derived("rest")),
 ];
+/// What moves in no proportion to what acts.
+const NOT_SMOOTH: [MjtDisableBit; 3] =
+    [MjtDisableBit::mjDSBL_FRICTIONLOSS, MjtDisableBit::mjDSBL_LIMIT, MjtDisableBit::mjDSBL_CONTACT];
 const ALL: u32 = MjtState::mjSTATE_INTEGRATION as u32;
 const REST: u32 = ALL
     & !(MjtState::mjSTATE_TIME as u32 | MjtState::mjSTATE_QPOS as u32)
@@ -58,7 +61,8 @@ impl MujocoMjcf {
         let model = simulation::compile(&file.xml, &file.path)?;
         let Parts { motor, load, actuator } = Parts::find(&model, file)?;
         let (joints, limits) = (joints(&model), Limits::of(&model));
-        let mut data = simulation::start(model, setup.step, &[])?;
+        let left_out = if file.is_smooth { &NOT_SMOOTH[..] } else { &[] };
+        let mut data = simulation::start(model, setup.step, left_out)?;
         let load = load_coordinate(&mut data, motor, load);
         let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
         bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);

@@ -137,6 +137,7 @@ fn advance_mjcf(bencher: Bencher) {
         actuator: "motor".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: vec![] };
     let (mut axis, mut k) = (Rapier.build(&setup).unwrap(), 0_u32);

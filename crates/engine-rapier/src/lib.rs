@@ -98,7 +98,10 @@ fn build_mjcf(file: &MjcfModel, setup: &MechanicsSetup) -> Result<Box<dyn Mechan
             help: "change the file, choose the engine `mujoco`, or describe the axis by its bodies",
         }
     };
-    let mechanism = Mechanism::read(&file.xml).map_err(refused)?;
+    let mut mechanism = Mechanism::read(&file.xml).map_err(refused)?;
+    if file.is_smooth {
+        mechanism.links.iter_mut().filter_map(|link| link.joint.as_mut()).for_each(|joint| joint.friction = 0.0);
+    }
     let axis = mechanism.axis(file).map_err(|mut refusals| {
         refusals.extend(linkage::check(&mechanism).err().unwrap_or_default());
         refused(refusals)

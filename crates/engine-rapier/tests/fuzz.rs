@@ -73,6 +73,7 @@ fn model(xml: &str, [motor_joint, load_joint, actuator]: [&str; 3]) -> MjcfModel
         actuator: actuator.into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     }
 }
 

@@ -1,8 +1,7 @@
 //! Matrices of the kinds of ticks of a loop that runs.
-use crate::form::{Form, Number, Values};
 use crate::{CONTROLLERS, Factors, LinearError, MECHANICS, Pattern, Running};
 use nalgebra::DMatrix;
-use servobench_base::state::{Reader, words};
+use servobench_base::state::{Form, Number, Part, Reader, Writer, words};
 use std::collections::HashMap;
 
 /// Exponent of two of what a number is moved by that is zero at rest: its square underflows, and what a thousand times a thousand units
@@ -354,6 +353,21 @@ const fn is_same(one: f64, other: f64) -> bool {
 /// The difference of two numbers, by `size`; none of the same number, even where it is not finite.
 fn by(other: f64, at_rest: f64, size: f64) -> f64 {
     if is_same(other, at_rest) { 0.0 } else { (other - at_rest) / size }
+}
+
+/// The numbers alone.
+struct Values<'a>(&'a mut Vec<f64>);
+
+impl Writer for Values<'_> {
+    fn number(&mut self, value: f64) {
+        self.0.push(value);
+    }
+
+    fn word(&mut self, _: u64) {}
+
+    fn enter(&mut self, _: Part) {}
+
+    fn leave(&mut self) {}
 }
 
 #[cfg(test)]

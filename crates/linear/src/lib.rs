@@ -23,13 +23,11 @@
 mod derive;
 mod error;
 mod factors;
-mod form;
 mod structure;
 
 pub use derive::{Matrices, System, TickMatrix};
 pub use error::LinearError;
 pub use factors::Factors;
-pub use form::Form;
 pub use structure::Pattern;
 
 use servobench_base::state::{Reader, Writer};

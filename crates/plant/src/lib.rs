@@ -14,6 +14,7 @@ mod ground_friction;
 mod identity;
 mod integration;
 pub mod inverter;
+mod linear_mechanics;
 mod linearised;
 mod load_coordinate;
 mod mechanics;
@@ -37,6 +38,7 @@ pub use friction::{DryFriction, Friction, FrictionParameter};
 pub use ground_friction::{Grips, GroundFriction};
 pub use identity::Identity;
 pub use integration::{Distortion, Integrator};
+pub use linear_mechanics::{LinearMechanics, NotLinear};
 pub use load_coordinate::{LoadCoordinate, PosedJoint};
 pub use mechanics::{
     Actuation, BodyState, Drive, Input, JointLimit, LogMessage, Mechanics, MechanicsError, MechanicsSetup, MjcfModel,

@@ -232,6 +232,8 @@ pub struct MjcfModel {
     pub transmission: f64,
     /// What the file has to fit; `None` where nobody says.
     pub axis: Option<MjcfAxis>,
+    /// True where dry friction, contacts and the ends of joints' ranges are left out.
+    pub is_smooth: bool,
 }
 
 /// What it takes to build mechanics.

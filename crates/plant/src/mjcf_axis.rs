@@ -106,6 +106,7 @@ mod tests {
             actuator,
             transmission: 1.0,
             axis,
+            is_smooth: false,
         }
     }
 

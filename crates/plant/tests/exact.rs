@@ -2,8 +2,8 @@
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_plant::{
-    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, Link, Mechanics,
-    MechanicsError, MechanicsSetup, MjcfModel, Model,
+    Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, LinearMechanics, Link,
+    Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, NotLinear,
 };
 
 const H: f64 = 1.0 / 16_000.0;
@@ -151,6 +151,23 @@ fn a_sliding_body_stops_where_coulomb_says() {
     assert!(axis.bodies()[0].velocity > 0.0, "above it does");
 }
 
+/// Oracle: the sum of the inertias, and whether a speed stays; between the sticking and the sliding of dry friction is no straight line.
+#[test]
+fn linear_mechanics_are_those_of_the_bodies() {
+    let linear = |friction: Friction| {
+        let load = Body { friction, ..body("load", 3.0) };
+        let chain = Chain::new(vec![body("motor", 2.0), load], vec![Link { stiffness: 7e4, damping: 30.0 }]).unwrap();
+        LinearMechanics::around_rest(build(chain, Drive::Effort, vec![]).as_mut(), H)
+    };
+    let free = linear(Friction::NONE).unwrap();
+    assert!((free.inertia() / 5.0 - 1.0).abs() < 1e-4 && free.is_free(), "{free:?}");
+    let braked = linear(Friction { viscous: 0.3, ..Friction::NONE }).unwrap();
+    assert!((braked.inertia() / 5.0 - 1.0).abs() < 1e-4 && !braked.is_free(), "{braked:?}");
+    let dry = DryFriction { coulomb: 2e3, breakaway: 2e3, stribeck_velocity: 0.0 };
+    let stuck = linear(Friction { dry, ..Friction::NONE });
+    assert!(matches!(stuck, Err(NotLinear::NotSmooth(_))), "{stuck:?}");
+}
+
 #[test]
 fn an_mjcf_file_is_refused_with_a_way_out() {
     let model = MjcfModel {
@@ -161,6 +178,7 @@ fn an_mjcf_file_is_refused_with_a_way_out() {
         actuator: "motor".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     };
     let setup = MechanicsSetup { model: Model::Mjcf(model), drive: Drive::Effort, step: H, initial: vec![] };
     let error = Exact.build(&setup).err().unwrap();

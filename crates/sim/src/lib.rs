@@ -37,6 +37,6 @@ pub use multi_axis::{MultiAxisBench, MultiAxisOutcome, NotAtOneTime};
 pub use program::Program;
 pub use run::{AxisFailure, Failure, Outcome, Reason};
 pub use speeds::Speeds;
-pub use stability::{Analysis, MasterLoop, NotAnalysed, analyse_stability};
+pub use stability::{Analysis, MasterLoop, MechanicsAtRest, NotAnalysed, analyse_stability, mechanics_at_rest};
 pub use stepper::{States, Stepper};
 pub use thinning::{selected, thinned};

@@ -5,12 +5,12 @@ use crate::error::BuildError;
 use crate::external::External;
 use crate::master_at_rest::{MasterAtRest, MasterOverBus};
 use crate::program::Program;
-use servobench_base::state::{Part, Reader, Stateful as _, Writer, words};
+use servobench_base::state::{Form, Part, Reader, Stateful as _, Writer, words};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Rate, Setpoint};
 use servobench_drive::{self as drive, Stage, measurement};
-use servobench_linear::{Factors, Form, LinearError, Running};
+use servobench_linear::{Factors, LinearError, Running};
 use servobench_plant::{
-    CurrentSensor, Drive, Encoder, Engine as _, Exact, MechanicsSetup, Model, PowerStage, Switches,
+    CurrentSensor, Drive, Encoder, Engine as _, Exact, Mechanics, MechanicsSetup, Model, PowerStage, Switches,
 };
 use servobench_signals::Instant;
 use servobench_stability as stability;
@@ -104,9 +104,13 @@ impl AtRest {
                 }
             }
         };
-        let chain = model.mechanics.linearised();
-        let transmission = chain.bodies()[0].transmission;
-        let setup = MechanicsSetup { model: Model::Chain(chain), drive: Drive::Effort, step: h, initial: Vec::new() };
+        let mechanics: Box<dyn Mechanics> = match &model.mechanics {
+            stability::Mechanics::Bodies(chain) => {
+                let model = Model::Chain(chain.linearised());
+                Exact.build(&MechanicsSetup { model, drive: Drive::Effort, step: h, initial: Vec::new() })?
+            }
+            stability::Mechanics::Model { linear, .. } => linear.at_rest(),
+        };
         let state = drive::State::new(&params, Setpoint::default())?;
         let control = Control { params: params.clone(), state, motor_encoder, load_encoder };
         let closed = ClosedLoop {
@@ -124,9 +128,9 @@ impl AtRest {
                 motor_before: 0.0,
                 shaft: Shaft { effort: 0.0, position: 0.0 },
             },
-            mechanics: Exact.build(&setup)?,
+            mechanics,
             prescribed: false,
-            mounting: Mounting { transmission, direction: 1.0 },
+            mounting: Mounting { transmission: model.mechanics.transmission(), direction: 1.0 },
             disturbances: Disturbances::new(&[], base_rate, 1)?,
             end_stops: None,
             switches: Switches::default(),
@@ -222,15 +226,20 @@ impl Running for AtRest {
 
     fn place(&mut self, position: f64) -> Result<(), LinearError> {
         let mut saved = self.fresh.clone();
-        self.form.put(&mut saved, POSITION, position)?;
+        let mut put = |name: &str, value: f64| {
+            let word = self.form.word(name).ok_or_else(|| LinearError::NoSuchNumber(name.to_owned()))?;
+            saved[word] = value.to_bits();
+            Ok::<_, LinearError>(())
+        };
+        put(POSITION, position)?;
         if self.current != 0.0 {
             let rotor = ElectricalAngle::from_mechanical(position, self.electrical_ratio).rotation();
             let AlphaBeta { alpha, beta } = Dq { d: self.voltage, q: 0.0 }.to_alpha_beta(rotor);
-            self.form.put(&mut saved, CURRENT, self.current)?;
-            self.form.put(&mut saved, INTEGRAL, self.voltage)?;
+            put(CURRENT, self.current)?;
+            put(INTEGRAL, self.voltage)?;
             for [along, across] in VOLTAGES {
-                self.form.put(&mut saved, along, alpha)?;
-                self.form.put(&mut saved, across, beta)?;
+                put(along, alpha)?;
+                put(across, beta)?;
             }
         }
         let mut from = Reader::moved(&saved);

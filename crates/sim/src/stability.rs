@@ -9,10 +9,10 @@ use servobench_base::Divider;
 use servobench_drive::Stage;
 use servobench_drive::current::operating_point::Strategy;
 use servobench_metrics::Quantity;
-use servobench_plant::Encoder;
+use servobench_plant::{Encoder, Engine, LinearMechanics};
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Drive, Feedback, Scenario};
 use servobench_stability::{
-    self as stability, Depth, Instability, Loop, PositionFeedback, Report, Source, VelocitySignal,
+    self as stability, Depth, Instability, Loop, Mechanics, PositionFeedback, Report, Slowest, Source, VelocitySignal,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -40,6 +40,8 @@ pub struct MasterLoop {
     /// The largest gain with which it is stable (1/s); `None` where it is and nothing but the verdict was asked for, or the loops below it
     /// are not.
     pub largest: Option<f64>,
+    /// The poles that fade last; `None` where the loops below it are unstable.
+    pub slowest: Option<Slowest>,
 }
 
 impl MasterLoop {
@@ -68,6 +70,23 @@ impl Display for MasterLoop {
     }
 }
 
+/// An MJCF file around its rest, or why it has no linear mechanics there.
+pub type MechanicsAtRest = Result<LinearMechanics, String>;
+
+/// The MJCF file of `scenario` around the rest at which it begins, as `engine` has it without what is not smooth; `None` without a file.
+#[must_use]
+pub fn mechanics_at_rest(scenario: &Scenario, engine: &dyn Engine) -> Option<MechanicsAtRest> {
+    let mut still = scenario.clone();
+    let AxisMechanics::Mjcf(file) = &mut still.axis.mechanics else { return None };
+    file.is_smooth = true;
+    still.initial.load_velocity = 0.0;
+    let built = plant::mechanics(&still, engine).map_err(|error| error.to_string());
+    let h = scenario.base_rate.period();
+    Some(built.and_then(|(mut mechanics, _)| {
+        LinearMechanics::around_rest(mechanics.as_mut(), h).map_err(|error| error.to_string())
+    }))
+}
+
 /// What is not analysed, and why.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotAnalysed {
@@ -75,8 +94,10 @@ pub enum NotAnalysed {
     NoDrive,
     /// The drive is an FMU, or an FMU gives what the drive would.
     ForeignDrive,
-    /// The mechanics is an MJCF file or an FMU alone.
-    ForeignMechanics(&'static str),
+    /// The mechanics is an FMU alone.
+    FmuMechanics,
+    /// The mechanics is an MJCF file, and why it is not linear around its rest.
+    Mjcf(String),
     /// FMUs beside the axis act on it: what is analysed is the axis without them.
     Fmus,
     /// The commutation is off while a current flows at standstill: what is analysed is the loop around that current in its own axis.
@@ -96,12 +117,10 @@ impl Display for NotAnalysed {
         match self {
             Self::NoDrive => f.write_str("this motor has no drive, so that no loop is closed"),
             Self::ForeignDrive => f.write_str("an FMU stands for the drive, and its equations are not known here"),
-            Self::ForeignMechanics(what) => {
-                write!(
-                    f,
-                    "the mechanics is {what}, whose equations are not known here: describe the axis by its bodies"
-                )
-            }
+            Self::FmuMechanics => f.write_str(
+                "the mechanics is an FMU, whose equations are not known here: describe the axis by its bodies, too",
+            ),
+            Self::Mjcf(why) => write!(f, "the MJCF file is not made linear: {why}"),
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
             Self::Commutation => f.write_str(
                 "a commutation that is off turns the current that the d axis has at standstill, which is not analysed; the loop with a \
@@ -122,12 +141,18 @@ impl Display for NotAnalysed {
 }
 
 /// Analyses the sampled linear loop of `scenario`: at standstill and, with a gain schedule, at each speed at which `speeds` stay for
-/// longer than a period of its pole. Without `speeds` no one knows how long that is.
+/// longer than a period of its pole. Without `speeds` no one knows how long that is. `model` is what [`mechanics_at_rest`] said of an MJCF
+/// file.
 ///
 /// # Errors
 /// [`BuildError`] says which part of the scenario cannot be built.
-pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Speeds>) -> Result<Analysis, BuildError> {
-    let (model, sensors, mut without) = match linear_loop(scenario)? {
+pub fn analyse_stability(
+    scenario: &Scenario,
+    depth: Depth,
+    speeds: Option<&Speeds>,
+    model: Option<&MechanicsAtRest>,
+) -> Result<Analysis, BuildError> {
+    let (model, sensors, mut without) = match linear_loop(scenario, model)? {
         Ok(found) => found,
         Err(why) => return Ok(Analysis::NotPossible(why)),
     };
@@ -148,14 +173,18 @@ pub fn analyse_stability(scenario: &Scenario, depth: Depth, speeds: Option<&Spee
     let Some(master) = scenario.bus.as_ref().and_then(over_bus) else {
         return Ok(Analysis::Done { report, master: None, without });
     };
-    let largest = if report.is_stable() { largest_gain(&master, model, &sensors, depth)? } else { Ok(None) };
-    match largest {
-        Ok(largest) => {
-            let master = Some(MasterLoop { gain: master.gains.gain, largest });
-            Ok(Analysis::Done { report, master, without })
+    let mut closed = MasterLoop { gain: master.gains.gain, largest: None, slowest: None };
+    if report.is_stable() {
+        let model = Loop { master_cycle: Some(master.cycle), ..model };
+        let running = Box::new(AtRest::new(&model, &sensors, Some(&master))?);
+        match stability::analyse_master(&model, running, depth) {
+            Ok((slowest, margin)) => {
+                (closed.slowest, closed.largest) = (Some(slowest), margin.map(|factor| factor * closed.gain));
+            }
+            Err(error) => return failed(error),
         }
-        Err(error) => failed(error),
     }
+    Ok(Analysis::Done { report, master: Some(closed), without })
 }
 
 /// The position loop that the master closes over `bus`, if it does.
@@ -164,30 +193,23 @@ fn over_bus(bus: &Bus) -> Option<MasterOverBus> {
     Some(MasterOverBus { gains, cycle: Divider::new(bus.cycle)?, delay: bus.delay as usize })
 }
 
-/// The largest gain of `master` above the loops of `model`, as far as it is asked for.
-fn largest_gain(
-    master: &MasterOverBus,
-    model: Loop,
-    sensors: &WiredSensors,
-    depth: Depth,
-) -> Result<Result<Option<f64>, stability::StabilityError>, BuildError> {
-    let model = Loop { master_cycle: Some(master.cycle), ..model };
-    let running = Box::new(AtRest::new(&model, sensors, Some(master))?);
-    let margin = stability::position_gain_margin(&model, running, depth);
-    Ok(margin.map(|factor| factor.map(|factor| factor * master.gains.gain)))
-}
-
 type Found = Result<(Loop, WiredSensors, Vec<NotAnalysed>), NotAnalysed>;
 
 /// The linear loop of `scenario`, and what of it is not in that; or why there is none.
-fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
+fn linear_loop(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Result<Found, BuildError> {
     if coupled::replaces_the_drive(scenario) {
         return Ok(Err(NotAnalysed::ForeignDrive));
     }
-    let chain = match &scenario.axis.mechanics {
-        AxisMechanics::Bodies(chain) => chain,
-        AxisMechanics::Mjcf(_) => return Ok(Err(NotAnalysed::ForeignMechanics("an MJCF file"))),
-        AxisMechanics::InTheFmu => return Ok(Err(NotAnalysed::ForeignMechanics("an FMU"))),
+    let mechanics = match (&scenario.axis.mechanics, model) {
+        (AxisMechanics::Bodies(chain), _) => Mechanics::Bodies(plant::checked(chain)?),
+        (AxisMechanics::Mjcf(_), Some(Ok(linear))) => Mechanics::Model {
+            coordinate: scenario.axis.motor_motion,
+            transmission: scenario.axis.transmission,
+            linear: linear.clone(),
+        },
+        (AxisMechanics::Mjcf(_), Some(Err(why))) => return Ok(Err(NotAnalysed::Mjcf(why.clone()))),
+        (AxisMechanics::Mjcf(_), None) => return Ok(Err(NotAnalysed::Mjcf("no engine was asked".to_owned()))),
+        (AxisMechanics::InTheFmu, _) => return Ok(Err(NotAnalysed::FmuMechanics)),
     };
     let (drive, source, encoder) = match &scenario.actuator {
         Actuator::Prescribed | Actuator::Off(_) => return Ok(Err(NotAnalysed::NoDrive)),
@@ -220,7 +242,7 @@ fn linear_loop(scenario: &Scenario) -> Result<Found, BuildError> {
         },
         current_tuning: drive.current_tuning,
         source,
-        mechanics: plant::checked(chain)?,
+        mechanics,
         d_current,
     };
     let commutation = encoder.errors.map_or(0.0, |errors| errors.commutation);

@@ -9,7 +9,7 @@ use crate::error::StabilityError;
 use crate::model::{Loop, Source};
 use crate::period::Period;
 use crate::pole::Pole;
-use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report};
+use crate::report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Slowest};
 use nalgebra::Complex;
 use servobench_base::Coordinate;
 use servobench_base::Dq;
@@ -37,9 +37,7 @@ pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth
     let unstable = poles.outside().map(|eigenvalue| poles.in_seconds(&analysis.equations, &eigenvalue));
     let is_unstable = unstable.is_some();
     let largest = unstable.or_else(|| poles.largest(&analysis.equations));
-    let slowest_oscillating =
-        poles.slowest(&analysis.equations, |pole| pole.im != 0.0 || pole.re < 0.0, Pole::oscillates);
-    let slowest_real = poles.slowest(&analysis.equations, |pole| pole.im == 0.0 && pole.re > 0.0, |_| true);
+    let slowest = poles.that_fade_last(&analysis.equations);
     let instability = match unstable {
         Some(pole) => Some(analysis.instability(pole)?),
         None => None,
@@ -50,28 +48,31 @@ pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth
             loops.push(report);
         }
     }
-    Ok(Report { instability, largest, slowest_oscillating, slowest_real, loops, warnings: model.warnings() })
+    Ok(Report { instability, largest, slowest, loops, warnings: model.warnings() })
 }
 
-/// The factor on the gain of the position loop, nearest to 1, up to which the whole loop is stable: below 1 where it is not, and 0 where no
-/// gain makes it so. `None` where it is stable and nothing but the verdict is asked for.
+/// The whole loop with the position loop that a master closes: the poles that fade last, and the factor on the gain of that loop, nearest
+/// to 1, up to which it is stable: below 1 where it is not, and 0 where no gain makes it so. No factor where it is stable and nothing but the
+/// verdict is asked for.
 ///
 /// # Errors
 /// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
-pub fn position_gain_margin<'a>(
+pub fn analyse_master<'a>(
     model: &'a Loop,
     running: Box<dyn Running + 'a>,
     depth: Depth,
-) -> Result<Option<f64>, StabilityError> {
+) -> Result<(Slowest, Option<f64>), StabilityError> {
     model.check()?;
     let mut analysis = Analysis::new(model, running)?;
     let whole = analysis.whole();
-    let is_unstable = analysis.unstable(whole)?.is_some();
+    let poles = analysis.poles(whole)?;
+    let (slowest, is_unstable) = (poles.that_fade_last(&analysis.equations), poles.outside().is_some());
     if depth == Depth::Verdict && !is_unstable {
-        return Ok(None);
+        return Ok((slowest, None));
     }
     let [below, above] = boundary::nearest(&mut analysis.equations, whole, GainName::Position, is_unstable);
-    Ok(Some(if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) }))
+    let margin = if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) };
+    Ok((slowest, Some(margin)))
 }
 
 /// The poles of the loops that a tick closes.
@@ -107,6 +108,13 @@ impl Poles {
     fn largest(&self, equations: &Equations) -> Option<Pole> {
         let largest = self.values.iter().max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))?;
         Some(self.in_seconds(equations, &self.refined(*largest)))
+    }
+
+    fn that_fade_last(&self, equations: &Equations) -> Slowest {
+        Slowest {
+            oscillating: self.slowest(equations, |pole| pole.im != 0.0 || pole.re < 0.0, Pole::oscillates),
+            real: self.slowest(equations, |pole| pole.im == 0.0 && pole.re > 0.0, |_| true),
+        }
     }
 
     /// The pole that fades last among those of this kind; `is_kind` sees the pole over a period, `is_wanted` the pole in seconds.
@@ -287,19 +295,15 @@ impl<'a> Analysis<'a> {
 
     fn outer_gain(&self, name: GainName) -> (f64, &'static str) {
         let (p, (position, velocity)) = (&self.model.drive, self.scheduled.0);
-        match (name, self.coordinate()) {
+        match (name, self.model.mechanics.coordinate()) {
             (GainName::Position, _) => (position * p.position_gain, "1/s"),
             (_, Coordinate::Rotary) => (velocity * p.velocity.k_p, "N·m·s/rad"),
             (_, Coordinate::Linear) => (velocity * p.velocity.k_p, "N·s/m"),
         }
     }
 
-    fn coordinate(&self) -> Coordinate {
-        self.model.mechanics.bodies()[0].coordinate
-    }
-
     fn speed_unit(&self) -> &'static str {
-        match self.coordinate() {
+        match self.model.mechanics.coordinate() {
             Coordinate::Rotary => "rad/s",
             Coordinate::Linear => "m/s",
         }

@@ -122,6 +122,14 @@ impl<'a> Equations<'a> {
             current: if kind.current { factors.current } else { one.current },
         };
         let mut found = self.matrices.matrix(index, &factors)?;
+        let uncertainty = self.model.mechanics.uncertainty();
+        if uncertainty > 0.0 {
+            let magnitude = found.magnitude.get_or_insert_with(|| found.matrix.abs());
+            for (row, _) in self.names.iter().enumerate().filter(|(_, name)| name.starts_with(MECHANICS)) {
+                let error = magnitude.row(row).amax() * uncertainty / f64::EPSILON;
+                magnitude.row_mut(row).add_scalar_mut(error);
+            }
+        }
         if !closed.shaft {
             // Bodies that are held do not move, whatever acts on them.
             for (index, name) in self.names.iter().enumerate() {
@@ -217,8 +225,7 @@ impl<'a> Equations<'a> {
             Stage::Current { every, .. } => model.d_current == 0.0 || every.ticks() == 1,
             Stage::Direct { .. } => false,
         };
-        let bodies = model.mechanics.bodies();
-        closed.shaft && is_open && holds_current && bodies.iter().all(|body| body.friction.linear() == 0.0)
+        closed.shaft && is_open && holds_current && model.mechanics.is_free()
     }
 }
 

@@ -26,9 +26,9 @@ mod qr;
 mod report;
 mod schedule;
 
-pub use analyse::{Depth, analyse, position_gain_margin};
+pub use analyse::{Depth, analyse, analyse_master};
 pub use error::StabilityError;
-pub use model::{LEFT_OUT, Loop, PositionFeedback, Source, VelocitySignal};
+pub use model::{LEFT_OUT, Loop, Mechanics, PositionFeedback, Source, VelocitySignal};
 pub use pole::Pole;
-pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Warning};
+pub use report::{Boundaries, Boundary, GainName, Instability, LoopName, LoopReport, Report, Slowest, Warning};
 pub use schedule::analyse_schedule;

@@ -1,9 +1,9 @@
 //! What is analysed: an axis, the drive that closes its loops, and where it is operated.
 use crate::StabilityError;
-use servobench_base::{Divider, Dq, finite, positive};
+use servobench_base::{Coordinate, Divider, Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
-use servobench_plant::{Chain, pmsm};
+use servobench_plant::{Body, Chain, LinearMechanics, pmsm};
 
 /// What the analysis leaves out, in a sentence.
 pub const LEFT_OUT: &str = "the analysis is of the linear loop at standstill: dry friction, saturation (current, voltage, \
@@ -26,10 +26,89 @@ pub struct Loop {
     pub current_tuning: Option<Tuning>,
     /// What turns the drive's command into effort.
     pub source: Source,
-    /// The bodies.
-    pub mechanics: Chain,
+    /// What the motor moves.
+    pub mechanics: Mechanics,
     /// Current along the d axis at rest (A, peak).
     pub d_current: f64,
+}
+
+/// What the motor moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mechanics {
+    /// Bodies in a row.
+    Bodies(Chain),
+    /// A user's own model.
+    Model {
+        /// How the motor moves.
+        coordinate: Coordinate,
+        /// Axis coordinate per motor coordinate.
+        transmission: f64,
+        /// The model around its rest.
+        linear: LinearMechanics,
+    },
+}
+
+impl From<Chain> for Mechanics {
+    fn from(chain: Chain) -> Self {
+        Self::Bodies(chain)
+    }
+}
+
+impl Mechanics {
+    /// How the motor moves.
+    #[must_use]
+    pub fn coordinate(&self) -> Coordinate {
+        match self {
+            Self::Bodies(chain) => chain.bodies()[0].coordinate,
+            Self::Model { coordinate, .. } => *coordinate,
+        }
+    }
+
+    /// Axis coordinate per motor coordinate.
+    #[must_use]
+    pub fn transmission(&self) -> f64 {
+        match self {
+            Self::Bodies(chain) => chain.bodies()[0].transmission,
+            Self::Model { transmission, .. } => *transmission,
+        }
+    }
+
+    /// The inertia of all bodies in the motor's coordinate.
+    pub(crate) fn inertia(&self) -> f64 {
+        match self {
+            Self::Bodies(chain) => {
+                let of = |body: &Body| body.inertia * (self.transmission() / body.transmission).powi(2);
+                chain.bodies().iter().map(of).sum()
+            }
+            Self::Model { linear, .. } => linear.inertia(),
+        }
+    }
+
+    /// True where no viscous friction ends a motion.
+    pub(crate) fn is_free(&self) -> bool {
+        match self {
+            Self::Bodies(chain) => chain.bodies().iter().all(|body| body.friction.linear() == 0.0),
+            Self::Model { linear, .. } => linear.is_free(),
+        }
+    }
+
+    /// How far off numbers of a tick can be, as a share of the largest one, beside their roundings.
+    pub(crate) const fn uncertainty(&self) -> f64 {
+        match self {
+            Self::Bodies(_) => 0.0,
+            Self::Model { linear, .. } => linear.uncertainty(),
+        }
+    }
+
+    /// Shares of the squares of velocities in the kinetic energy, from the motor's on; of a model the motor's alone is known.
+    pub(crate) fn energies(&self) -> Vec<f64> {
+        match self {
+            Self::Bodies(chain) => {
+                chain.bodies().iter().map(|body| body.inertia / (body.transmission * body.transmission)).collect()
+            }
+            Self::Model { .. } => vec![1.0],
+        }
+    }
 }
 
 /// Where the drive has the motor's velocity from.
@@ -87,13 +166,6 @@ impl Loop {
     /// Whether all current gains, those of both axes by the same factor, are one number in the scenario.
     pub(crate) const fn has_bandwidth(&self) -> bool {
         !matches!(self.current_tuning, Some(Tuning::Gains(_)))
-    }
-
-    /// The inertia of all bodies in the motor's coordinate.
-    pub(crate) fn inertia(&self) -> f64 {
-        let bodies = self.mechanics.bodies();
-        let motor = bodies[0].transmission;
-        bodies.iter().map(|body| body.inertia * (motor / body.transmission).powi(2)).sum()
     }
 
     /// Effort that the source gives per effort that the drive asks for, at rest.

@@ -13,9 +13,9 @@ impl Loop {
             LoopName::Position if !self.closes_position => return None,
             LoopName::Position => match self.position_feedback {
                 PositionFeedback::Motor => p.position_gain,
-                PositionFeedback::Load => p.position_gain * self.mechanics.bodies()[0].transmission / p.transmission,
+                PositionFeedback::Load => p.position_gain * self.mechanics.transmission() / p.transmission,
             },
-            LoopName::Velocity => p.velocity.k_p * self.effort_ratio() / self.inertia(),
+            LoopName::Velocity => p.velocity.k_p * self.effort_ratio() / self.mechanics.inertia(),
             LoopName::Current => match (&p.stage, &self.source) {
                 (Stage::Current { params, .. }, Source::Pmsm(motor)) => params.gains.k_p.q / motor.inductance.q,
                 _ => return None,

@@ -82,8 +82,8 @@ fn turn_per_tick(equations: &Equations, eigenvalue: &Eigenvalue) -> f64 {
 /// Inertia of each velocity, or 1 for each current where no body moves.
 fn weights(equations: &Equations, states: &[ComplexVector]) -> Vec<f64> {
     let mut weights = vec![0.0; equations.states()];
-    for (index, body) in equations.velocities().zip(equations.model().mechanics.bodies()) {
-        weights[index] = body.inertia / (body.transmission * body.transmission);
+    for (index, share) in equations.velocities().zip(equations.model().mechanics.energies()) {
+        weights[index] = share;
     }
     let moves =
         states.iter().any(|state| state.iter().zip(&weights).any(|(entry, weight)| weight * entry.norm() > 0.0));

@@ -103,6 +103,15 @@ pub struct Warning {
     pub inner_bandwidth: f64,
 }
 
+/// The poles of a loop that fade last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slowest {
+    /// Of those that oscillate, with a damping ratio below [`Pole::RESONANT`].
+    pub oscillating: Option<Pole>,
+    /// Of the real positive ones, which do not oscillate.
+    pub real: Option<Pole>,
+}
+
 /// What an analysis says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -110,10 +119,8 @@ pub struct Report {
     pub instability: Option<Instability>,
     /// The largest pole: the one that grows fastest or, in a stable loop, fades last. `None` where nothing is closed.
     pub largest: Option<Pole>,
-    /// Of the poles that oscillate, with a damping ratio below [`Pole::RESONANT`], the one that fades last.
-    pub slowest_oscillating: Option<Pole>,
-    /// Of the real positive poles, which do not oscillate, the one that fades last.
-    pub slowest_real: Option<Pole>,
+    /// The poles that fade last.
+    pub slowest: Slowest,
     /// Current, velocity and position loop, those that there are.
     pub loops: Vec<LoopReport>,
     /// What is set in an order in which cascades do not work.

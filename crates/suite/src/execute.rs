@@ -83,7 +83,7 @@ pub fn execute(
         Some(Interruption::Early(ended)) => (Some(ended), None),
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
-    let rules = rules(&job.scenario, &recording, ended);
+    let rules = rules(&job.scenario, &recording, ended, workers.linearise(job).as_ref());
     note_incidents(&mut recording, &rules);
     let requirements = judge_requirements(&recording, &rules);
     let record = &job.scenario.record;

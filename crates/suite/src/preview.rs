@@ -33,6 +33,7 @@ pub use stability::LoopStability;
 
 use crate::job::Job;
 use crate::panicked::caught;
+use crate::worker::Workers;
 use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_sim::{BuildError, Program};
 use servobench_stability::Depth;
@@ -67,19 +68,19 @@ pub struct Preview {
     pub doubts: Vec<Doubt>,
 }
 
-/// Previews the scenario of `jobs`: one scenario on each of its engines. Nothing without a job.
+/// Previews the scenario of `jobs`: one scenario on each of its engines. Nothing without a job. `workers` read an MJCF file.
 ///
 /// # Errors
 /// [`BuildError`] of moves that cannot be planned or of bodies that cannot be; [`check`](crate::check) says where.
-pub fn preview(jobs: &[Job]) -> Result<Option<Preview>, BuildError> {
-    previewed(jobs, Depth::Boundaries)
+pub fn preview(jobs: &[Job], workers: &Workers) -> Result<Option<Preview>, BuildError> {
+    previewed(jobs, Depth::Boundaries, Some(workers))
 }
 
 /// Warnings of `check` about the scenario of `job` on its engine, each behind its place: about its files, then, where it can be built, of
-/// its preview.
+/// its preview. Of an unstable loop with an MJCF file the run itself tells.
 #[must_use]
 pub fn check_warnings(job: &Job) -> Vec<String> {
-    let found = caught(|| previewed(from_ref(job), Depth::Verdict));
+    let found = caught(|| previewed(from_ref(job), Depth::Verdict, None));
     let doubts = found.ok().and_then(Result::ok).flatten().map_or_else(Vec::new, |preview| preview.doubts);
     let placed = doubts.iter().map(|doubt| placed(doubt, &job.scenario));
     job.scenario.warnings.iter().cloned().chain(placed).collect()
@@ -100,15 +101,16 @@ fn placed(doubt: &Doubt, scenario: &Scenario) -> String {
     }
 }
 
-fn previewed(jobs: &[Job], depth: Depth) -> Result<Option<Preview>, BuildError> {
-    let Some(Job { scenario, .. }) = jobs.first() else { return Ok(None) };
+fn previewed(jobs: &[Job], depth: Depth, workers: Option<&Workers>) -> Result<Option<Preview>, BuildError> {
+    let Some(first) = jobs.first() else { return Ok(None) };
+    let scenario = &first.scenario;
     let (planned, chain) = (Program::new(scenario)?, servobench_sim::Bench::chain(scenario)?);
     let program = PlannedProgram::new(scenario, &planned);
     let demand = Demand::of(scenario, chain.as_ref(), program.run)?;
     let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
     let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
     let engines = EngineSteps::of(scenario, modes.as_ref(), &names, program.run);
-    let stability = LoopStability::of(scenario, depth)?;
+    let stability = LoopStability::of(first, depth, workers)?;
     let mut doubts = program.doubts(scenario);
     doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));

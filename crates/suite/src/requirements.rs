@@ -1,17 +1,24 @@
 //! From a scenario to what its run is held to beside its limits.
 mod axle;
 
+use crate::job::Job;
+use crate::worker::Workers;
 use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules};
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, DisturbedBody, Feedback, LoopSignal, Scenario};
 use servobench_signals::Signal;
-use servobench_sim::{Analysis, MasterLoop, NotAnalysed, Speeds, analyse_stability};
-use servobench_stability::{Depth, Report, StabilityError};
+use servobench_sim::{Analysis, MasterLoop, MechanicsAtRest, NotAnalysed, Speeds, analyse_stability};
+use servobench_stability::{Depth, Slowest, StabilityError};
 use servobench_trace::Recording;
 
-/// What the run of `scenario` that `recording` is of, and which ended early if it says so, is held to.
-pub(crate) fn rules<'a>(scenario: &'a Scenario, recording: &Recording, ended: Option<EarlyEnd>) -> Rules<'a> {
-    let (linear_loop, poles, not_analysed) = linear_loop(scenario, recording);
+/// What the run of `scenario` that `recording` is of, and which ended early if it says so, is held to; `model` is an MJCF file around its rest.
+pub(crate) fn rules<'a>(
+    scenario: &'a Scenario,
+    recording: &Recording,
+    ended: Option<EarlyEnd>,
+    model: Option<&MechanicsAtRest>,
+) -> Rules<'a> {
+    let (linear_loop, poles, not_analysed) = linear_loop(scenario, recording, model);
     Rules {
         lifted: &scenario.requirements.lifted,
         expected: &scenario.requirements.expected,
@@ -49,30 +56,37 @@ fn winding_limit(actuator: &Actuator) -> Option<f64> {
 
 /// What the analysis of the linear loop of `scenario` says, its poles, and what is not in it. Where it is stable, its boundaries are
 /// nobody's concern.
-fn linear_loop(scenario: &Scenario, recording: &Recording) -> (LinearLoop, Option<Poles>, Option<String>) {
+fn linear_loop(
+    scenario: &Scenario,
+    recording: &Recording,
+    model: Option<&MechanicsAtRest>,
+) -> (LinearLoop, Option<Poles>, Option<String>) {
     let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
     let speeds = is_scheduled.then(|| Speeds::recorded(recording, scenario.axis.transmission)).flatten();
-    analysed(scenario, speeds.as_ref())
+    analysed(scenario, speeds.as_ref(), model)
 }
 
-/// Why the linear loop of `scenario` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells.
+/// Why the linear loop of `job` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells.
 #[must_use]
-pub fn instability(scenario: &Scenario) -> Option<String> {
-    match analysed(scenario, None).0 {
+pub fn instability(job: &Job, workers: &Workers) -> Option<String> {
+    match analysed(&job.scenario, None, workers.linearise(job).as_ref()).0 {
         LinearLoop::Unstable(why) => Some(why),
         LinearLoop::Stable | LinearLoop::NotAnalysed => None,
     }
 }
 
-fn analysed(scenario: &Scenario, speeds: Option<&Speeds>) -> (LinearLoop, Option<Poles>, Option<String>) {
-    match analyse_stability(scenario, Depth::Verdict, speeds) {
+fn analysed(
+    scenario: &Scenario,
+    speeds: Option<&Speeds>,
+    model: Option<&MechanicsAtRest>,
+) -> (LinearLoop, Option<Poles>, Option<String>) {
+    match analyse_stability(scenario, Depth::Verdict, speeds, model) {
         Ok(Analysis::Done { report, master, without }) => {
-            // The position loop of a master has poles of its own, which are not known.
-            let poles = master.is_none().then(|| poles(&report));
+            let slowest = master.map_or(Some(report.slowest), |master| master.slowest);
             let of_master = master.filter(MasterLoop::is_unstable).map(|master| master.to_string());
             match report.instability.map(|instability| instability.to_string()).or(of_master) {
-                Some(why) => (LinearLoop::Unstable(why), poles, None),
-                None => (LinearLoop::Stable, poles, listed(&without)),
+                Some(why) => (LinearLoop::Unstable(why), slowest.map(poles), None),
+                None => (LinearLoop::Stable, slowest.map(poles), listed(&without)),
             }
         }
         // What grows beyond all numbers within a period is not stable, though its poles cannot be computed.
@@ -92,12 +106,10 @@ fn listed(without: &[NotAnalysed]) -> Option<String> {
     (!words.is_empty()).then(|| words.join("; "))
 }
 
-/// The slowest poles of a report.
-fn poles(report: &Report) -> Poles {
-    let oscillating = report.slowest_oscillating;
+fn poles(slowest: Slowest) -> Poles {
     Poles {
-        oscillating: oscillating.map(|pole| Oscillation { frequency: pole.frequency, decay: -pole.growth }),
-        slowest_real: report.slowest_real.map(|pole| -pole.growth),
+        oscillating: slowest.oscillating.map(|pole| Oscillation { frequency: pole.frequency, decay: -pole.growth }),
+        slowest_real: slowest.real.map(|pole| -pole.growth),
     }
 }
 

@@ -146,7 +146,7 @@ fn a_window_as_large_as_the_way_judges_nothing() {
         "[limits]\nresidual_vibration_pp = \"5 mm\"",
         "[measure]\nwindow = \"0.2 m\"\n[limits]\nsettling_time = \"1 ms\"",
     );
-    let doubts = preview(&[job(&text)]).unwrap().unwrap().doubts;
+    let doubts = preview(&[job(&text)], &Workers::none()).unwrap().unwrap().doubts;
     assert!(doubts.iter().any(|doubt| doubt.key == "measure.window"), "{doubts:?}");
     let run = run(&text);
     for name in [Name::SettlingTime, Name::MoveAndSettlingTime, Name::ProgramTime] {
@@ -155,7 +155,7 @@ fn a_window_as_large_as_the_way_judges_nothing() {
     }
     assert_eq!(run.verdict.misses.len(), 1);
     let smaller = text.replace("0.2 m\"", "0.19 m\"");
-    let doubts = preview(&[job(&smaller)]).unwrap().unwrap().doubts;
+    let doubts = preview(&[job(&smaller)], &Workers::none()).unwrap().unwrap().doubts;
     assert!(doubts.iter().all(|doubt| doubt.key != "measure.window"), "{doubts:?}");
     assert!(self::run(&smaller).metrics.run.get(Name::SettlingTime).is_some());
 }

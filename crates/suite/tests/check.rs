@@ -70,6 +70,7 @@ fn job() -> Job {
         actuator: "servo".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     jobs(vec![Source { scenario, text: TEXT.into() }], &[]).remove(0)
 }

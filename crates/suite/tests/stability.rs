@@ -22,7 +22,7 @@ fn changed(name: &str, from: &str, to: &str) -> Job {
 }
 
 fn previewed(job: &Job) -> Preview {
-    preview(std::slice::from_ref(job)).unwrap().unwrap()
+    preview(std::slice::from_ref(job), &Workers::none()).unwrap().unwrap()
 }
 
 fn run(job: &Job) -> Run {
@@ -111,7 +111,7 @@ fn a_master_is_stable_up_to_its_bound_as_runs_are() {
                 .replace("mode = \"csv\"\n", &format!("mode = \"csv\"\n{gains}"));
             job(text.replace("520 1/s", &format!("{gain} 1/s")))
         };
-        let analysis = analyse_stability(&with(100.0).scenario, Depth::Boundaries, None).unwrap();
+        let analysis = analyse_stability(&with(100.0).scenario, Depth::Boundaries, None, None).unwrap();
         let Analysis::Done { master: Some(MasterLoop { largest: Some(largest), .. }), .. } = analysis else {
             panic!("{analysis:?}")
         };

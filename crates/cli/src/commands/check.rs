@@ -156,14 +156,14 @@ impl Asked {
         }
         asked.mistakes.sort_by_key(|mistake| (mistake.source, mistake.span.start));
         if asked.mistakes.is_empty() {
-            asked.look_ahead(loaded, &jobs);
+            asked.look_ahead(loaded, &jobs, workers);
         }
         asked
     }
 
     /// What can be said of `loaded`, whose `jobs` nothing keeps from being built.
-    fn look_ahead(&mut self, loaded: &Loaded, jobs: &[Job]) {
-        match preview(jobs) {
+    fn look_ahead(&mut self, loaded: &Loaded, jobs: &[Job], workers: &Workers) {
+        match preview(jobs, workers) {
             Ok(preview) => self.preview = preview,
             Err(error) => self.failed.push(error.into()),
         }

@@ -60,6 +60,7 @@ fn unchecked(chain: &Chain, step: f64, initial: &[(f64, f64)]) -> Box<dyn Mechan
         actuator: "motor_effort".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     Mujoco.build(&MechanicsSetup { model, ..setup(two_mass(), Drive::Effort, step, initial) }).unwrap()
 }

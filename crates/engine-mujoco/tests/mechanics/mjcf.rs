@@ -48,6 +48,7 @@ fn model(xml: String) -> MjcfModel {
         actuator: "servo".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     }
 }
 

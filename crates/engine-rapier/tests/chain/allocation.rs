@@ -65,6 +65,7 @@ fn a_tick_of_an_mjcf_file_allocates_what_the_bare_step_does() {
         actuator: "u".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     let setup = MechanicsSetup { model, drive: Drive::Effort, step: H, initial: vec![] };
     let found = per_tick(Rapier.build(&setup).unwrap().as_mut());

@@ -25,6 +25,7 @@ fn file(xml: &str, load: &str) -> MjcfModel {
         actuator: "u".into(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     }
 }
 

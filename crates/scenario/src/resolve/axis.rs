@@ -188,7 +188,7 @@ fn mjcf_file(mjcf: &file::Mjcf, transmission: f64, sources: &Sources, report: &m
     let text = |slot: &Slot<String>| slot.given().cloned();
     let (motor_joint, load_joint) = (text(&mjcf.motor_joint)?, text(&mjcf.load_joint)?);
     let actuator = text(&mjcf.actuator)?;
-    Some(MjcfModel { xml, path, motor_joint, load_joint, actuator, transmission, axis: None })
+    Some(MjcfModel { xml, path, motor_joint, load_joint, actuator, transmission, axis: None, is_smooth: false })
 }
 
 /// A body of the chain, and what couples it to the one before it.

@@ -9,7 +9,7 @@ use servobench_plant::{
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 
 /// The mechanics at tick 0 and the names of its bodies.
-pub(super) fn mechanics(
+pub(crate) fn mechanics(
     scenario: &Scenario,
     engine: &dyn Engine,
 ) -> Result<(Box<dyn Mechanics>, Vec<String>), BuildError> {

@@ -49,6 +49,7 @@ fn program_and_mechanics_are_objected_to_together() {
         actuator: name(),
         transmission: 1.0,
         axis: None,
+        is_smooth: false,
     });
     let found = Bench::objections(&scenario, &Exact, &NoFmus);
     let [BuildError::Plan { index: 0, .. }, BuildError::Mechanics(MechanicsError::Unsupported { .. })] = &found[..]

@@ -10,7 +10,7 @@ pub(crate) fn scenario(text: &str) -> Scenario {
 
 pub(crate) fn report(scenario: &Scenario, depth: Depth) -> Report {
     let speeds = Speeds::planned(scenario).unwrap_or_else(|error| panic!("{error}"));
-    match analyse_stability(scenario, depth, speeds.as_ref()).unwrap_or_else(|error| panic!("{error}")) {
+    match analyse_stability(scenario, depth, speeds.as_ref(), None).unwrap_or_else(|error| panic!("{error}")) {
         Analysis::Done { report, .. } => *report,
         Analysis::NotPossible(why) => panic!("{why}"),
     }
@@ -191,6 +191,6 @@ fn a_mass_beyond_its_boundary_is_unstable_whatever_limits_it() {
 fn what_is_not_analysed_is_said() {
     let axis = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n";
     let prescribed = scenario(&format!("{axis}[motor]\nkind = \"prescribed\"\n"));
-    let analysis = analyse_stability(&prescribed, Depth::Verdict, None).unwrap();
+    let analysis = analyse_stability(&prescribed, Depth::Verdict, None, None).unwrap();
     assert_eq!(analysis, Analysis::NotPossible(NotAnalysed::NoDrive));
 }

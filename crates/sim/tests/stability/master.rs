@@ -33,7 +33,7 @@ fn largest((velocity, delay, cycle): (f64, u32, f64), gains: &str) -> [f64; 2] {
     let bus =
         format!("cycle = \"{cycle} ms\"\nmode = \"csv\"\ndelay = {delay}\nunits = {{ drive = 1, axis = \"1 nm\" }}\n");
     let scenario = scenario(&format!("{axis}[bus]\n{bus}position_gain = \"10 1/s\"\n{gains}"));
-    let analysis = analyse_stability(&scenario, Depth::Boundaries, None);
+    let analysis = analyse_stability(&scenario, Depth::Boundaries, None, None);
     let Ok(Analysis::Done { master: Some(MasterLoop { largest: Some(largest), .. }), .. }) = analysis else {
         panic!("{analysis:?}")
     };

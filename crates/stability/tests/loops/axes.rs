@@ -52,7 +52,7 @@ pub(crate) fn ideal(base: u32, every: u32, k_p: f64, mechanics: Chain) -> Loop {
         position_feedback: PositionFeedback::Motor,
         current_tuning: None,
         source: Source::Ideal { gain: 1.0 },
-        mechanics,
+        mechanics: mechanics.into(),
         d_current: 0.0,
     }
 }

@@ -125,9 +125,9 @@ fn a_double_integrator_under_position_and_velocity() {
     let stable = report(&cascade(0.7, 0.4));
     assert!(stable.is_stable());
     // z² − 1.16·z + 0.44: a pair of |λ|² = 0.44 and cos φ = 0.58/|λ|.
-    let pair = stable.slowest_oscillating.unwrap();
+    let pair = stable.slowest.oscillating.unwrap();
     let (magnitude, angle) = (0.44_f64.sqrt(), (0.58 / 0.44_f64.sqrt()).acos());
-    assert_eq!(stable.slowest_real, None);
+    assert_eq!(stable.slowest.real, None);
     assert!((pair.growth * h / magnitude.ln() - 1.0).abs() < 1e-9, "{pair:?}");
     assert!((pair.frequency * TAU * h / angle - 1.0).abs() < 1e-9, "{pair:?}");
     let boundary =
@@ -140,16 +140,16 @@ fn a_double_integrator_under_position_and_velocity() {
     assert_eq!(report(&cascade(2.3, 0.4)).instability.unwrap().name, LoopName::Velocity);
 
     // The poles that fade last: a pair, or two real ones.
-    let pair = stable.slowest_oscillating.unwrap();
-    assert_eq!(stable.slowest_real, None);
+    let pair = stable.slowest.oscillating.unwrap();
+    assert_eq!(stable.slowest.real, None);
     let (half, square) = (1.0 - 0.7_f64.midpoint(0.14), 1.0 - 0.7 + 0.14_f64);
     assert!((pair.growth / (square.ln() / 2.0 / h) - 1.0).abs() < 1e-9, "{pair:?}");
     assert!((pair.frequency / ((half / square.sqrt()).acos() / TAU / h) - 1.0).abs() < 1e-9, "{pair:?}");
     let slow = report(&cascade(0.7, 0.05));
-    assert_eq!(slow.slowest_oscillating, None);
+    assert_eq!(slow.slowest.oscillating, None);
     let (half, square) = (1.0 - 0.7_f64.midpoint(0.0175), 1.0 - 0.7 + 0.0175_f64);
     let slowest = half + (half * half - square).sqrt();
-    assert!((slow.slowest_real.unwrap().growth / (slowest.ln() / h) - 1.0).abs() < 1e-9, "{slow:?}");
+    assert!((slow.slowest.real.unwrap().growth / (slowest.ln() / h) - 1.0).abs() < 1e-9, "{slow:?}");
 }
 
 /// Oracle: a velocity loop with a filter of time constant T on a mass: z² + (a·f + f − 2)·z + 1 − f with f = h/(h + T),
@@ -250,7 +250,7 @@ fn a_gear_scales_gain_and_inertia() {
         let mut geared = straight.clone();
         let mut motor = body(1.0 / 25.0, 0.3 / 25.0);
         motor.transmission = 0.2;
-        geared.mechanics = chain(vec![motor, body(2.0, 0.1)], &[(1e5, 3.0)]);
+        geared.mechanics = chain(vec![motor, body(2.0, 0.1)], &[(1e5, 3.0)]).into();
         geared.drive.transmission = 0.2;
         geared.drive.velocity.k_p /= 25.0;
         let (straight, geared) = (report(&straight), report(&geared));

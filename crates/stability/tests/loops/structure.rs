@@ -71,7 +71,7 @@ fn a_position_that_a_current_turns_with_is_in_no_loop() {
         let running = Box::new(AtRest::new(&model, &sensors, None).unwrap());
         let report = analyse_running(&model, running, Depth::Boundaries).unwrap();
         let velocity = report.loops.iter().find(|found| found.name == LoopName::Velocity).unwrap();
-        for pole in [report.largest, report.slowest_real, velocity.least_damped].into_iter().flatten() {
+        for pole in [report.largest, report.slowest.real, velocity.least_damped].into_iter().flatten() {
             assert!((pole.magnitude - 1.0).abs() > 1e-5, "no pole at 1: {pole:?}");
         }
     }

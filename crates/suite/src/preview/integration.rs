@@ -126,6 +126,7 @@ impl EngineSteps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::worker::Workers;
     use crate::{Source, jobs, preview};
 
     /// The two-mass drive of Saarakkala and Hinkkanen: 84.22 Hz free, 59.55 Hz held.
@@ -137,7 +138,7 @@ mod tests {
         );
         let scenario =
             servobench_scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-        let preview = preview(&jobs(vec![Source { scenario, text }], &[])).unwrap().unwrap();
+        let preview = preview(&jobs(vec![Source { scenario, text }], &[]), &Workers::none()).unwrap().unwrap();
         let modes = preview.modes.as_ref().unwrap();
         // Half a unit of the last digit.
         assert!((modes.free[0].omega / TAU - 84.22).abs() < 0.005 && (modes.held[0].omega / TAU - 59.55).abs() < 0.005);

@@ -174,6 +174,7 @@ fn missed(limit: &Limit, planned: f64, it: &str, key: impl Fn(&str) -> String) -
 
 #[cfg(test)]
 mod tests {
+    use crate::worker::Workers;
     use crate::{Doubt, Source, jobs, preview};
 
     /// Order 2, 0.3 m at 0.6 m/s and 2 m/s²: x/v + v/a = 0.8 s.
@@ -201,7 +202,10 @@ mod tests {
     fn doubts(text: &str) -> Vec<(String, String)> {
         let scenario =
             servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-        let found = preview(&jobs(vec![Source { scenario, text: text.to_owned() }], &[])).unwrap().unwrap().doubts;
+        let found = preview(&jobs(vec![Source { scenario, text: text.to_owned() }], &[]), &Workers::none())
+            .unwrap()
+            .unwrap()
+            .doubts;
         found.into_iter().map(|Doubt { key, message, .. }| (key, message)).collect()
     }
 

@@ -253,6 +253,7 @@ fn bandwidth(one: &LoopBandwidth) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::worker::Workers;
     use crate::{Source, jobs, preview};
     use std::path::Path;
 
@@ -260,7 +261,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file);
         let loaded = servobench_scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
         let jobs = jobs(vec![Source { scenario: loaded.scenario, text: String::new() }], &[]);
-        preview(&jobs).unwrap().unwrap().screen()
+        preview(&jobs, &Workers::none()).unwrap().unwrap().screen()
     }
 
     #[test]
@@ -284,6 +285,6 @@ mod tests {
 
     #[test]
     fn no_job_has_no_preview() {
-        assert!(preview(&[]).unwrap().is_none());
+        assert!(preview(&[], &Workers::none()).unwrap().is_none());
     }
 }

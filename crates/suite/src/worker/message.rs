@@ -1,6 +1,7 @@
 //! What a worker says.
 use crate::check::Objection;
 use serde::{Deserialize, Serialize};
+use servobench_sim::MechanicsAtRest;
 
 /// One line of what a worker says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -10,6 +11,8 @@ pub(super) enum Message {
     Progress(f64),
     /// What keeps the scenario from being built.
     Objections(Vec<Objection>),
+    /// The mechanics around their rest.
+    AtRest(MechanicsAtRest),
     /// Memory that the worker has for itself after the order (B).
     Holds(u64),
     /// The last word on an order.
@@ -65,6 +68,7 @@ mod tests {
                 Message::Objections(vec![objection]),
                 "{\"objections\":[{\"key\":\"axis\",\"line\":2,\"message\":\"no\",\"help\":\"\"}]}\n",
             ),
+            (Message::AtRest(Err("no".into())), "{\"atrest\":{\"Err\":\"no\"}}\n"),
             (Message::Holds(5), "{\"holds\":5}\n"),
             (Message::End(End::Done), "{\"end\":\"done\"}\n"),
             (Message::End(End::Input("no".into())), "{\"end\":{\"input\":\"no\"}}\n"),

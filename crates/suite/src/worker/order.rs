@@ -12,6 +12,8 @@ use std::time::Duration;
 pub enum Task {
     /// Say what keeps it from being built.
     Check,
+    /// Make its mechanics linear around their rest.
+    Linearise,
     /// Run it and leave its recording.
     Run {
         /// How long that may take, by the clock.

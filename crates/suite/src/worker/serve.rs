@@ -12,7 +12,8 @@ use servobench_isolation::{Stopwatch, claim_standard_streams, own_memory};
 use servobench_metrics::EarlyEnd;
 use servobench_plant::EngineName;
 use servobench_scenario::Scenario;
-use servobench_sim::Reason;
+
+use servobench_sim::{Reason, mechanics_at_rest};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
@@ -39,7 +40,7 @@ pub fn serve(running: &Engines, checking: &Engines) -> io::Result<()> {
             return Ok(());
         }
         let order: Order = serde_json::from_str(&line)?;
-        let engines = if matches!(order.task, Task::Check) { checking } else { running };
+        let engines = if matches!(order.task, Task::Run { .. }) { running } else { checking };
         answer(&order, &mut recording, engines, &mut out);
     }
 }
@@ -72,6 +73,12 @@ fn obey(order: &Order, file: &mut File, engines: &Engines, say: &mut dyn FnMut(&
         Task::Run { time_limit, records_all } => {
             let built_by = Loop { engine, fmu_opener: engines.fmu_opener, records_all };
             run(&scenario, built_by, time_limit, file, say)
+        }
+        Task::Linearise => {
+            if let Some(found) = mechanics_at_rest(&scenario, engine) {
+                say(&Message::AtRest(found));
+            }
+            Ok(End::Done)
         }
         Task::Check => objections(&scenario, engine, engines.fmu_opener).map(|all| {
             say(&Message::Objections(all));

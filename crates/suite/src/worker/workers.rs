@@ -10,7 +10,8 @@ use crate::execute::{Interruption, Recorded};
 use crate::job::Job;
 use crate::time_limit::TimeLimit;
 use servobench_metrics::EarlyEnd;
-use servobench_scenario::TimeBound;
+use servobench_scenario::{AxisMechanics, TimeBound};
+use servobench_sim::MechanicsAtRest;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -137,15 +138,37 @@ impl Workers {
     /// Asks a worker process what keeps `job` from being built.
     pub(crate) fn ask(&self, job: &Job) -> Result<Vec<Objection>, WorkerError> {
         let mut all = Vec::new();
-        let end = self.converse(&Order::new(job, Task::Check), None, &mut None, &mut |message| {
-            if let Some(Message::Objections(objections)) = message {
+        self.answer(job, Task::Check, &mut |message| {
+            if let Message::Objections(objections) = message {
                 all.extend(objections);
             }
+        })?;
+        Ok(all)
+    }
+
+    /// Has a worker process make the mechanics of `job` linear around their rest; `None` where they are no file of the user's.
+    pub(crate) fn linearise(&self, job: &Job) -> Option<MechanicsAtRest> {
+        if !matches!(job.scenario.axis.mechanics, AxisMechanics::Mjcf(_)) {
+            return None;
+        }
+        let mut found = None;
+        let end = self.answer(job, Task::Linearise, &mut |message| {
+            if let Message::AtRest(mechanics) = message {
+                found = Some(mechanics);
+            }
         });
-        match end {
+        let nothing = || Err("its numbers are not finite".to_owned());
+        Some(end.map_or_else(|error| Err(error.to_string()), |()| found.unwrap_or_else(nothing)))
+    }
+
+    /// Has a worker process do `task`, and hears what it says.
+    fn answer(&self, job: &Job, task: Task, hear: &mut dyn FnMut(Message)) -> Result<(), WorkerError> {
+        match self
+            .converse(&Order::new(job, task), None, &mut None, &mut |message| message.into_iter().for_each(&mut *hear))
+        {
             Ok(End::Input(why)) => Err(WorkerError::Input(why)),
             Ok(End::Failed(why)) => Err(WorkerError::Failed(why)),
-            Ok(_) => Ok(all),
+            Ok(_) => Ok(()),
             Err(Broken::Worker(error)) => Err(error),
             Err(Broken::Late) => Err(WorkerError::Stalled { timeout: self.command.timeout }),
         }

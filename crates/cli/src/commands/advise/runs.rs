@@ -109,7 +109,7 @@ impl<'a> Runs<'a> {
                     why: why.join("\n"),
                 })?;
                 if is_new && why_not.is_none() {
-                    why_not = instability(&source.scenario).map(|why| (self.loop_of(&machine), why));
+                    why_not = instability(&self.job(source), &self.workers).map(|why| (self.loop_of(&machine), why));
                 }
             }
             if is_new {
