@@ -143,10 +143,14 @@ impl Differences {
         Ok(Self { columns, errors })
     }
 
-    /// The largest difference between the two sizes, as a share of the largest entry beside it.
+    /// The largest difference between the two sizes, as a share of the largest entry beside it; NaN where one is.
     fn bend(&self) -> f64 {
         let rows = self.columns.row_iter().zip(self.errors.row_iter());
-        rows.map(|(row, errors)| if row.amax() > 0.0 { errors.amax() / row.amax() } else { 0.0 }).fold(0.0, f64::max)
+        let shares = rows.flat_map(|(row, errors)| {
+            let largest = row.amax();
+            errors.iter().map(|error| if largest > 0.0 { error / largest } else { error * 0.0 }).collect::<Vec<_>>()
+        });
+        shares.fold(0.0, |most, share| if share > most || share.is_nan() { share } else { most })
     }
 
     /// Numbers 0 and `other` change places.

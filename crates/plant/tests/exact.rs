@@ -1,6 +1,7 @@
 //! The engine `exact` against closed forms.
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
+use servobench_base::state::{Reader, Writer};
 use servobench_plant::{
     Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, LinearMechanics, Link,
     Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, NotLinear,
@@ -166,6 +167,38 @@ fn linear_mechanics_are_those_of_the_bodies() {
     let dry = DryFriction { coulomb: 2e3, breakaway: 2e3, stribeck_velocity: 0.0 };
     let stuck = linear(Friction { dry, ..Friction::NONE });
     assert!(matches!(stuck, Err(NotLinear::NotSmooth(_))), "{stuck:?}");
+    let broken = LinearMechanics::around_rest(&mut Broken(vec![BodyState::default()], 0.0), H);
+    assert!(matches!(broken, Err(NotLinear::NotSmooth(bend)) if bend.is_nan()), "{broken:?}");
+}
+
+/// A body with a number beside it that becomes NaN where it is not zero.
+struct Broken(Vec<BodyState>, f64);
+
+impl Mechanics for Broken {
+    fn bodies(&self) -> &[BodyState] {
+        &self.0
+    }
+
+    fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
+        let Actuation::Effort(effort) = input.actuation else { panic!("{input:?}") };
+        self.0[0].position += H * self.0[0].velocity;
+        self.0[0].velocity += H * effort;
+        self.1 = if self.1 == 0.0 { 0.0 } else { f64::NAN };
+        Ok(())
+    }
+
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        for number in [self.0[0].position, self.0[0].velocity, self.1] {
+            to.number(number);
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        self.0[0] = BodyState { position: from.number()?, velocity: from.number()? };
+        self.1 = from.number()?;
+        Ok(())
+    }
 }
 
 #[test]
