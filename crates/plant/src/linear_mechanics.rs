@@ -31,6 +31,8 @@ const AT_REST: f64 = 1e-9;
 const SMOOTH: f64 = 1e-4;
 /// Share of the largest singular value below which there is none.
 const SINGULAR: f64 = 1e-11;
+/// Most numbers of a state: 48 joints take two seconds.
+const MOST: usize = 256;
 /// Steps of Newton's method: it doubles the digits in each.
 const NEWTON: u32 = 8;
 /// Frequency at which all bodies move as one (Hz).
@@ -65,6 +67,9 @@ pub enum NotLinear {
     /// The engine fails, or cannot save a state.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
+    /// It has more numbers than can be looked at in a few seconds.
+    #[error("its state has {0} numbers, and at most {MOST} are looked at: leave joints out that the axis does not move")]
+    TooLarge(usize),
     /// No effort of the motor holds it.
     #[error("no effort of the motor holds the axis at rest where the scenario begins")]
     NotAtRest,
@@ -210,6 +215,9 @@ impl LinearMechanics {
         let mut moved = Moved { mechanics, words: saved, places };
         let mut at = moved.numbers()?;
         let size = at.len();
+        if size > MOST {
+            return Err(NotLinear::TooLarge(size));
+        }
         let motor = largest(&Differences::of(&at, |at| moved.bodies(at))?.columns, 0, 0);
         at.push(0.0);
         let mut step = rest(&mut moved, &mut at, motor)?;
