@@ -1,16 +1,15 @@
-//! Mechanics as linear ones around their rest, by differences of the steps of any engine that saves its state.
+//! Linear mechanics around rest, from differences of the steps of any engine that saves its state.
 //!
 //! ```text
-//! y(k+1) = A·y(k) + B·u(k)         y  deviations of the numbers that the engine saves, u that of the motor's effort
+//! y(k+1) = A·y(k) + B·u(k)         y: deviations of the saved numbers, u: deviation of the motor's effort
 //! A·e_j = (4·D(δ/2) − D(δ))/3      D(δ) = (F(z + δ·e_j) − F(z − δ·e_j))/(2·δ), F a step of the engine
 //! ```
-//! **Rest.** F(z, u) = z is solved by Newton's method with these A and B, the motor where it is: u is what holds the axis, against
-//! gravity for example.
+//! **Rest.** Newton's method solves F(z, u) = z at the motor's position: u is the effort that holds the axis, for example against gravity.
 //!
-//! **Places.** Where all of it can rest elsewhere, too, (A − 1)·w = 0: the motor's position is a number of its own then, from which the
-//! others are told, and nothing depends on it, exactly.
+//! **Rigid motion.** Where the axis can rest at any position, (A − 1)·w = 0. All other numbers are then relative to the motor's position
+//! times w, so that nothing depends on that position, exactly.
 //!
-//! What differs between the two δ is how far the mechanics are from straight lines; an entry that is no larger is none.
+//! The difference between D(δ/2) and D(δ) measures the nonlinearity. Entries below it are set to zero.
 use crate::mechanics::{Actuation, BodyState, Input, Mechanics, MechanicsError};
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -18,27 +17,26 @@ use servobench_base::state::{Form, Part, Reader, Writer, words};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// By how much a number is moved (m, rad or per second): the fourth power of its share of a lever of 10 cm is 1e-12, and a number of
-/// 1 m is rounded to the same share of it.
+/// δ (m, rad or per second). Relative to a lever of 10 cm its fourth power is 1e-12, as is the rounding of 1 m relative to δ.
 const SIZE: f64 = 1.0 / 8192.0;
-/// Roundings of a step, in those of a number.
+/// Relative rounding error of a step.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
-/// Share of an equation's parts that may be left of it: differences of differences.
+/// Largest residual of a solved equation, relative to its terms.
 const LEFT: f64 = 1e-6;
-/// Share of a number, or of what it is moved by, that it may change by in a tick at rest.
+/// Largest change within a tick at rest, relative to a number or to δ.
 const AT_REST: f64 = 1e-9;
-/// Most of a straight line that mechanics may be off.
+/// Largest relative nonlinearity.
 const SMOOTH: f64 = 1e-4;
-/// Share of the largest singular value below which there is none.
+/// Singular values below this share of the largest one count as zero.
 const SINGULAR: f64 = 1e-11;
-/// Most numbers of a state: 48 joints take two seconds.
+/// Largest number of saved numbers: 48 joints take two seconds.
 const MOST: usize = 256;
-/// Steps of Newton's method: it doubles the digits in each.
+/// Iterations of Newton's method: each doubles the number of digits.
 const NEWTON: u32 = 8;
 /// Frequency at which all bodies move as one (Hz).
 const SLOW: f64 = 0.1;
 
-/// Linear mechanics around a rest: what they are, as numbers.
+/// Linear mechanics around rest, as plain numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LinearMechanics {
     /// Rows of A and, at the end of each, B; the first number is the position of the motor.
@@ -52,7 +50,7 @@ pub struct LinearMechanics {
     bend: f64,
 }
 
-/// Linear mechanics that go from tick to tick.
+/// Linear mechanics in a loop.
 struct Running {
     of: LinearMechanics,
     /// The numbers and, at the end, the effort.
@@ -61,34 +59,36 @@ struct Running {
     bodies: Vec<BodyState>,
 }
 
-/// Why there are no linear mechanics.
+/// Why mechanics have no linear model.
 #[derive(Debug, Error)]
 pub enum NotLinear {
     /// The engine fails, or cannot save a state.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// It has more numbers than can be looked at in a few seconds.
-    #[error("its state has {0} numbers, and at most {MOST} are looked at: leave joints out that the axis does not move")]
+    /// Its state is too large for an analysis within a few seconds.
+    #[error("its state has {0} numbers, more than {MOST}: remove joints that the axis does not move")]
     TooLarge(usize),
-    /// No effort of the motor holds it.
+    /// No effort of the motor holds it at rest.
     #[error("no effort of the motor holds the axis at rest where the scenario begins")]
     NotAtRest,
-    /// What moves it does not do so in proportion.
-    #[error("around its rest the mechanics are no straight line: half of a deviation is off by {0:.1e} of it")]
+    /// Its response is not proportional to small deviations.
+    #[error(
+        "around rest it is not linear: half the deviation changes the response by a share of {0:.1e}, more than {SMOOTH:.0e}"
+    )]
     NotSmooth(f64),
 }
 
-/// Differences of what a step does to every number and effort, and how far they are off.
+/// Derivatives by every number and the effort, and the differences between the two step sizes.
 struct Differences {
     columns: DMatrix<f64>,
     errors: DMatrix<f64>,
 }
 
-/// An engine that is moved by hand.
+/// An engine whose state is set number by number.
 struct Moved<'a> {
     mechanics: &'a mut dyn Mechanics,
     words: Vec<u64>,
-    /// Words that vary.
+    /// Indices of the words that are varied.
     places: Vec<usize>,
 }
 
@@ -107,7 +107,7 @@ impl Moved<'_> {
         self.mechanics.restore(&mut Reader::moved(&self.words))
     }
 
-    /// Numbers a tick after these, the last of which is the effort.
+    /// Numbers one tick after `from`, whose last entry is the effort.
     fn step(&mut self, from: &[f64]) -> Result<Vec<f64>, MechanicsError> {
         self.put(from)?;
         self.mechanics.advance(&only(from[self.places.len()]))?;
@@ -148,7 +148,7 @@ impl Differences {
         Ok(Self { columns, errors })
     }
 
-    /// The largest difference between the two sizes, as a share of the largest entry beside it; NaN where one is.
+    /// Relative nonlinearity: the largest difference between the two step sizes, relative to the largest entry of its row. NaN if any is.
     fn bend(&self) -> f64 {
         let rows = self.columns.row_iter().zip(self.errors.row_iter());
         let shares = rows.flat_map(|(row, errors)| {
@@ -158,7 +158,7 @@ impl Differences {
         shares.fold(0.0, |most, share| if share > most || share.is_nan() { share } else { most })
     }
 
-    /// Numbers 0 and `other` change places.
+    /// Swaps numbers 0 and `other`.
     fn swap(&mut self, other: usize) {
         for matrix in [&mut self.columns, &mut self.errors] {
             matrix.swap_rows(0, other);
@@ -166,7 +166,7 @@ impl Differences {
         }
     }
 
-    /// Tells all numbers but the first from it: they are so many times as much where all of it rests elsewhere.
+    /// Makes all numbers but the first relative to it: `others` is the rigid motion per motion of the first.
     fn tell_from_the_motor(&mut self, others: &DVector<f64>) {
         for (i, share) in (1..).zip(others.iter()).filter(|(_, share)| share.abs() >= LEFT) {
             for j in 1..self.columns.ncols() {
@@ -182,7 +182,7 @@ impl Differences {
     }
 }
 
-/// x with M·x = b, of several the shortest one.
+/// The shortest x that minimises |M·x − b|.
 fn shortest(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     // A column of its own unit each.
     let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
@@ -192,7 +192,7 @@ fn shortest(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>>
     Some(found.solve(right, SINGULAR * found.singular_values.amax()).ok()?.component_mul(&scales))
 }
 
-/// The same where there is one, but for what differences of differences leave.
+/// The same if M·x = b within the error of the differences.
 fn solved(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let x = shortest(matrix, right)?;
     let (left, parts) = (matrix * &x - right, matrix.abs() * x.abs() + right.abs());
@@ -201,12 +201,12 @@ fn solved(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
 }
 
 impl LinearMechanics {
-    /// `mechanics`, driven by efforts in ticks of `h` (s), around the rest that is next to where they are.
+    /// Linear model of `mechanics`, driven by efforts in ticks of `h` (s), around rest at the motor's present position.
     ///
     /// # Errors
     /// [`NotLinear`].
     pub fn around_rest(mechanics: &mut dyn Mechanics, h: f64) -> Result<Self, NotLinear> {
-        // An engine may begin in another way than it goes on.
+        // The first tick of an engine may differ from all others.
         mechanics.advance(&only(0.0))?;
         let (mut form, mut saved) = (Form::default(), Vec::new());
         mechanics.save(&mut form)?;
@@ -258,19 +258,19 @@ impl LinearMechanics {
         Box::new(Running { of: self.clone(), state: vec![0.0; size + 1], next: vec![0.0; size + 1], bodies })
     }
 
-    /// Inertia of all that moves with the motor (its coordinate); of an axis that cannot rest elsewhere what the motor feels at once.
+    /// Inertia of everything that moves with the motor (motor coordinate); without a rigid motion the inertia of an immediate response.
     #[must_use]
     pub const fn inertia(&self) -> f64 {
         self.inertia
     }
 
-    /// True where no friction ends a motion.
+    /// True without viscous friction: a constant velocity persists.
     #[must_use]
     pub const fn is_free(&self) -> bool {
         self.is_free
     }
 
-    /// How far off the numbers of a step can be, as a share of the largest one: the next power of what is left of a straight line.
+    /// Relative error of the entries: the square of the relative nonlinearity, which is the next order in δ².
     #[must_use]
     pub const fn uncertainty(&self) -> f64 {
         self.bend * self.bend
@@ -293,11 +293,11 @@ fn still(step: &Differences) -> DMatrix<f64> {
     step.columns.columns(0, size) - DMatrix::identity(size, size)
 }
 
-/// Brings `at`, numbers and effort, to rest where the position of the motor, number `motor`, is; what a step does there.
+/// Brings `at`, numbers and effort, to rest at the position of the motor (number `motor`); returns the derivatives there.
 fn rest(moved: &mut Moved<'_>, at: &mut [f64], motor: usize) -> Result<Differences, NotLinear> {
     let size = at.len() - 1;
     for number in 0..NEWTON {
-        // An engine diverges where a way to a rest leads nowhere.
+        // Without an equilibrium the iteration can leave the range of the engine.
         let failed = |error| if number == 0 { NotLinear::Mechanics(error) } else { NotLinear::NotAtRest };
         let after = moved.step(at).map_err(failed)?;
         let found = Differences::of(at, |at| moved.step(at)).map_err(failed)?;
@@ -315,9 +315,9 @@ fn rest(moved: &mut Moved<'_>, at: &mut [f64], motor: usize) -> Result<Differenc
     Err(NotLinear::NotAtRest)
 }
 
-/// (N·s²/m or N·m·s²/rad), of the answer G of the velocity to a slow effort: 1/G = d + i·ω·J.
+/// Inertia J (N·s²/m or N·m·s²/rad) from the frequency response G of the velocity at a low frequency: 1/G = d + i·ω·J.
 fn inertia(still: &DMatrix<f64>, effort: &DVector<f64>, velocities: &DVector<f64>, h: f64, is_loose: bool) -> f64 {
-    // The place does not matter.
+    // Nothing depends on the position.
     let (first, size) = (usize::from(is_loose), effort.len() - usize::from(is_loose));
     let complex = |part: DVector<f64>| part.rows(first, size).map(|entry| Complex::new(entry, 0.0));
     let turn = Complex::from_polar(1.0, TAU * SLOW * h) - 1.0;

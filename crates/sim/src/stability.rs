@@ -70,10 +70,10 @@ impl Display for MasterLoop {
     }
 }
 
-/// An MJCF file around its rest, or why it has no linear mechanics there.
+/// Linear model of an MJCF file around rest, or why there is none.
 pub type MechanicsAtRest = Result<LinearMechanics, String>;
 
-/// The MJCF file of `scenario` around the rest at which it begins, as `engine` has it without what is not smooth; `None` without a file.
+/// Linear model of the MJCF file of `scenario` around rest at its initial position, by `engine`; `None` without a file.
 #[must_use]
 pub fn mechanics_at_rest(scenario: &Scenario, engine: &dyn Engine) -> Option<MechanicsAtRest> {
     let mut still = scenario.clone();
@@ -96,7 +96,7 @@ pub enum NotAnalysed {
     ForeignDrive,
     /// The mechanics is an FMU alone.
     FmuMechanics,
-    /// The mechanics is an MJCF file, and why it is not linear around its rest.
+    /// The mechanics is an MJCF file without a linear model around rest, and why.
     Mjcf(String),
     /// FMUs beside the axis act on it: what is analysed is the axis without them.
     Fmus,
@@ -120,7 +120,7 @@ impl Display for NotAnalysed {
             Self::FmuMechanics => f.write_str(
                 "the mechanics is an FMU, whose equations are not known here: describe the axis by its bodies, too",
             ),
-            Self::Mjcf(why) => write!(f, "the MJCF file is not made linear: {why}"),
+            Self::Mjcf(why) => write!(f, "the MJCF file has no linear model: {why}"),
             Self::Fmus => f.write_str("the FMUs beside the axis are not analysed; the axis without them is"),
             Self::Commutation => f.write_str(
                 "a commutation that is off turns the current that the d axis has at standstill, which is not analysed; the loop with a \
@@ -208,7 +208,7 @@ fn linear_loop(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Result<F
             linear: linear.clone(),
         },
         (AxisMechanics::Mjcf(_), Some(Err(why))) => return Ok(Err(NotAnalysed::Mjcf(why.clone()))),
-        (AxisMechanics::Mjcf(_), None) => return Ok(Err(NotAnalysed::Mjcf("no engine was asked".to_owned()))),
+        (AxisMechanics::Mjcf(_), None) => return Ok(Err(NotAnalysed::Mjcf("no engine was asked for one".to_owned()))),
         (AxisMechanics::InTheFmu, _) => return Ok(Err(NotAnalysed::FmuMechanics)),
     };
     let (drive, source, encoder) = match &scenario.actuator {

@@ -11,7 +11,7 @@ pub(super) enum Message {
     Progress(f64),
     /// What keeps the scenario from being built.
     Objections(Vec<Objection>),
-    /// The mechanics around their rest.
+    /// The linear model of an MJCF file.
     AtRest(MechanicsAtRest),
     /// Memory that the worker has for itself after the order (B).
     Holds(u64),

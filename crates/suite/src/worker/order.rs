@@ -12,7 +12,7 @@ use std::time::Duration;
 pub enum Task {
     /// Say what keeps it from being built.
     Check,
-    /// Make its mechanics linear around their rest.
+    /// Make a linear model of its MJCF file.
     Linearise,
     /// Run it and leave its recording.
     Run {

@@ -146,7 +146,7 @@ impl Workers {
         Ok(all)
     }
 
-    /// Has a worker process make the mechanics of `job` linear around their rest; `None` where they are no file of the user's.
+    /// Linear model of the MJCF file of `job`, from a worker process; `None` without a file.
     pub(crate) fn linearise(&self, job: &Job) -> Option<MechanicsAtRest> {
         if !matches!(job.scenario.axis.mechanics, AxisMechanics::Mjcf(_)) {
             return None;
@@ -157,11 +157,11 @@ impl Workers {
                 found = Some(mechanics);
             }
         });
-        let nothing = || Err("its numbers are not finite".to_owned());
+        let nothing = || Err("it has numbers that are not finite".to_owned());
         Some(end.map_or_else(|error| Err(error.to_string()), |()| found.unwrap_or_else(nothing)))
     }
 
-    /// Has a worker process do `task`, and hears what it says.
+    /// Gives `task` to a worker process and passes its messages to `hear`.
     fn answer(&self, job: &Job, task: Task, hear: &mut dyn FnMut(Message)) -> Result<(), WorkerError> {
         match self
             .converse(&Order::new(job, task), None, &mut None, &mut |message| message.into_iter().for_each(&mut *hear))
