@@ -141,16 +141,22 @@ pub trait Slave: Send {
     ///
     /// # Errors
     /// [`SlaveError`], also if it cannot.
-    fn save(&mut self) -> Result<(), SlaveError>;
+    fn save(&mut self) -> Result<(), SlaveError> {
+        Err(SlaveError::unable("save its state"))
+    }
 
     /// Goes back to the state that was saved; it can do so again.
     ///
     /// # Errors
     /// [`SlaveError`], also if there is none.
-    fn restore(&mut self) -> Result<(), SlaveError>;
+    fn restore(&mut self) -> Result<(), SlaveError> {
+        Err(SlaveError::unable("go back to a state"))
+    }
 
     /// What it has said since the last time. What it says in a step that is repeated it says again.
-    fn take_log(&mut self) -> Vec<LogLine>;
+    fn take_log(&mut self) -> Vec<LogLine> {
+        Vec::new()
+    }
 }
 
 /// Why an FMU did not do what it was asked for.
@@ -253,6 +259,13 @@ pub enum SlaveError {
         #[serde(with = "bits::float")]
         call_timeout: f64,
     },
+}
+
+impl SlaveError {
+    /// It cannot do `what` since it does not save its state.
+    pub(crate) fn unable(what: &'static str) -> Self {
+        Self::Unable { what: what.into(), capability: "canGetAndSetFMUState".into() }
+    }
 }
 
 fn during(call: &str) -> String {

@@ -41,7 +41,7 @@ pub struct Bench {
 
 /// The axis, alone or with attached FMUs.
 pub(crate) enum Loop {
-    Alone(Box<Machine<[Axis; 1]>>),
+    Alone(Box<Machine>),
     Coupled(Box<Coupled>),
 }
 
@@ -182,7 +182,7 @@ impl Bench {
             end_stops: plant::end_stops(scenario)?,
             switches: plant::switches(scenario)?,
         };
-        let machine = Machine::new([Axis::new(closed_loop, wanted, recorder, record_every)], base_rate);
+        let machine = Machine::new(Axis::new(closed_loop, wanted, recorder, record_every), base_rate);
         let closed_loop = if scenario.fmus.is_empty() {
             Loop::Alone(Box::new(machine))
         } else {

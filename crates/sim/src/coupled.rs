@@ -10,7 +10,6 @@ mod wiring;
 
 pub use wiring::replaces_the_drive;
 
-use crate::axis::Axis;
 use crate::error::{BuildError, UnusableFmu};
 use crate::machine::{LOG_EVERY, Machine};
 use crate::run::{Failure, Outcome, Reason};
@@ -86,7 +85,7 @@ impl Coupled {
     /// [`BuildError`] names the FMU or the connection.
     pub(crate) fn new(
         scenario: &Scenario,
-        mut machine: Machine<[Axis; 1]>,
+        mut machine: Machine,
         ticks: u64,
         (equipment, rates): (&Equipment, &Rates),
         fmu_opener: &dyn FmuOpener,
@@ -122,9 +121,13 @@ impl Coupled {
             return Err(BuildError::Fmus(mistakes.into_iter().map(misfit).collect()));
         }
         let names: Vec<String> = members.iter().map(|member| member.name.clone()).collect();
-        let [logged] = &mut machine.axes;
         for (index, doubt) in &between {
-            logged.note_log_line(0.0, &format!("FMU {}", names[*index]), (Severity::Warning, 0.0), &doubt.to_string());
+            machine.axis.note_log_line(
+                0.0,
+                &format!("FMU {}", names[*index]),
+                (Severity::Warning, 0.0),
+                &doubt.to_string(),
+            );
         }
         let own = members.iter().enumerate().flat_map(|(index, member)| {
             let doubts: &[FmuMistake] = if let Part::Fmu(fmu) = &member.block { fmu.slave.doubts() } else { &[] };
@@ -182,7 +185,7 @@ impl Coupled {
     /// That the recording of the axis cannot be kept, if so.
     fn lost(&mut self) -> Option<Failure> {
         let Part::Axis(block) = self.master.block_mut(self.names.len()) else { return None };
-        block.machine.check_recordings().err().map(Failure::from)
+        block.machine.check_recording().err()
     }
 
     /// Notes the new log lines of the FMUs. Those of a step that is repeated come again.
@@ -195,9 +198,8 @@ impl Coupled {
             }
             let Part::Axis(block) = self.master.block_mut(self.names.len()) else { continue };
             let (source, now) = (format!("FMU {name}"), block.machine.time());
-            let [axis] = &mut block.machine.axes;
             for line in lines {
-                axis.note_log_line(now, &source, (line.severity, line.time), &line.words());
+                block.machine.axis.note_log_line(now, &source, (line.severity, line.time), &line.words());
             }
         }
     }
@@ -214,7 +216,7 @@ impl Coupled {
         if failure.is_none() {
             machine.observe();
         }
-        let mut outcome = Outcome::of(machine, failure);
+        let mut outcome = machine.finish(failure);
         outcome.recording.coupling = coupling;
         outcome
     }
@@ -227,7 +229,7 @@ impl Coupled {
     }
 
     /// The axis without its FMUs.
-    pub(crate) fn alone(self) -> Machine<[Axis; 1]> {
+    pub(crate) fn alone(self) -> Machine {
         let machine = self.master.into_blocks().into_iter().find_map(|part| match part {
             Part::Axis(block) => Some(block.machine),
             Part::Fmu(_) => None,

@@ -1,76 +1,59 @@
-//! Axes at one time, and the one tick that moves them.
+//! An axis and its time, and the one tick that moves it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::axis::Axis;
-use crate::run::{AxisFailure, Failure, Reason};
+use crate::run::{Failure, Outcome, Reason};
 use servobench_base::{Rate, Tick, wide_registers};
 use std::ops::ControlFlow;
 
 /// Ticks, or exchanges, after which log lines of FMUs are fetched. Each line has its own time; fetching costs system calls.
 pub(crate) const LOG_EVERY: u64 = 64;
 
-/// Axes that share one time: `[Axis; 1]` where there is exactly one, `Vec<Axis>` where there may be several.
-pub(crate) struct Machine<Axes> {
-    pub(crate) axes: Axes,
+/// An axis and its time.
+pub(crate) struct Machine {
+    pub(crate) axis: Axis,
     base_rate: Rate,
     /// The tick that comes next.
     tick: u64,
 }
 
-impl<Axes: AsMut<[Axis]>> Machine<Axes> {
-    /// `axes` at tick 0, all of them built for `base_rate`.
-    pub(crate) const fn new(axes: Axes, base_rate: Rate) -> Self {
-        Self { axes, base_rate, tick: 0 }
+impl Machine {
+    /// `axis` at tick 0, built for `base_rate`.
+    pub(crate) const fn new(axis: Axis, base_rate: Rate) -> Self {
+        Self { axis, base_rate, tick: 0 }
     }
 
-    /// One tick of every axis, whoever steps it:
+    /// One tick, whoever steps it:
     ///
     /// ```text
     /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
     /// ```
     ///
-    /// All axes are controlled before the first one moves.
-    ///
     /// # Errors
-    /// [`AxisFailure`] says which axis cannot go on, and why.
+    /// [`Failure`] says why the axis cannot go on.
     #[inline(always)]
-    pub(crate) fn tick(&mut self) -> Result<(), AxisFailure> {
+    pub(crate) fn tick(&mut self) -> Result<(), Failure> {
         self.observe();
-        self.integrate()
+        let time = self.time();
+        self.axis.integrate().map_err(|reason| Failure { time, reason })?;
+        self.tick += 1;
+        if self.tick.is_multiple_of(LOG_EVERY) {
+            self.axis.note_log(self.time());
+        }
+        Ok(())
     }
 
     /// Tick k but for the mechanics: all of the last tick of a run.
     #[inline(always)]
     pub(crate) fn observe(&mut self) {
-        let (k, time) = (self.tick, self.time());
-        for axis in self.axes.as_mut() {
-            axis.observe(k, time);
-        }
-    }
-
-    #[inline(always)]
-    fn integrate(&mut self) -> Result<(), AxisFailure> {
-        let time = self.time();
-        for (index, axis) in self.axes.as_mut().iter_mut().enumerate() {
-            axis.integrate().map_err(|reason| AxisFailure { axis: index, failure: Failure { time, reason } })?;
-        }
-        self.tick += 1;
-        if self.tick.is_multiple_of(LOG_EVERY) {
-            let time = self.time();
-            self.axes.as_mut().iter_mut().for_each(|axis| axis.note_log(time));
-        }
-        Ok(())
+        self.axis.observe(self.tick, self.time());
     }
 
     /// Runs `ticks` ticks, the last of which is observed only; `progress` is told the share that is done, from 0 to 1, and may break
     /// the run off.
     ///
     /// # Errors
-    /// [`AxisFailure`] says which axis cannot go on, and why; the first one when the run was broken off.
-    pub(crate) fn run(
-        &mut self,
-        ticks: u64,
-        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<(), AxisFailure> {
+    /// [`Failure`] says why the axis cannot go on, or that the run was broken off.
+    pub(crate) fn run(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), Failure> {
         wide_registers!(self.all_ticks(ticks, progress), Self::all_ticks_in_wide_registers, self, ticks, progress)
     }
 
@@ -80,19 +63,18 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         &mut self,
         ticks: u64,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<(), AxisFailure> {
+    ) -> Result<(), Failure> {
         self.all_ticks(ticks, progress)
     }
 
     #[inline(always)]
-    fn all_ticks(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), AxisFailure> {
+    fn all_ticks(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), Failure> {
         let mut done = Ok(());
         while self.tick + 1 < ticks {
             if self.tick.is_multiple_of(PROGRESS_EVERY) {
-                self.check_recordings()?;
+                self.check_recording()?;
                 if progress(self.tick as f64 / ticks as f64).is_break() {
-                    let failure = Failure { time: self.time(), reason: Reason::Stopped };
-                    return Err(AxisFailure { axis: 0, failure });
+                    return Err(Failure { time: self.time(), reason: Reason::Stopped });
                 }
             }
             if let Err(failure) = self.tick() {
@@ -107,25 +89,15 @@ impl<Axes: AsMut<[Axis]>> Machine<Axes> {
         let _: ControlFlow<()> = progress(1.0);
         done
     }
-}
 
-impl<Axes: AsMut<[Axis]>> Machine<Axes> {
     /// Whether what happens is still recorded.
     ///
     /// # Errors
-    /// [`Reason::Recording`] of the first axis of which it is not.
-    pub(crate) fn check_recordings(&mut self) -> Result<(), AxisFailure> {
-        let time = self.time();
-        for (axis, of) in self.axes.as_mut().iter().enumerate() {
-            if let Some(error) = of.recorder.failure() {
-                return Err(AxisFailure { axis, failure: Failure::not_kept(time, error) });
-            }
-        }
-        Ok(())
+    /// [`Reason::Recording`] if it is not.
+    pub(crate) fn check_recording(&self) -> Result<(), Failure> {
+        self.axis.recorder.failure().map_or(Ok(()), |error| Err(Failure::not_kept(self.time(), error)))
     }
-}
 
-impl<Axes> Machine<Axes> {
     /// Ticks per second.
     pub(crate) const fn base_rate(&self) -> Rate {
         self.base_rate
@@ -141,15 +113,18 @@ impl<Axes> Machine<Axes> {
         self.base_rate.time(self.next())
     }
 
-    /// The present, and when the recordings end: then, or when there was a failure (s).
-    pub(crate) fn ends(&self, failure: Option<&Failure>) -> (f64, f64) {
-        let present = self.time();
-        (present, failure.map_or(present, |failure| failure.time))
-    }
-
-    /// Goes to `tick`, to which the axes have gone back.
+    /// Goes to `tick`, to which the axis has gone back.
     pub(crate) const fn go_back(&mut self, Tick(tick): Tick) {
         self.tick = tick;
+    }
+
+    /// Ends the run at the present tick: what it leaves behind, up to `failure` if there was one.
+    pub(crate) fn finish(self, failure: Option<Failure>) -> Outcome {
+        let present = self.time();
+        let (recording, missing) = self.axis.finish(present, failure.as_ref().map_or(present, |failure| failure.time));
+        let end = recording.time_of(recording.len());
+        let failure = failure.or_else(|| Some(Failure::not_kept(end, missing.as_ref()?)));
+        Outcome { recording, failure }
     }
 }
 
@@ -159,7 +134,6 @@ const PROGRESS_EVERY: u64 = 1 << 10;
 #[cfg(test)]
 mod tests {
     use crate::bench::{Bench, Loop};
-    use crate::run::{Failure, Outcome};
     use servobench_plant::Exact;
     use std::ops::ControlFlow;
 
@@ -204,7 +178,7 @@ move_to = "7 rad"
                 let mut progress = |_| ControlFlow::Continue(());
                 let done =
                     if any { machine.all_ticks(ticks, &mut progress) } else { machine.run(ticks, &mut progress) };
-                Outcome::of(*machine, done.err().map(Failure::from))
+                machine.finish(done.err())
             };
             let (here, in_any) = (outcome(false), outcome(true));
             assert!(here.recording.len() > 4000 && here.failure == in_any.failure);

@@ -1,7 +1,5 @@
 //! A run from the first tick to the last, and what it leaves behind.
-use crate::axis::Axis;
 use crate::bench::{Bench, Loop};
-use crate::machine::Machine;
 use servobench_metrics::MEASURED_FROM;
 use servobench_plant::MechanicsError;
 use servobench_trace::Recording;
@@ -48,27 +46,10 @@ pub enum Reason {
     Stopped,
 }
 
-/// An axis of several that ended the run of all.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("axis {}: {failure}", axis + 1)]
-pub struct AxisFailure {
-    /// Which one, from 0.
-    pub axis: usize,
-    /// Why.
-    pub failure: Failure,
-}
-
 impl Failure {
     /// The recording cannot be kept from `time` (s) on.
     pub(crate) fn not_kept(time: f64, error: &io::Error) -> Self {
         Self { time, reason: Reason::Recording(error.to_string()) }
-    }
-}
-
-impl From<AxisFailure> for Failure {
-    /// Of the only axis.
-    fn from(of: AxisFailure) -> Self {
-        of.failure
     }
 }
 
@@ -78,8 +59,7 @@ impl Bench {
     #[must_use]
     pub fn only_to_measure(mut self) -> Self {
         if let Loop::Alone(machine) = &mut self.closed_loop {
-            let [axis] = &mut machine.axes;
-            axis.recorder.retain(|spec| MEASURED_FROM.iter().any(|signal| signal.name() == spec.name));
+            machine.axis.recorder.retain(|spec| MEASURED_FROM.iter().any(|signal| signal.name() == spec.name));
         }
         self
     }
@@ -100,20 +80,9 @@ impl Bench {
         match self.closed_loop {
             Loop::Coupled(coupled) => coupled.run(self.ticks, progress),
             Loop::Alone(mut machine) => {
-                let failure = machine.run(self.ticks, progress).err().map(Failure::from);
-                Outcome::of(*machine, failure)
+                let failure = machine.run(self.ticks, progress).err();
+                machine.finish(failure)
             }
         }
-    }
-}
-
-impl Outcome {
-    pub(crate) fn of(machine: Machine<[Axis; 1]>, failure: Option<Failure>) -> Self {
-        let (present, end) = machine.ends(failure.as_ref());
-        let [axis] = machine.axes;
-        let (recording, missing) = axis.finish(present, end);
-        let end = recording.time_of(recording.len());
-        let failure = failure.or_else(|| Some(Failure::not_kept(end, missing.as_ref()?)));
-        Self { recording, failure }
     }
 }

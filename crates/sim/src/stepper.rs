@@ -1,5 +1,4 @@
 //! The closed loop tick by tick, for somebody else's simulation: what acts on the axis comes from outside, and it can go back.
-use crate::axis::Axis;
 use crate::bench::{Bench, Loop};
 use crate::closed_loop::Source;
 use crate::external::External;
@@ -29,7 +28,7 @@ pub struct States {
 
 /// A closed loop that goes a tick when it is told to.
 pub struct Stepper {
-    machine: Machine<[Axis; 1]>,
+    machine: Machine,
     selection: Selection,
 }
 
@@ -42,23 +41,12 @@ impl Bench {
             Loop::Coupled(coupled) => coupled.alone(),
         };
         let rate = machine.base_rate();
-        let [axis] = machine.axes;
-        let selection = axis.wanted.clone();
-        Stepper { machine: Machine::new([axis.unrecorded()], rate), selection }
+        let selection = machine.axis.wanted.clone();
+        Stepper { machine: Machine::new(machine.axis.unrecorded(), rate), selection }
     }
 }
 
 impl Stepper {
-    const fn axis(&self) -> &Axis {
-        let [axis] = &self.machine.axes;
-        axis
-    }
-
-    const fn axis_mut(&mut self) -> &mut Axis {
-        let [axis] = &mut self.machine.axes;
-        axis
-    }
-
     /// Ticks per second.
     #[must_use]
     pub const fn base_rate(&self) -> Rate {
@@ -86,26 +74,25 @@ impl Stepper {
     /// What a recording would say: positions and velocities of the bodies at the present tick, everything else of the tick
     /// before, whose efforts have brought the bodies there. Before the first tick that is zero.
     pub fn values(&mut self) -> &[f64] {
-        let [axis] = &self.machine.axes;
-        self.selection.values(&axis.now)
+        self.selection.values(&self.machine.axis.now)
     }
 
     /// The motor in its own coordinate at the present tick, as its encoder and its effort have it.
     #[must_use]
     pub fn shaft(&self) -> BodyState {
-        self.axis().closed_loop.mechanics.bodies()[0]
+        self.machine.axis.closed_loop.mechanics.bodies()[0]
     }
 
     /// The set-point of the tick before.
     #[must_use]
     pub const fn setpoint(&self) -> Setpoint {
-        self.axis().now.setpoint
+        self.machine.axis.now.setpoint
     }
 
     /// The states that the tick before has left.
     #[must_use]
     pub fn states(&self) -> States {
-        match &self.axis().closed_loop.state.source {
+        match &self.machine.axis.closed_loop.state.source {
             Source::Program(_) | Source::Master(_) => States::default(),
             Source::Network(network, _) => network.states(),
         }
@@ -116,9 +103,9 @@ impl Stepper {
     /// # Errors
     /// [`Failure`]; the loop must not be stepped again, but may go back.
     pub fn step(&mut self, external: &External) -> Result<(), Failure> {
-        self.axis_mut().external = *external;
+        self.machine.axis.external = *external;
         self.machine.tick()?;
-        self.axis_mut().sample();
+        self.machine.axis.sample();
         Ok(())
     }
 
@@ -128,7 +115,7 @@ impl Stepper {
     /// [`MechanicsError`] where the engine cannot.
     pub fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         to.word(self.tick().0);
-        self.axis_mut().save(to)
+        self.machine.axis.save(to)
     }
 
     /// Goes back to where [`save`](Self::save) of a stepper of the same scenario was called.
@@ -138,7 +125,7 @@ impl Stepper {
     /// back to another state.
     pub fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
         let tick = Tick(from.word()?);
-        self.axis_mut().restore(from)?;
+        self.machine.axis.restore(from)?;
         self.machine.go_back(tick);
         Ok(())
     }

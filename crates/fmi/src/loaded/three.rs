@@ -258,7 +258,7 @@ impl Instance for LoadedThree {
 
     fn save(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let saved = if self.session.capabilities.saves_state { self.instance.save(slot) } else { None };
-        let outcome = saved.ok_or_else(|| unable("save its state"))?;
+        let outcome = saved.ok_or_else(|| SlaveError::unable("save its state"))?;
         self.check("fmi3GetFMUState", outcome)?;
         self.session.save(slot);
         self.saved_event[slot as usize] = self.event;
@@ -268,7 +268,10 @@ impl Instance for LoadedThree {
 
     fn restore(&mut self, slot: Slot) -> Result<(), SlaveError> {
         let restored = self.instance.restore(slot);
-        self.check("fmi3SetFMUState", restored.ok_or_else(|| unable("go back to a state that was not saved"))?)?;
+        self.check(
+            "fmi3SetFMUState",
+            restored.ok_or_else(|| SlaveError::unable("go back to a state that was not saved"))?,
+        )?;
         self.session.restore(slot);
         self.event = self.saved_event[slot as usize];
         self.discrete.iter_mut().for_each(|batch| batch.recall(slot));
@@ -317,8 +320,4 @@ fn set(instance: &Three, variable: &Variable, values: &Values) -> Called {
             _ => integers::<i64>(instance, reference, values),
         },
     }
-}
-
-fn unable(what: &'static str) -> SlaveError {
-    SlaveError::Unable { what: what.into(), capability: "canGetAndSetFMUState".into() }
 }

@@ -1,5 +1,5 @@
 //! Axis and FMUs as blocks of a coupling.
-use crate::axis::{Axis, Saved};
+use crate::axis::Saved;
 use crate::external::{Controller, External};
 use crate::machine::Machine;
 use crate::run::Failure;
@@ -42,7 +42,7 @@ pub(super) enum PartError {
 
 /// The axis as a block.
 pub(super) struct AxisBlock {
-    pub(super) machine: Machine<[Axis; 1]>,
+    pub(super) machine: Machine,
     /// Ticks of the run: the last one is observed at the end.
     ticks: u64,
     takes: Vec<LoopSignal>,
@@ -52,7 +52,7 @@ pub(super) struct AxisBlock {
 }
 
 impl AxisBlock {
-    pub(super) const fn new(machine: Machine<[Axis; 1]>, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
+    pub(super) const fn new(machine: Machine, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
         Self { machine, ticks, takes, gives, saved: None }
     }
 
@@ -86,9 +86,7 @@ impl AxisBlock {
             if self.machine.next().0 + 1 == self.ticks {
                 break;
             }
-            let external = self.external(inputs, rate.time(Tick(tick)), rate.period());
-            let [axis] = &mut self.machine.axes;
-            axis.external = external;
+            self.machine.axis.external = self.external(inputs, rate.time(Tick(tick)), rate.period());
             self.machine.tick()?;
         }
         self.look_ahead();
@@ -98,7 +96,7 @@ impl AxisBlock {
     /// Brings the bodies, what sensors without firmware say of them, and the set-point of the tick that comes next to what is given.
     fn look_ahead(&mut self) {
         let next = self.machine.next();
-        let [axis] = &mut self.machine.axes;
+        let axis = &mut self.machine.axis;
         axis.sample();
         axis.closed_loop.look_at_sensors(&mut axis.now);
         if let Some(setpoint) = axis.closed_loop.look_ahead(next.0) {
@@ -109,7 +107,7 @@ impl AxisBlock {
     fn read(&mut self, outputs: &mut [f64]) {
         self.look_ahead();
         let time = self.machine.time();
-        let [axis] = &self.machine.axes;
+        let axis = &self.machine.axis;
         let (own, channels) = outputs.split_at_mut(OWN.len());
         let shaft = axis.closed_loop.mechanics.bodies()[0];
         own.copy_from_slice(&[time, shaft.position, shaft.velocity]);
@@ -120,22 +118,19 @@ impl AxisBlock {
 
     fn save(&mut self) -> Result<(), MechanicsError> {
         let (next, time) = (self.machine.next(), self.machine.time());
-        let [axis] = &mut self.machine.axes;
-        self.saved = Some((next, axis.save_recorded(time)?));
+        self.saved = Some((next, self.machine.axis.save_recorded(time)?));
         Ok(())
     }
 
     fn restore(&mut self) -> Result<(), MechanicsError> {
         let Some((tick, saved)) = &self.saved else { return Err(MechanicsError::NotSaved) };
-        let [axis] = &mut self.machine.axes;
-        axis.restore_recorded(saved)?;
+        self.machine.axis.restore_recorded(saved)?;
         self.machine.go_back(*tick);
         Ok(())
     }
 
     fn saves_state(&self) -> bool {
-        let [axis] = &self.machine.axes;
-        axis.closed_loop.mechanics.saves()
+        self.machine.axis.closed_loop.mechanics.saves()
     }
 }
 

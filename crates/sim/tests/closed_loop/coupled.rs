@@ -1,19 +1,19 @@
 //! FMUs beside the axis, here written in Rust.
 use crate::rig::{self, values};
 use servobench_fmi::{
-    Capabilities, DataType, DeclaredNumber, DeclaredUnit, Exponents, FmuEntry, FmuMistake, FmuRequest, LogLine, Slave,
+    Capabilities, DataType, DeclaredNumber, DeclaredUnit, Exponents, FmuEntry, FmuMistake, FmuRequest, Slave,
     SlaveError, StepEnd,
 };
-use servobench_plant::Exact;
+use servobench_plant::{Engine, Exact};
 use servobench_scenario as scenario;
-use servobench_sim::{Bench, FmuDoubt, FmuOpener, MultiAxisBench, NoFmus, NotAtOneTime};
+use servobench_sim::{Bench, FmuDoubt, FmuOpener, NoFmus};
 use servobench_trace::Recording;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A prescribed or driven table of 40 kg and, beside it, parts by their file's name.
-const TABLE: &str = r#"
+pub(crate) const TABLE: &str = r#"
 [run]
 base_rate = "16 kHz"
 duration = "0.5 s"
@@ -44,16 +44,14 @@ rate = "4 kHz"
 gain = "80 1/s"
 "#;
 
-/// A part: outputs by the time and the inputs, and whatever it remembers.
-struct Part<F> {
-    law: F,
-    state: [f64; 2],
-    saved: [f64; 2],
+/// A part: outputs by the time, the length of the step and the means of the inputs.
+struct Part {
+    law: fn(f64, f64, &[f64]) -> f64,
     last: Vec<f64>,
     saves: bool,
 }
 
-impl<F: FnMut(&mut [f64; 2], f64, f64, &[f64]) -> f64 + Send> Slave for Part<F> {
+impl Slave for Part {
     fn capabilities(&self) -> Capabilities {
         Capabilities { saves_state: self.saves, ..Capabilities::default() }
     }
@@ -61,41 +59,43 @@ impl<F: FnMut(&mut [f64; 2], f64, f64, &[f64]) -> f64 + Send> Slave for Part<F> 
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         let mean: Vec<f64> =
             inputs.iter().map(|[u, d, dd]| u + d * length / 2.0 + dd * length * length / 6.0).collect();
-        let given = (self.law)(&mut self.state, time, length, &mean);
-        self.last = vec![given; self.last.len()];
+        self.last.fill((self.law)(time, length, &mean));
         Ok(StepEnd::Done)
     }
 
     /// A part with an input follows it without a step.
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         if let Some(inputs) = inputs.filter(|inputs| !inputs.is_empty()) {
-            let given = (self.law)(&mut self.state.clone(), 0.0, 0.0, inputs);
-            self.last = vec![given; outputs.len()];
+            self.last.fill((self.law)(0.0, 0.0, inputs));
         }
         outputs.copy_from_slice(&self.last);
         Ok(())
     }
 
     fn save(&mut self) -> Result<(), SlaveError> {
-        self.saved = self.state;
         Ok(())
     }
 
     fn restore(&mut self) -> Result<(), SlaveError> {
-        self.state = self.saved;
         Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
     }
 }
 
-/// Gives what it was given in its last step, and half of it more if it is read with inputs.
+/// Gives what it was given in its last step, and half of it more if it is read with inputs; opens as itself.
+#[derive(Clone, Default)]
 struct Relay {
     feeds_through: bool,
     last: f64,
+    /// How often all of them were read with inputs.
     readings: Arc<AtomicUsize>,
+    /// Its output and its input.
+    declared: Option<[DeclaredNumber; 2]>,
+}
+
+impl FmuOpener for Relay {
+    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
+        Ok(Box::new(self.clone()))
+    }
 }
 
 impl Slave for Relay {
@@ -107,89 +107,23 @@ impl Slave for Relay {
         self.feeds_through
     }
 
+    fn declared_output(&self, _output: usize) -> Option<&DeclaredNumber> {
+        self.declared.as_ref().map(|[output, _]| output)
+    }
+
+    fn declared_input(&self, _input: usize) -> Option<&DeclaredNumber> {
+        self.declared.as_ref().map(|[_, input]| input)
+    }
+
     fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
-        self.last = inputs[0][0];
+        self.last = inputs.first().map_or(0.0, |input| input[0]);
         Ok(StepEnd::Done)
     }
 
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         self.readings.fetch_add(usize::from(inputs.is_some()), Ordering::Relaxed);
-        outputs[0] = self.last + inputs.map_or(0.0, |inputs| 0.5 * inputs[0]);
+        outputs.fill(self.last + inputs.and_then(<[f64]>::first).map_or(0.0, |input| 0.5 * input));
         Ok(())
-    }
-
-    fn save(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
-    }
-}
-
-/// Relays, and how often they were read with inputs.
-struct Relays {
-    feeds_through: bool,
-    readings: Arc<AtomicUsize>,
-}
-
-impl FmuOpener for Relays {
-    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        Ok(Box::new(Relay { feeds_through: self.feeds_through, last: 0.0, readings: Arc::clone(&self.readings) }))
-    }
-}
-
-/// Parts whose one output, and one input, are declared so.
-struct Declaring([DeclaredNumber; 2]);
-
-struct Declared([DeclaredNumber; 2]);
-
-impl FmuOpener for Declaring {
-    fn open(&self, _: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        Ok(Box::new(Declared(self.0.clone())))
-    }
-}
-
-impl Slave for Declared {
-    fn capabilities(&self) -> Capabilities {
-        Capabilities::default()
-    }
-
-    fn feeds_through(&self, _output: usize, _input: usize) -> bool {
-        false
-    }
-
-    fn declared_output(&self, _output: usize) -> Option<&DeclaredNumber> {
-        Some(&self.0[0])
-    }
-
-    fn declared_input(&self, _input: usize) -> Option<&DeclaredNumber> {
-        Some(&self.0[1])
-    }
-
-    fn step(&mut self, _: f64, _: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
-        Ok(StepEnd::Done)
-    }
-
-    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
-        outputs.fill(0.0);
-        Ok(())
-    }
-
-    fn save(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
     }
 }
 
@@ -201,41 +135,21 @@ const STIFFNESS: f64 = 40.0 * (TAU * 10.0) * (TAU * 10.0);
 
 impl FmuOpener for Parts {
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
-        let start = vec![0.0; request.outputs.len()];
-        let state = [0.0; 2];
-        Ok(match request.name.unwrap_or_default() {
-            "spring" => {
-                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| -STIFFNESS * u[0];
-                Box::new(Part { law, state, saved: state, last: start, saves: true })
-            }
-            "push" => {
-                let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| if t + h < 0.1 - 1e-9 { 20.0 } else { 0.0 };
-                Box::new(Part { law, state, saved: state, last: vec![20.0], saves: false })
-            }
-            "controller" => {
-                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 4e4 * (u[0] - u[1]) - 2e3 * u[2];
-                Box::new(Part { law, state, saved: state, last: start, saves: false })
-            }
+        let name = request.name.unwrap_or_default();
+        let law: fn(f64, f64, &[f64]) -> f64 = match name {
+            "spring" => |_, _, u| -STIFFNESS * u[0],
+            "push" => |t, h, _| if t + h < 0.1 - 1e-9 { 20.0 } else { 0.0 },
+            "controller" => |_, _, u| 4e4 * (u[0] - u[1]) - 2e3 * u[2],
             // -3·(motor velocity) + 2·(set-point), which come in this order or the other.
-            "first" => {
-                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 2.0 * u[1] - 3.0 * u[0];
-                Box::new(Part { law, state, saved: state, last: start, saves: false })
-            }
-            "second" => {
-                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 2.0 * u[0] - 3.0 * u[1];
-                Box::new(Part { law, state, saved: state, last: start, saves: false })
-            }
+            "first" => |_, _, u| 2.0 * u[1] - 3.0 * u[0],
+            "second" => |_, _, u| 2.0 * u[0] - 3.0 * u[1],
             // 10 V per metre, both axes alike.
-            "amplifier" => {
-                let law = |_: &mut [f64; 2], _: f64, _: f64, u: &[f64]| 10.0 * u[0];
-                Box::new(Part { law, state, saved: state, last: start, saves: false })
-            }
-            "ramp" => {
-                let law = |_: &mut [f64; 2], t: f64, h: f64, _: &[f64]| 0.01 * (t + h);
-                Box::new(Part { law, state, saved: state, last: start, saves: false })
-            }
+            "amplifier" => |_, _, u| 10.0 * u[0],
+            "ramp" => |t, h, _| 0.01 * (t + h),
             other => return Err(vec![FmuMistake::of_file(&format!("no part `{other}`"))]),
-        })
+        };
+        let start = if name == "push" { 20.0 } else { 0.0 };
+        Ok(Box::new(Part { law, last: vec![start; request.outputs.len()], saves: name == "spring" }))
     }
 }
 
@@ -243,27 +157,24 @@ fn run(text: &str) -> Recording {
     rig::run_bench(bench(text, &Parts).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
 fn bench(text: &str, fmu_opener: &dyn FmuOpener) -> Result<Bench, String> {
+    bench_beside_fmus(text, &Exact, fmu_opener)
+}
+
+/// The bench of a scenario beside whose file lie FMUs, whose insides do not matter here.
+pub(crate) fn bench_beside_fmus(text: &str, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Result<Bench, String> {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["spring", "push", "ramp", "controller", "amplifier", "first", "second"] {
+    for name in ["spring", "push", "ramp", "controller", "amplifier", "first", "second", "tank"] {
         std::fs::write(folder.path().join(format!("{name}.fmu")), "").unwrap();
     }
     let path = folder.path().join("coupled.toml");
     std::fs::write(&path, text).unwrap();
     let loaded = scenario::load(&path).map_err(|error| error.to_string())?;
-    Bench::with_fmus(&loaded.scenario, &Exact, fmu_opener).map_err(|error| error.to_string())
+    Bench::with_fmus(&loaded.scenario, engine, fmu_opener).map_err(|error| error.to_string())
 }
 
 fn fmu(name: &str, keys: &str) -> String {
     format!("[[fmu]]\nfile = \"{name}.fmu\"\n{keys}")
-}
-
-#[test]
-fn an_axis_with_fmus_does_not_run_beside_another_one() {
-    let with = |keys: &str| bench(&format!("{TABLE}{keys}"), &Parts).unwrap_or_else(|error| panic!("{error}"));
-    let axes = vec![with(""), with(&fmu("push", "outputs = { F = \"disturbance.load\" }\n"))];
-    assert_eq!(MultiAxisBench::new(axes).map(|_| ()), Err(NotAtOneTime::Fmus { axis: 1 }));
 }
 
 /// Oracle: a force of 20 N as a disturbance of the scenario. What is exchanged is a line between two values, so that the force
@@ -352,7 +263,7 @@ fn a_controller_samples_at_a_tick_and_holds_over_it() {
 #[test]
 fn a_ring_without_feedthrough_is_no_algebraic_loop() {
     let readings = |feeds_through| {
-        let relays = Relays { feeds_through, readings: Arc::default() };
+        let relays = Relay { feeds_through, ..Relay::default() };
         let ring = fmu("push", "name = \"a\"\ninputs = { u = \"b.y\" }\noutputs = { y = \"disturbance.load\" }\n")
             + &fmu("push", "name = \"b\"\ninputs = { u = \"a.y\" }\n");
         let text = format!("{TABLE}{ring}").replace("duration = \"0.5 s\"", "duration = \"10 ms\"");
@@ -399,7 +310,7 @@ fn units_and_types_between_fmus_fit() {
     let with = |declared: [DeclaredNumber; 2]| {
         let ring = fmu("push", "name = \"a\"\n")
             + &fmu("push", "name = \"b\"\ninputs = { u = \"a.y\" }\noutputs = { y = \"disturbance.load\" }\n");
-        bench(&format!("{TABLE}{ring}"), &Declaring(declared))
+        bench(&format!("{TABLE}{ring}"), &Relay { declared: Some(declared), ..Relay::default() })
     };
     let number = |unit: Option<(&str, Exponents)>| DeclaredNumber {
         data_type: DataType::Float64,

@@ -1,6 +1,6 @@
 //! A run that leaves every machine ends as diverged, whatever motor and inverter make of speeds that nothing has.
-use crate::ball_screw::{AXIS, BLOCKS, BUS, MOVE};
 use crate::rig::bench;
+use crate::stepper::{BLOCKS, BUS, MOVE, axis};
 use servobench_plant::MechanicsError;
 use servobench_sim::{External, Failure, Reason};
 
@@ -33,10 +33,11 @@ fn pushed(text: &str, damping: f64) -> (Failure, f64) {
 /// Negative damping that multiplies the speed by 1.1 and by 1e30 in a tick: no speed comes to the drive that no machine has.
 #[test]
 fn a_load_that_runs_away_ends_the_run_as_diverged() {
+    let axis = axis();
     for real in REAL {
         for program in [MOVE.to_owned(), format!("{BUS}{MOVE}"), format!("{BUS}{BLOCKS}")] {
             for damping in [1e6, 1e36] {
-                let text = format!("{AXIS}{real}{program}");
+                let text = format!("{axis}{real}{program}");
                 let (failure, velocity) = pushed(&text, damping);
                 println!("{real:?} {damping:e}: {failure}, {velocity:e} m/s");
                 assert!(matches!(failure.reason, Reason::Mechanics(MechanicsError::Diverged { .. })), "{failure}");

@@ -3,7 +3,7 @@ mod points;
 mod stream;
 mod told;
 
-use crate::rig::{run, scenario, text_of, values};
+use crate::rig::{axis, run, scenario, text_of, values};
 use servobench_motion::position_profile::Spline;
 use servobench_motion::pvt::Knot;
 use servobench_sim::Program;
@@ -12,23 +12,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// A ball screw under a stiff drive; the bus is to be given.
-const AXIS: &str = r#"
-[run]
-base_rate = "16 kHz"
-[axis]
-model = "ball-screw"
-[motor]
-model = "wittenstein-premo-1f"
-encoder = { counts_per_rev = 1048576 }
-[drive]
-model = "servo-16khz"
-dc_link = "320 V"
-max_torque = "6.09 Nm"
-[drive.feedforward]
-velocity = true
-effort = "rigid"
-friction = true
-"#;
+const AXIS: &str = concat!(axis!(), "velocity = true\neffort = \"rigid\"\n");
 
 fn stored(name: &str) -> Recording {
     run(&text_of(name, &[]))

@@ -2,7 +2,7 @@
 use crate::rig;
 use servobench_plant::{BodyState, Engine, EngineName, Exact, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::{LONGEST_RUN, Scenario};
-use servobench_sim::{Bench, BuildError, MultiAxisBench};
+use servobench_sim::{Bench, BuildError};
 
 /// A mass of 20 kg that 1 N is to bring to a metre from here at once: the effort limit binds from the first ticks on.
 fn weak() -> Scenario {
@@ -76,19 +76,6 @@ fn what_still_binds_at_a_failure_ends_there() {
         let [event] = recording.events.as_slice() else { panic!("one event: {:?}", recording.events) };
         assert!(event.start < 0.001, "{event:?}");
         assert_eq!(event.end.to_bits(), f64::to_bits(last), "{event:?}");
-    }
-}
-
-#[test]
-fn one_axis_of_several_that_cannot_go_on_is_named_and_all_end_at_the_same_tick() {
-    let bench = |engine: &dyn Engine| Bench::new(&weak(), engine).unwrap();
-    for failing in 0..3 {
-        let axes = (0..3).map(|axis| if axis == failing { bench(&FailsAt(24)) } else { bench(&Exact) }).collect();
-        let outcome = MultiAxisBench::new(axes).unwrap().run(&mut |_| {});
-        let expected = format!("axis {}: at 0.0015 s: engine `exact` failed: as asked", failing + 1);
-        assert_eq!(outcome.failure.map(|failure| failure.to_string()), Some(expected));
-        let alone = bench(&FailsAt(24)).run(&mut |_| {}).recording;
-        assert!(outcome.recordings.iter().all(|recording| *recording == alone));
     }
 }
 

@@ -1,5 +1,4 @@
 //! The closed loop of scenarios: programs, buses, drives, sensors and FMUs beside it.
-mod ball_screw;
 mod bus;
 mod coupled;
 mod coupling;
@@ -9,7 +8,6 @@ mod ending;
 mod function_blocks;
 mod handover;
 mod hardware_firmware;
-mod multi_axis;
 mod network;
 mod objections;
 mod plc;

@@ -5,8 +5,10 @@ use servobench_sim::{Bench, Outcome};
 use servobench_trace::Recording;
 use std::path::Path;
 
-/// A feed axis under a stiff drive; set-points, bus and program are to be given.
-pub(crate) const SCREW: &str = r#"
+/// A ball screw under a stiff drive; feedforward may go on, set-points, bus and program are to be given.
+macro_rules! axis {
+    () => {
+        r#"
 [run]
 base_rate = "16 kHz"
 [axis]
@@ -20,13 +22,27 @@ dc_link = "320 V"
 max_torque = "6.09 Nm"
 [drive.feedforward]
 friction = true
-[setpoint]
-order = 4
-velocity = "30 m/min"
-acceleration = "5 m/s2"
-jerk = "100 m/s3"
-snap = "5000 m/s4"
-"#;
+"#
+    };
+}
+pub(crate) use axis;
+
+/// The same with set-points of order 4.
+pub(crate) const SCREW: &str = concat!(
+    axis!(),
+    "[setpoint]\norder = 4\nvelocity = \"30 m/min\"\nacceleration = \"5 m/s2\"\njerk = \"100 m/s3\"\nsnap = \"5000 m/s4\"\n"
+);
+
+/// The scenario `text` for `duration`.
+pub(crate) fn lasting(text: &str, duration: &str) -> String {
+    text.replace("[run]\n", &format!("[run]\nduration = \"{duration}\"\n"))
+}
+
+/// The feed axis with these keys of its own, for `duration`.
+pub(crate) fn screw_with(keys: &str, duration: &str) -> String {
+    let model = "model = \"ball-screw\"\n";
+    lasting(SCREW, duration).replace(model, &format!("{model}{keys}\n"))
+}
 
 /// After 0.1 s a move to 250 mm.
 pub(crate) const MOVE: &str = "[[program]]\nwait = \"0.1 s\"\n[[program]]\nmove_to = \"250 mm\"\n";

@@ -1,29 +1,11 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
+use crate::coupled::{TABLE, bench_beside_fmus};
 use servobench_base::Severity;
 use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::{
     BodyState, Engine, EngineName, Exact, Input, LogMessage, Mechanics, MechanicsError, MechanicsSetup,
 };
-use servobench_scenario as scenario;
-use servobench_sim::{Bench, FmuOpener, NoFmus, Outcome};
-
-const TABLE: &str = r#"
-[run]
-base_rate = "1 kHz"
-duration = "0.5 s"
-[axis]
-motion = "linear"
-motor_side.mass = "40 kg"
-[motor]
-kind = "pmsm"
-pole_pitch = "16 mm"
-resistance = "1.6 Ohm"
-inductance = "3.5 mH"
-flux_linkage = "0.06 V s"
-max_current = "13.3 Arms"
-[drive]
-enabled = false
-"#;
+use servobench_sim::{FmuOpener, NoFmus, Outcome};
 
 /// When the FMUs here fail (s).
 const END: f64 = 0.1;
@@ -42,7 +24,7 @@ impl Chatty {
 
 impl Slave for Chatty {
     fn capabilities(&self) -> Capabilities {
-        Capabilities { saves_state: true, ..Capabilities::default() }
+        Capabilities::default()
     }
 
     fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
@@ -64,14 +46,6 @@ impl Slave for Chatty {
         Ok(())
     }
 
-    fn save(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
     fn take_log(&mut self) -> Vec<LogLine> {
         std::mem::take(&mut self.said)
     }
@@ -87,19 +61,16 @@ impl FmuOpener for Opens {
     }
 }
 
-fn run(text: &str, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Outcome {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("tank.fmu"), "").unwrap();
-    let path = folder.path().join("said.toml");
-    std::fs::write(&path, text).unwrap();
-    let loaded = scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    Bench::with_fmus(&loaded.scenario, engine, fmu_opener).unwrap_or_else(|error| panic!("{error}")).run(&mut |_| {})
+/// A run of a table of 40 kg at 1 kHz.
+fn run(more: &str, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Outcome {
+    let text = TABLE.replace("16 kHz", "1 kHz") + more;
+    bench_beside_fmus(&text, engine, fmu_opener).unwrap_or_else(|error| panic!("{error}")).run(&mut |_| {})
 }
 
 fn beside(coupling: &str) -> Outcome {
     let fmu =
         "[[fmu]]\nfile = \"tank.fmu\"\ninputs = { x = \"load.position\" }\noutputs = { F = \"disturbance.load\" }\n";
-    run(&format!("{TABLE}{fmu}{coupling}"), &Exact, &Opens)
+    run(&format!("{fmu}{coupling}"), &Exact, &Opens)
 }
 
 /// Ten as they are, the others as one entry: of the steps at 0 ms, 1 ms, … 100 ms.
@@ -160,7 +131,7 @@ impl Mechanics for Talks {
 /// The fourth tick, which begins at 3 ms, fails. Nothing is said before the start or after the present.
 #[test]
 fn mechanics_are_heard_to_their_failure() {
-    let Outcome { recording, failure } = run(TABLE, &Talking, &NoFmus);
+    let Outcome { recording, failure } = run("", &Talking, &NoFmus);
     assert!(failure.is_some());
     let said: Vec<(f64, &str)> = recording.log.iter().map(|entry| (entry.start, entry.text.as_str())).collect();
     assert_eq!(said, [(0.0, "in 4"), (1e-3, "in 1"), (3e-3, "in 2"), (3e-3, "in 3")]);

@@ -1,30 +1,6 @@
 //! Limit and home switches, wired normally open and normally closed.
-use crate::rig;
+use crate::rig::{self, axis, lasting};
 use servobench_trace::Recording;
-use std::fmt::Write as _;
-
-/// A ball screw of 10 mm a revolution with an encoder of an odd number of counts.
-const AXIS: &str = r#"
-[run]
-base_rate = "16 kHz"
-duration = "3.5 s"
-[axis]
-model = "ball-screw"
-[motor]
-model = "wittenstein-premo-1f"
-encoder = { counts_per_rev = 100003 }
-[drive]
-model = "servo-16khz"
-dc_link = "320 V"
-max_torque = "6.09 Nm"
-[drive.feedforward]
-friction = true
-[setpoint]
-order = 3
-velocity = "300 mm/s"
-acceleration = "3 m/s2"
-jerk = "70 m/s3"
-"#;
 
 const SWITCHES: &str = r#"
 [axis.switches]
@@ -34,13 +10,13 @@ home = { from = "11.113 mm", to = "17.7 mm" }
 index = "77 deg"
 "#;
 
+/// A ball screw of 10 mm a revolution with an encoder of an odd number of counts.
 fn run(text: &str, reversed: bool) -> Recording {
-    let mut text = AXIS.to_owned() + text;
-    let _ = write!(
-        text,
-        "\n[bus]\ncycle = \"2 ms\"\ndelay = 1\nvelocity_offset = true\nunits = {{ drive = 1, axis = \"1 um\" }}\nreverse_switches = {reversed}\n"
-    );
-    rig::run(&text)
+    let axis = lasting(axis!(), "3.5 s").replace("1048576", "100003");
+    rig::run(&format!(
+        "{axis}[setpoint]\norder = 3\nvelocity = \"300 mm/s\"\nacceleration = \"3 m/s2\"\njerk = \"70 m/s3\"\n{text}\n\
+         [bus]\ncycle = \"2 ms\"\ndelay = 1\nvelocity_offset = true\nunits = {{ drive = 1, axis = \"1 um\" }}\nreverse_switches = {reversed}\n"
+    ))
 }
 
 /// Whether a signal ever has a value.

@@ -1,5 +1,5 @@
 //! What stops an axis: a drive that is silent, frames that are missing, an external fault, following errors, limit switches.
-use crate::rig::{BUS, MOVE, SCREW, last, run, states, values, when};
+use crate::rig::{BUS, MOVE, SCREW, last, run, screw_with, states, values, when};
 use servobench_trace::Recording;
 
 fn with(more: &str) -> Recording {
@@ -77,9 +77,7 @@ fn a_following_error_beyond_its_window_is_a_fault() {
 /// Into a limit switch, out of it by a reset and a move back.
 #[test]
 fn a_limit_switch_is_left_by_a_reset_and_a_move_back() {
-    let text =
-        SCREW.replace("model = \"ball-screw\"\n", "model = \"ball-screw\"\nswitches = { positive = \"200 mm\" }\n");
-    let text = text.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2.5 s\"\n");
+    let text = screw_with("switches = { positive = \"200 mm\" }", "2.5 s");
     let recording = run(&format!(
         r#"{text}{BUS}
 [plc]

@@ -1,5 +1,5 @@
 //! Homing against a stop, end to end.
-use crate::rig::{SCREW, last, peak, run, states, values, when};
+use crate::rig::{last, peak, run, screw_with, states, values, when};
 use servobench_trace::Recording;
 
 /// Torque limit of the search (N·m): the nearest thousandth of 6.09 N·m to 0.5 N·m.
@@ -13,10 +13,8 @@ const FRICTION: f64 = 20.0 + 0.03 * std::f64::consts::TAU / 10e-3;
 
 /// A search towards the stop at −40 mm, whose position is then −5 mm, and what comes after it.
 fn searched(bus: &str, search: &str, then: &str) -> Recording {
-    let stops = "end_stops = { negative = \"-40 mm\", stiffness = \"20 N/um\", damping = \"10 kN s/m\" }\n";
-    let text = SCREW
-        .replace("model = \"ball-screw\"\n", &format!("model = \"ball-screw\"\n{stops}"))
-        .replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"3 s\"\n");
+    let stops = "end_stops = { negative = \"-40 mm\", stiffness = \"20 N/um\", damping = \"10 kN s/m\" }";
+    let text = screw_with(stops, "3 s");
     run(&format!(
         r#"{text}{bus}
 [[call]]

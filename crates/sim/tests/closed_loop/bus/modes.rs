@@ -1,5 +1,5 @@
 //! The position loop in the master, and efforts over the bus.
-use crate::rig::{BUS, MOVE, SCREW, last, peak, run, states, values, when};
+use crate::rig::{BUS, MOVE, SCREW, last, lasting, peak, run, states, values, when};
 
 /// The master closes the position loop every millisecond, of a position that is three cycles old and a turn of the drive.
 ///
@@ -24,7 +24,7 @@ fn the_master_closes_the_position_loop() {
 /// Oracle: the call itself.
 #[test]
 fn a_torque_over_the_bus_is_the_motor_s() {
-    let text = SCREW.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"1 s\"\n");
+    let text = lasting(SCREW, "1 s");
     let recording = run(&format!(
         r#"{text}{BUS}
 [[call]]

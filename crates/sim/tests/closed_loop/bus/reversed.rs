@@ -1,5 +1,5 @@
 //! A motor that is mounted the other way round: the run of the axis is the same, that of motor and drive its mirror image.
-use crate::rig::{MOVE, SCREW, last, run, states, values};
+use crate::rig::{MOVE, SCREW, last, run, screw_with, states, values};
 use servobench_trace::Recording;
 
 const ONE: &str = "units = { drive = 1048576, axis = \"10 mm\" }\n";
@@ -100,9 +100,7 @@ fn profiles_of_a_reversed_drive_are_the_mirror_image() {
 
 fn with_switches(switches: &str, bus: &str, calls: &str) -> [Recording; 2] {
     ["10 mm", "-10 mm"].map(|axis| {
-        let text = SCREW
-            .replace("model = \"ball-screw\"\n", &format!("model = \"ball-screw\"\nswitches = {{ {switches} }}\n"))
-            .replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n");
+        let text = screw_with(&format!("switches = {{ {switches} }}"), "2 s");
         let units = ONE.replace("10 mm", axis);
         run(&format!(
             "{text}[bus]\ncycle = \"1 ms\"\nvelocity_offset = true\neffort_offset = \"rigid\"\n{bus}{units}{calls}"
@@ -147,9 +145,7 @@ position = "-20 mm"
 #[test]
 fn homing_is_that_of_the_drive() {
     let homed = |axis: &str, method: u32| {
-        let text = SCREW
-            .replace("model = \"ball-screw\"\n", "model = \"ball-screw\"\nswitches = { negative = \"-20 mm\" }\n")
-            .replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n");
+        let text = screw_with("switches = { negative = \"-20 mm\" }", "2 s");
         let units = ONE.replace("10 mm", axis);
         run(&format!(
             "{text}[drive.objects]\n\"6098h\" = {method}\n\"6099h.1\" = 5000000\n\"6099h.2\" = 500000\n\

@@ -1,10 +1,10 @@
 //! An axis that moves when its drive is enabled: nothing jumps.
-use crate::rig::{SCREW, run, states, values};
+use crate::rig::{SCREW, lasting, run, states, values};
 use servobench_trace::Recording;
 
 /// A feed axis at 0.4 m/s whose drive loses power by an external fault, coasts (605Ah = 0) and is enabled again while it does.
 fn coasting(more: &str) -> Recording {
-    let text = SCREW.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"1.2 s\"\n");
+    let text = lasting(SCREW, "1.2 s");
     run(&format!(
         r#"{text}
 [bus]
@@ -66,33 +66,6 @@ fn it_goes_on_at_its_velocity_and_is_brought_to_rest_from_there() {
         let slowing = jump(part(&recording, "motor.velocity", off.0, off.1)) * 16e3;
         println!("{mode}: {apart:.2e} m/s apart, slows down by {slowing:.2} m/s²");
         assert!(apart < slowing * 3.5e-3 + 1e-3, "{mode}: {apart}");
-        if std::env::var("SHOW").is_ok() {
-            for name in [
-                "task.position",
-                "task.velocity",
-                "link.acceleration",
-                "velocity.reference",
-                "motor.velocity",
-                "link.velocity",
-                "link.position",
-                "setpoint.velocity",
-                "setpoint.position",
-                "motor.position",
-                "bus.position",
-                "effort.motor",
-            ] {
-                let row = recording.index_at(enabled);
-                let shown: Vec<String> =
-                    (0..12).map(|k| format!("{:.5}", values(&recording, name)[row - 32 + 16 * k])).collect();
-                println!("{name}: {}", shown.join(" "));
-            }
-            let reference = part(&recording, "velocity.reference", enabled - 2e-3, enabled + 0.3);
-            for (k, pair) in reference.windows(2).enumerate() {
-                if (pair[1] - pair[0]).abs() > 0.02 {
-                    println!("{k}: {} {}", pair[0], pair[1]);
-                }
-            }
-        }
         // From then on until it stands.
         let after = (enabled - 2e-3, enabled + 0.3);
         let reference = jump(part(&recording, "velocity.reference", after.0, after.1));
