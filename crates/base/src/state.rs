@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `#[state(constant)]` | a parameter: equal in all states of a run |
 //! | `#[state(derived)]` | computed from the rest of the state; saved, but moving it alone means nothing |
+//! | `#[state(recomputed)]` | not saved: computed from the rest after it was restored, or in each tick before it is read |
 //! | `#[state(fixed)]` | an option or a list with parameters in it, whose form they decide |
 //!
 //! A type without parameters in it is a [`Value`], which an option or a list can make anew. A type that has fields with parameters in them, and

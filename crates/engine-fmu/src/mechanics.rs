@@ -219,7 +219,7 @@ impl Mechanics for FmuMechanics {
         check_states(NAME, self.state.bodies.iter().copied())
     }
 
-    fn saves(&self) -> bool {
+    fn saves(&mut self) -> bool {
         self.slave.capabilities().saves_state
     }
 

@@ -180,17 +180,8 @@ impl Stateful for MujocoChain {
 }
 
 impl Mechanics for MujocoChain {
-    fn saves(&self) -> bool {
-        true
-    }
-
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Stateful::save(self, to);
-        Ok(())
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Ok(Stateful::restore(self, from)?)
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
 
     fn bodies(&self) -> &[BodyState] {

@@ -7,7 +7,7 @@ use crate::simulation::{self, Data};
 use limits::Limits;
 use mujoco_rs::prelude::{MjtDisableBit, MjtEnableBit, MjtState};
 use parts::{Joint, Motor, Parts, joints, load_coordinate};
-use servobench_base::state::{Damaged, Part, Reader, Stateful as _, Writer};
+use servobench_base::state::{Damaged, Part, Reader, Stateful, Writer};
 use servobench_plant::{
     Actuation, BodyState, Drive, Identity, Input, JointLimit, LoadCoordinate, Mechanics, MechanicsError,
     MechanicsSetup, MjcfModel, check_states,
@@ -27,8 +27,6 @@ pub(crate) struct MujocoMjcf {
     limits: Limits,
     /// Motor, then load; one body when one joint is both.
     bodies: Vec<BodyState>,
-    /// `MuJoCo`'s own state on its way.
-    state: Vec<f64>,
     identity: Identity,
 }
 
@@ -67,10 +65,8 @@ impl MujocoMjcf {
         let mut bodies = vec![BodyState::default(); if load.joint() == motor { 1 } else { 2 }];
         bodies.iter_mut().zip(&setup.initial).for_each(|(body, initial)| *body = *initial);
         let load_per_joint = if bodies.len() == 1 { file.transmission } else { 1.0 };
-        let state = vec![0.0; data.model().state_size(ALL)];
         let identity = Identity::new(NAME, setup);
-        let mut mechanics =
-            Self { data, actuator, joints, motor, load, load_per_joint, limits, bodies, state, identity };
+        let mut mechanics = Self { data, actuator, joints, motor, load, load_per_joint, limits, bodies, identity };
         mechanics.start();
         mechanics.read();
         Ok(mechanics)
@@ -102,34 +98,36 @@ impl MujocoMjcf {
     }
 }
 
-impl Mechanics for MujocoMjcf {
-    /// Which bodies sleep is not in `MuJoCo`'s state.
-    fn saves(&self) -> bool {
-        self.data.model().opt().enableflags & MjtEnableBit::mjENBL_SLEEP as i32 == 0
-    }
-
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        if !self.saves() {
-            return Err(MechanicsError::NotSaved);
-        }
+impl Stateful for MujocoMjcf {
+    fn save(&self, to: &mut dyn Writer) {
         self.identity.save(to);
-        self.data.read_state_into(ALL, &mut self.state);
-        let mut numbers = self.state.iter();
+        let mut state = vec![0.0; self.data.model().state_size(ALL)];
+        self.data.read_state_into(ALL, &mut state);
+        let mut numbers = state.into_iter();
         for (spec, part) in PARTS {
             to.enter(part);
-            numbers.by_ref().take(self.data.model().state_size(spec)).for_each(|number| to.number(*number));
+            numbers.by_ref().take(self.data.model().state_size(spec)).for_each(|number| to.number(number));
             to.leave();
         }
-        Ok(())
     }
 
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
         self.identity.restore(from)?;
-        for number in &mut self.state {
-            *number = from.number()?;
-        }
+        let numbers = (0..self.data.model().state_size(ALL)).map(|_| from.number());
+        let state = numbers.collect::<Result<Vec<f64>, Damaged>>()?;
         // A number that `MuJoCo` refuses is an index into a history.
-        self.data.set_state(&self.state, ALL).map_err(|_| Damaged)?;
+        self.data.set_state(&state, ALL).map_err(|_| Damaged)
+    }
+}
+
+impl Mechanics for MujocoMjcf {
+    /// Which bodies sleep is not in `MuJoCo`'s state.
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        let sleeps = self.data.model().opt().enableflags & MjtEnableBit::mjENBL_SLEEP as i32 != 0;
+        if sleeps { None } else { Some(self) }
+    }
+
+    fn restored(&mut self) -> Result<(), MechanicsError> {
         self.read();
         Ok(())
     }

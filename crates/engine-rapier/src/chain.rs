@@ -11,29 +11,38 @@ use crate::NAME;
 use crate::half_kick::HalfKick;
 use crate::lumps::{Lumps, Positions};
 use servobench_base::Setpoint;
-use servobench_base::state::{Damaged, Part, Reader, Stateful, Writer};
+use servobench_base::state::Stateful;
 use servobench_plant::{
     Actuation, BodyState, Chain, Drive, Grips, GroundFriction, Identity, Input, Mechanics, MechanicsError,
     MechanicsSetup, check_states,
 };
 
 /// A chain in Rapier.
+#[derive(Stateful)]
 pub(crate) struct LumpChain<const N: usize> {
+    identity: Identity,
+    #[state(constant)]
     parameters: Parameters<N>,
     friction: GroundFriction<N>,
     /// Body 0 follows a set-point and is no lump.
+    #[state(constant)]
     prescribed: bool,
     /// Tick length (s).
+    #[state(constant)]
     step: f64,
+    /// A tick begins with that of the bodies that are held in it.
+    #[state(recomputed)]
     kick: HalfKick<N>,
+    #[state(derived)]
     lumps: Lumps,
     positions: Positions<N>,
     /// m/s or rad/s.
     velocities: [f64; N],
     /// Stretch of each link when both its ends are at their centres (m or rad).
+    #[state(recomputed)]
     stretch_of_centres: [f64; N],
+    #[state(recomputed)]
     bodies: [BodyState; N],
-    identity: Identity,
 }
 
 /// The chain's numbers side by side; zero where there is no such body or link.
@@ -139,49 +148,16 @@ impl<const N: usize> LumpChain<N> {
     }
 }
 
-impl<const N: usize> Stateful for LumpChain<N> {
-    fn save(&self, to: &mut dyn Writer) {
-        let Self { identity, positions, velocities, lumps, friction, parameters: _, prescribed: _, step: _, .. } = self;
-        // A tick begins with the half kick of the bodies that are held in it.
-        let Self { kick: _, stretch_of_centres: _, bodies: _, .. } = self;
-        identity.save(to);
-        for (name, state) in
-            [("position", positions as &dyn Stateful), ("velocity", velocities), ("friction", friction)]
-        {
-            to.enter(Part::field(name));
-            state.save(to);
-            to.leave();
-        }
-        to.enter(Part::derived("lumps"));
-        lumps.save(to);
-        to.leave();
+impl<const N: usize> Mechanics for LumpChain<N> {
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
 
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        self.identity.restore(from)?;
-        self.positions.restore(from)?;
-        self.velocities.restore(from)?;
-        self.friction.restore(from)?;
-        self.lumps.restore(from)?;
+    fn restored(&mut self) -> Result<(), MechanicsError> {
         self.lumps.put(&self.positions);
         self.measure_centres();
         self.publish();
         Ok(())
-    }
-}
-
-impl<const N: usize> Mechanics for LumpChain<N> {
-    fn saves(&self) -> bool {
-        true
-    }
-
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Stateful::save(self, to);
-        Ok(())
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Ok(Stateful::restore(self, from)?)
     }
 
     fn bodies(&self) -> &[BodyState] {

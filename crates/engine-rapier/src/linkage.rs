@@ -22,7 +22,7 @@ use crate::scene::{self, diverged};
 use assembly::assemble;
 use nalgebra::DVector;
 use rapier3d_f64::prelude::{Multibody, MultibodyIndex, MultibodyJointSet, PhysicsWorld, Vector};
-use servobench_base::state::{Damaged, FixedForm as _, Part, Reader, Stateful, Writer};
+use servobench_base::state::Stateful;
 use servobench_plant::{
     Actuation, BodyState, Identity, Input, Mechanics, MechanicsError, MechanicsSetup, check_states,
 };
@@ -34,24 +34,34 @@ const FAR: f64 = 1_267_650_600_228_229_401_496_703_205_376.0;
 const REST: f64 = 1e-12;
 
 /// A mechanism in Rapier.
+#[derive(Stateful)]
 pub(crate) struct Linkage {
+    identity: Identity,
+    #[state(recomputed)]
     world: PhysicsWorld,
+    #[state(constant)]
     multibody: MultibodyIndex,
     /// m/s².
+    #[state(constant)]
     gravity: Vector,
     /// Tick length (s).
+    #[state(constant)]
     step: f64,
+    #[state(fixed)]
     joints: Vec<Coordinate>,
+    #[state(constant)]
     tendons: Vec<Tendon>,
+    #[state(constant)]
     axis: Axis,
     /// Efforts of the last tick on motor joint and load (N or N·m).
     last: [f64; 2],
     /// Whether no tick has passed.
     fresh: bool,
-    /// One number for each joint.
+    /// One number for each joint, of the tick under way.
+    #[state(recomputed)]
     work: DVector<f64>,
+    #[state(recomputed)]
     bodies: Vec<BodyState>,
-    identity: Identity,
 }
 
 /// A joint and its coordinate.
@@ -258,53 +268,12 @@ impl Linkage {
     }
 }
 
-impl Stateful for Linkage {
-    fn save(&self, to: &mut dyn Writer) {
-        let Self {
-            identity,
-            joints,
-            last,
-            fresh,
-            world: _,
-            multibody: _,
-            gravity: _,
-            step: _,
-            tendons: _,
-            axis: _,
-            ..
-        } = self;
-        // The first is of the tick under way, the second follows from the joints.
-        let Self { work: _, bodies: _, .. } = self;
-        identity.save(to);
-        to.enter(Part::field("joints"));
-        joints.save_fixed(to);
-        to.leave();
-        to.enter(Part::field("last effort"));
-        last.save(to);
-        to.leave();
-        fresh.save(to);
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        self.identity.restore(from)?;
-        self.joints.restore_fixed(from)?;
-        self.last.restore(from)?;
-        self.fresh.restore(from)
-    }
-}
-
 impl Mechanics for Linkage {
-    fn saves(&self) -> bool {
-        true
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
 
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Stateful::save(self, to);
-        Ok(())
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Stateful::restore(self, from)?;
+    fn restored(&mut self) -> Result<(), MechanicsError> {
         self.put()?;
         self.publish();
         Ok(())

@@ -9,7 +9,7 @@
 //! [`SPAN`]. At 3000 rpm a coordinate that grew without bound would lose 1e-8 rad in ten seconds to rounding.
 use crate::scene;
 use rapier3d_f64::prelude::{LockedAxes, MassProperties, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector};
-use servobench_base::state::{Damaged, Reader, Stateful, Writer};
+use servobench_base::state::Stateful;
 use servobench_plant::{BodyState, Chain, MechanicsError};
 
 /// Lumps to a scene: one to an axis.
@@ -18,31 +18,41 @@ const PER_SCENE: usize = 3;
 const SPAN: f64 = 4.0;
 
 /// Where the bodies are, each in its own coordinate.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Stateful)]
 pub(crate) struct Positions<const N: usize> {
-    /// Whole numbers that Rapier's coordinates are counted from (m or rad).
+    /// Whole numbers that Rapier's coordinates are counted from (m or rad): they alone vary continuously.
+    #[state(derived)]
     pub(crate) centre: [f64; N],
     /// Rapier's coordinates (m or rad).
     pub(crate) from_centre: [f64; N],
 }
 
 /// The lumps of one chain.
+#[derive(Stateful)]
 pub(crate) struct Lumps {
+    #[state(constant)]
     scenes: Vec<PhysicsWorld>,
+    #[state(fixed)]
     members: Vec<Lump>,
     /// Ticks per second (Hz).
+    #[state(constant)]
     rate: f64,
 }
 
 /// One lump.
+#[derive(Stateful)]
 struct Lump {
     /// Its number in the chain.
+    #[state(constant)]
     body: usize,
+    #[state(constant)]
     scene: usize,
     /// Its axis of the scene: 0, 1, 2.
+    #[state(constant)]
     axis: usize,
+    #[state(constant)]
     handle: RigidBodyHandle,
-    /// Velocity in Rapier (m/s or rad/s).
+    /// Velocity in Rapier (m/s or rad/s): that of the body as the last drift left it, which the next one replaces but for roundings.
     velocity: f64,
 }
 
@@ -128,35 +138,6 @@ impl Lumps {
             lump.velocity = 0.0;
             self.scenes[lump.scene].bodies[lump.handle].set_linvel(Vector::ZERO, false);
         }
-    }
-}
-
-/// Rapier's velocities: those of the bodies as the last drift left them, which the next one replaces but for roundings.
-impl Stateful for Lumps {
-    fn save(&self, to: &mut dyn Writer) {
-        for lump in &self.members {
-            to.number(lump.velocity);
-        }
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        self.members.iter_mut().try_for_each(|lump| lump.velocity.restore(from))
-    }
-}
-
-/// Centres are whole, and counts therefore.
-impl<const N: usize> Stateful for Positions<N> {
-    fn save(&self, to: &mut dyn Writer) {
-        let Self { centre, from_centre } = self;
-        for centre in centre {
-            to.word(centre.to_bits());
-        }
-        from_centre.save(to);
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
-        self.centre.restore(from)?;
-        self.from_centre.restore(from)
     }
 }
 

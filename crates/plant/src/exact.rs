@@ -277,17 +277,8 @@ impl<const W: usize> ExactChain<W> {
 }
 
 impl<const W: usize> Mechanics for ExactChain<W> {
-    fn saves(&self) -> bool {
-        true
-    }
-
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Stateful::save(self, to);
-        Ok(())
-    }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Ok(Stateful::restore(self, from)?)
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
 
     fn bodies(&self) -> &[BodyState] {

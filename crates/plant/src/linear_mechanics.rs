@@ -13,7 +13,7 @@
 use crate::mechanics::{Actuation, BodyState, Input, Mechanics, MechanicsError};
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
-use servobench_base::state::{Form, Part, Reader, Writer, words};
+use servobench_base::state::{Damaged, Form, Part, Reader, Stateful, Writer, words};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
@@ -355,11 +355,18 @@ impl Mechanics for Running {
         Ok(())
     }
 
-    fn saves(&self) -> bool {
-        true
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
 
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+    fn restored(&mut self) -> Result<(), MechanicsError> {
+        self.publish();
+        Ok(())
+    }
+}
+
+impl Stateful for Running {
+    fn save(&self, to: &mut dyn Writer) {
         for (index, number) in self.state[..self.of.step.len()].iter().enumerate() {
             let name = match index {
                 0 => "position",
@@ -370,14 +377,9 @@ impl Mechanics for Running {
             to.number(*number);
             to.leave();
         }
-        Ok(())
     }
 
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        for number in &mut self.state[..self.of.step.len()] {
-            *number = from.number()?;
-        }
-        self.publish();
-        Ok(())
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged> {
+        self.state[..self.of.step.len()].iter_mut().try_for_each(|number| number.restore(from))
     }
 }

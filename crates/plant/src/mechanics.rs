@@ -134,25 +134,40 @@ pub trait Mechanics: Send {
     /// [`MechanicsError::Diverged`] or [`MechanicsError::Native`]; the mechanics must not be used afterwards.
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError>;
 
-    /// True where [`save`](Self::save) and [`restore`](Self::restore) can do it.
-    fn saves(&self) -> bool {
-        false
+    /// The state at the present tick, [`Identity`](crate::Identity) first; `None` where it cannot be saved.
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        None
     }
 
-    /// Writes the state at the present tick, [`Identity`](crate::Identity) first.
+    /// Brings what follows from the state to it, after it was restored.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] where it cannot.
+    fn restored(&mut self) -> Result<(), MechanicsError> {
+        Ok(())
+    }
+
+    /// True where [`save`](Self::save) and [`restore`](Self::restore) can do it.
+    fn saves(&mut self) -> bool {
+        self.state().is_some()
+    }
+
+    /// Writes the state at the present tick.
     ///
     /// # Errors
     /// [`MechanicsError`], also where the engine cannot.
-    fn save(&mut self, _: &mut dyn Writer) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NotSaved)
+    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
+        self.state().ok_or(MechanicsError::NotSaved)?.save(to);
+        Ok(())
     }
 
     /// Takes the state that [`save`](Self::save) of mechanics of the same setup has written.
     ///
     /// # Errors
     /// [`MechanicsError`], also of numbers that are not a state of them; they must not be used then but to restore another.
-    fn restore(&mut self, _: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        Err(MechanicsError::NotSaved)
+    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
+        self.state().ok_or(MechanicsError::NotSaved)?.restore(from)?;
+        self.restored()
     }
 
     /// Frees what it holds of somebody else's, after which only its log is taken. What goes wrong with that is in its log.

@@ -20,7 +20,7 @@ pub fn derive_state(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
 enum Mark {
     /// Part of the state.
     None,
-    /// A parameter: neither saved nor restored.
+    /// A parameter, or computed anew: neither saved nor restored.
     Constant,
     /// Computed from the rest of the state.
     Derived,
@@ -34,10 +34,10 @@ fn mark(attributes: &[Attribute]) -> Result<Mark, Error> {
         let words = Punctuated::<Ident, Token![,]>::parse_terminated;
         for word in words.parse2(attribute.meta.require_list()?.tokens.clone())? {
             let read = match word.to_string().as_str() {
-                "constant" => Mark::Constant,
+                "constant" | "recomputed" => Mark::Constant,
                 "derived" => Mark::Derived,
                 "fixed" => Mark::Fixed,
-                _ => return Err(Error::new(word.span(), "not a mark of a state: use constant, derived or fixed")),
+                _ => return Err(Error::new(word.span(), "not a mark of a state: use constant, derived, recomputed or fixed")),
             };
             if mark != Mark::None {
                 return Err(Error::new(word.span(), "a field has one mark"));

@@ -48,12 +48,15 @@ pub(super) struct AxisBlock {
     takes: Vec<LoopSignal>,
     /// What others are given behind [`OWN`].
     gives: Selection,
+    /// Whether it can go back.
+    saves: bool,
     saved: Option<(Tick, Saved)>,
 }
 
 impl AxisBlock {
-    pub(super) const fn new(machine: Machine, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
-        Self { machine, ticks, takes, gives, saved: None }
+    pub(super) fn new(mut machine: Machine, ticks: u64, takes: Vec<LoopSignal>, gives: Selection) -> Self {
+        let saves = machine.axis.closed_loop.mechanics.saves();
+        Self { machine, ticks, takes, gives, saves, saved: None }
     }
 
     /// What acts over a tick that begins `since` a step's start (s).
@@ -128,10 +131,6 @@ impl AxisBlock {
         self.machine.go_back(*tick);
         Ok(())
     }
-
-    fn saves_state(&self) -> bool {
-        self.machine.axis.closed_loop.mechanics.saves()
-    }
 }
 
 impl Block for Part {
@@ -139,7 +138,7 @@ impl Block for Part {
 
     fn saves_state(&self) -> bool {
         match self {
-            Self::Axis(axis) => axis.saves_state(),
+            Self::Axis(axis) => axis.saves,
             Self::Fmu(fmu) => fmu.slave.capabilities().saves_state,
         }
     }
