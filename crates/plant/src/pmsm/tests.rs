@@ -1,5 +1,8 @@
+pub(super) mod runs;
+
 use super::*;
 use proptest::prelude::*;
+use runs::runge_kutta;
 use servobench_base::ElectricalAngle;
 use std::f64::consts::PI;
 
@@ -79,8 +82,7 @@ fn start(p: &Params, omega_e: f64) -> (State, Input) {
 
 /// Oracle: the equations in the stator frame's own words by Runge and Kutta's method of order 4, with the means as
 /// further states: current at the end; means of torque, copper and electrical power.
-fn runge_kutta(p: &Params, x: &State, u: &Input, h: f64, steps: u32) -> [f64; 5] {
-    let step = h / f64::from(steps);
+fn by_runge_kutta(p: &Params, x: &State, u: &Input, h: f64, steps: u32) -> [f64; 5] {
     let slope = |t: f64, y: [f64; 5]| {
         let (i, v) = (Dq { d: y[0], q: y[1] }, u.voltage.to_dq(u.rotor.ahead(u.omega_e * t)));
         let needed = p.steady_voltage(i, u.omega_e);
@@ -92,17 +94,7 @@ fn runge_kutta(p: &Params, x: &State, u: &Input, h: f64, steps: u32) -> [f64; 5]
             1.5 * (v.d * i.d + v.q * i.q) / h,
         ]
     };
-    let mut y = [x.current.d, x.current.q, 0.0, 0.0, 0.0];
-    for k in 0..steps {
-        let t = f64::from(k) * step;
-        let ahead = |by: f64, k: [f64; 5]| core::array::from_fn(|n| y[n] + by * k[n]);
-        let k1 = slope(t, y);
-        let k2 = slope(t + step / 2.0, ahead(step / 2.0, k1));
-        let k3 = slope(t + step / 2.0, ahead(step / 2.0, k2));
-        let k4 = slope(t + step, ahead(step, k3));
-        y = core::array::from_fn(|n| y[n] + step / 6.0 * (k1[n] + 2.0 * (k2[n] + k3[n]) + k4[n]));
-    }
-    y
+    runge_kutta([x.current.d, x.current.q, 0.0, 0.0, 0.0], h, steps, slope)
 }
 
 fn found(x: &State, output: &Output) -> [f64; 5] {
@@ -124,7 +116,7 @@ fn a_tick_at_constant_speed_is_exact() {
         for turn in TURNS {
             let (before, u) = start(&p, turn / h);
             // What changes in a step of the oracle is below 0.005, of which it leaves out (0.005)⁴/120.
-            let oracle = runge_kutta(&p, &before, &u, h, 16_384);
+            let oracle = by_runge_kutta(&p, &before, &u, h, 16_384);
             let (mut x, mut y) = (before, before);
             let ours = stepped(&ticks, &mut x, &u);
             let others = step_with_power(&p, &mut y, u, h);

@@ -1,5 +1,6 @@
 use super::super::flux_map::tests::published;
-use super::super::{Power, Saturation, step_with_power};
+use super::super::tests::runs::{Equations, NAMES, Run, assert_second_order_under_acceleration, assert_solved_exactly};
+use super::super::{Power, Saturation};
 use super::*;
 use crate::pmsm::{Input, State};
 use proptest::prelude::*;
@@ -26,83 +27,6 @@ fn plain<'a>(params: &'a Params, map: &'a FluxMap) -> Saturated<'a> {
     Saturated { params, map, magnets: params.flux_linkage, harmonics: &[], phases: &EQUAL, series: 0.0 }
 }
 
-/// A run at constant speed and voltage.
-#[derive(Clone, Copy)]
-struct Run {
-    voltage: AlphaBeta,
-    begin: Dq,
-    omega: f64,
-    end: f64,
-}
-
-/// Current at the end, mean torque, copper loss and electrical power of a run from ticks of `end`/`n`.
-fn run(motor: &Saturated<'_>, of: &Run, n: u32) -> [f64; 5] {
-    let (h, mut x) = (of.end / f64::from(n), State { current: of.begin });
-    let mut means = [0.0; 3];
-    for k in 0..n {
-        let rotor = ElectricalAngle(0.7 + of.omega * h * f64::from(k)).rotation();
-        let output = motor.step(&mut x, &Input { voltage: of.voltage, rotor, omega_e: of.omega }, h);
-        for (mean, one) in means.iter_mut().zip([output.torque, output.power.copper, output.power.electrical]) {
-            *mean += one / f64::from(n);
-        }
-    }
-    [x.current.d, x.current.q, means[0], means[1], means[2]]
-}
-
-/// Oracle: the flux linkages in the stator frame with three phases one by one, by Runge and Kutta's method of order 4; currents by Newton's
-/// method at every stage; the torque is what the energy leaves.
-fn runge_kutta(motor: &Saturated<'_>, factors: [f64; 3], of: &Run, steps: u32) -> [f64; 5] {
-    let p = motor.params;
-    let own = |theta: f64| {
-        let sum = |of: fn(&FluxHarmonic, f64) -> f64| -> f64 {
-            motor.harmonics.iter().map(|one| of(one, f64::from(one.order) * theta + one.phase)).sum()
-        };
-        let d = p.flux_linkage * (1.0 + sum(|one, x| one.d * x.cos())) - motor.magnets;
-        Dq { d, q: p.flux_linkage * sum(|one, x| one.q * x.sin()) }
-    };
-    let near = core::cell::Cell::new(of.begin);
-    let current = |t: f64, flux: [f64; 2]| {
-        let theta = 0.7 + of.omega * t;
-        let own = own(theta);
-        let linked = AlphaBeta { alpha: flux[0], beta: flux[1] }.to_dq(ElectricalAngle(theta).rotation());
-        let i = motor.map.current(Dq { d: linked.d - own.d, q: linked.q - own.q }, near.get()).unwrap();
-        near.set(i);
-        i
-    };
-    let slope = |t: f64, y: [f64; 4]| {
-        let i = current(t, [y[0], y[1]]).to_alpha_beta(ElectricalAngle(0.7 + of.omega * t).rotation());
-        let half = 3.0_f64.sqrt() / 2.0 * i.beta;
-        let phases = [i.alpha, -i.alpha / 2.0 + half, -i.alpha / 2.0 - half];
-        let drops: [f64; 3] = core::array::from_fn(|k| p.resistance * factors[k] * phases[k]);
-        let star = (drops[0] + drops[1] + drops[2]) / 3.0;
-        let copper: f64 = drops.iter().zip(phases).map(|(u, i)| u * i).sum();
-        [
-            of.voltage.alpha - (drops[0] - star),
-            of.voltage.beta - (drops[1] - drops[2]) / 3.0_f64.sqrt(),
-            copper / of.end,
-            1.5 * (of.voltage.alpha * i.alpha + of.voltage.beta * i.beta) / of.end,
-        ]
-    };
-    let (begin, own) = (motor.map.flux(of.begin), own(0.7));
-    let linked = Dq { d: begin.d + own.d, q: begin.q + own.q }.to_alpha_beta(ElectricalAngle(0.7).rotation());
-    let mut y = [linked.alpha, linked.beta, 0.0, 0.0];
-    let h = of.end / f64::from(steps);
-    for k in 0..steps {
-        let t = f64::from(k) * h;
-        let ahead = |by: f64, k: [f64; 4]| core::array::from_fn(|n| y[n] + by * k[n]);
-        let k1 = slope(t, y);
-        let k2 = slope(t + h / 2.0, ahead(h / 2.0, k1));
-        let k3 = slope(t + h / 2.0, ahead(h / 2.0, k2));
-        let k4 = slope(t + h, ahead(h, k3));
-        y = core::array::from_fn(|n| y[n] + h / 6.0 * (k1[n] + 2.0 * (k2[n] + k3[n]) + k4[n]));
-    }
-    let i = current(of.end, [y[0], y[1]]);
-    let stored = motor.map.stored(of.begin, i) / of.end;
-    [i.d, i.q, (y[3] - y[2] - stored) * p.electrical_ratio / of.omega, y[2], y[3]]
-}
-
-const NAMES: [&str; 5] = ["i_d", "i_q", "torque", "copper", "electrical"];
-
 /// A curve, alone and with harmonics and unequal phases and warm magnets: the errors fall by 16 when the tick is halved.
 #[test]
 fn a_tick_is_of_fourth_order_at_constant_speed() {
@@ -113,18 +37,10 @@ fn a_tick_is_of_fourth_order_at_constant_speed() {
     let warm = Params { flux_linkage: 0.93 * SERVO.flux_linkage, ..SERVO };
     let all =
         Saturated { params: &warm, map: &map, magnets: 0.0606, harmonics: &HARMONICS, phases: &phases, series: 0.0 };
-    for (motor, factors) in [(plain(&SERVO, &map), [1.0; 3]), (all, FACTORS)] {
-        let oracle = runge_kutta(&motor, factors, &of, 40_000);
-        let [coarse, fine] = [128, 256].map(|n| run(&motor, &of, n));
-        for (at, name) in NAMES.into_iter().enumerate() {
-            let [coarse, fine] = [coarse, fine].map(|found| (found[at] - oracle[at]).abs());
-            let order = (coarse / fine).log2();
-            println!("{name}: {fine:e} of {}, order {order}", oracle[at]);
-            assert!(fine < 1e-6 * oracle[at].abs().max(1.0), "{name}: off by {fine}");
-            // Near 4; a value whose error happens to change its sign may fall faster.
-            assert!(order > 3.7, "{name}: observed order {order}, {coarse} {fine}");
-        }
-    }
+    let equations = |params| Equations { params, map: &map, magnets: 0.0606, harmonics: &[], factors: [1.0; 3] };
+    equations(&SERVO).assert_fourth_order(&plain(&SERVO, &map), &of, 1e-6);
+    let real = Equations { harmonics: &HARMONICS, factors: FACTORS, ..equations(&warm) };
+    real.assert_fourth_order(&all, &of, 1e-6);
 }
 
 /// The published motor by its table, over whose lines the inductances jump: of second order at least, and what counts, small.
@@ -138,10 +54,12 @@ fn a_table_is_followed_over_its_lines() {
         end: 4e-3,
     };
     let motor = plain(&RELUCTANCE, &map);
-    let oracle = runge_kutta(&motor, [1.0; 3], &of, 80_000);
+    let magnets = RELUCTANCE.flux_linkage;
+    let equations = Equations { params: &RELUCTANCE, map: &map, magnets, harmonics: &[], factors: [1.0; 3] };
+    let oracle = equations.solve(&of, 80_000);
     // 4, 8 and 16 kHz.
     let errors = [16, 32, 64].map(|n| {
-        let found = run(&motor, &of, n);
+        let found = of.in_ticks(&motor, n);
         let off: [f64; 5] = core::array::from_fn(|at| (found[at] - oracle[at]).abs());
         off
     });
@@ -172,20 +90,7 @@ fn without_saturation_it_is_the_motor_that_is_solved_exactly() {
         for (map, turn) in
             [(curve(&p, 20.0, 1.0), 0.02), (linear(&p), -0.14), (linear(&p), 0.4), (linear(&p), 6.1), (linear(&p), 0.0)]
         {
-            let rotor = ElectricalAngle(0.7).rotation();
-            let omega_e = turn / h;
-            let voltage = Dq { d: -7.0, q: 11.0 + omega_e * p.flux_linkage }.to_alpha_beta(rotor);
-            let input = Input { voltage, rotor, omega_e };
-            let (mut x, mut y) = (State { current: Dq { d: -1.3, q: 2.4 } }, State { current: Dq { d: -1.3, q: 2.4 } });
-            let ours = plain(&p, &map).step(&mut x, &input, h);
-            let exact = step_with_power(&p, &mut y, input, h);
-            let through = 1.0 / (p.resistance + p.inductance.d / h);
-            let scale = 3.0 + (20.0 + (omega_e * p.flux_linkage).abs()) * through;
-            let off = (x.current.d - y.current.d).abs().max((x.current.q - y.current.q).abs());
-            // (1/4)⁴/720 of a transient for each part of the tick, of which there are 24 at most that it lives through.
-            assert!(off < 2e-5 * scale, "{p:?} {turn}: off by {off} of {scale}");
-            let most = 1.5 * p.electrical_ratio * (p.flux_linkage + (p.inductance.q - p.inductance.d) * scale) * scale;
-            assert!((ours.torque - exact.torque).abs() < 2e-5 * most, "{turn}: {} {}", ours.torque, exact.torque);
+            assert_solved_exactly(&plain(&p, &map), &p, h, turn);
         }
     }
 }
@@ -289,28 +194,9 @@ fn what_is_in_series_adds_to_the_resistance() {
     assert!((first.copper / second.copper - 1.615 / 1.865).abs() < 1e-12);
 }
 
-/// Under constant acceleration, with the mean speed of each tick, against a finer tick.
 #[test]
 fn a_tick_in_which_the_speed_changes_is_of_second_order() {
-    let map = curve(&SERVO, 20.0, 0.7);
-    let (omega, acceleration) = (300.0, 4e5);
-    let end = |n: u32| {
-        let (h, mut x) = (2e-3 / f64::from(n), State::default());
-        for k in 0..n {
-            let t = f64::from(k) * h;
-            let rotor = ElectricalAngle(omega * t + acceleration * t * t / 2.0).rotation();
-            let omega_e = omega + acceleration * (t + h / 2.0);
-            plain(&SERVO, &map).step(
-                &mut x,
-                &Input { voltage: AlphaBeta { alpha: -60.0, beta: 41.0 }, rotor, omega_e },
-                h,
-            );
-        }
-        x.current.q
-    };
-    let exact = end(4096);
-    let order = ((end(32) - exact) / (end(64) - exact)).log2();
-    assert!((order - 2.0).abs() < 0.15, "observed order {order}");
+    assert_second_order_under_acceleration(&plain(&SERVO, &curve(&SERVO, 20.0, 0.7)));
 }
 
 /// No time is nothing; nothing on a motor at rest stays nothing; a speed, a voltage or a current that is no number gives none and comes to

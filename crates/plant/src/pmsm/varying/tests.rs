@@ -1,4 +1,5 @@
-use super::super::step_with_power;
+use super::super::tests::runs::{Equations, Run, assert_second_order_under_acceleration, assert_solved_exactly};
+use super::super::{FluxMap, Saturation};
 use super::*;
 use crate::pmsm::{Input, Output, Power, State};
 use proptest::prelude::*;
@@ -18,98 +19,21 @@ fn varying<'a>(params: &'a Params, harmonics: &'a [FluxHarmonic], phases: &'a Ph
     Varying { params, harmonics, phases, series: 0.0 }
 }
 
-/// Current at the end, mean torque, copper loss and electrical power of a run at constant speed, from ticks of `end`/`n`.
-fn run(motor: &Varying<'_>, omega_e: f64, end: f64, n: u32) -> [f64; 5] {
-    let (h, mut x) = (end / f64::from(n), State { current: Dq { d: -1.3, q: 2.4 } });
-    let mut means = [0.0; 3];
-    for k in 0..n {
-        let rotor = ElectricalAngle(0.7 + omega_e * h * f64::from(k)).rotation();
-        let output = motor.step(&mut x, &Input { voltage: VOLTAGE, rotor, omega_e }, h);
-        for (mean, one) in means.iter_mut().zip([output.torque, output.power.copper, output.power.electrical]) {
-            *mean += one / f64::from(n);
-        }
-    }
-    [x.current.d, x.current.q, means[0], means[1], means[2]]
-}
-
-const VOLTAGE: AlphaBeta = AlphaBeta { alpha: -60.0, beta: 41.0 };
-
-/// Oracle: the flux linkages in the stator frame, with three phases one by one, by Runge and Kutta's method of order 4; the
-/// torque is what the energy leaves: electrical less copper less stored, over the speed.
-fn runge_kutta(
-    p: &Params,
-    harmonics: &[FluxHarmonic],
-    factors: [f64; 3],
-    omega_e: f64,
-    end: f64,
-    steps: u32,
-) -> [f64; 5] {
-    let magnets = |theta: f64| {
-        let sum = |of: fn(&FluxHarmonic, f64) -> f64| -> f64 {
-            harmonics.iter().map(|one| of(one, f64::from(one.order) * theta + one.phase)).sum()
-        };
-        let d = p.flux_linkage * (1.0 + sum(|one, x| one.d * x.cos()));
-        Dq { d, q: p.flux_linkage * sum(|one, x| one.q * x.sin()) }
-    };
-    let current = |t: f64, flux: [f64; 2]| {
-        let theta = 0.7 + omega_e * t;
-        let own = magnets(theta);
-        let linked = AlphaBeta { alpha: flux[0], beta: flux[1] }.to_dq(ElectricalAngle(theta).rotation());
-        Dq { d: (linked.d - own.d) / p.inductance.d, q: (linked.q - own.q) / p.inductance.q }
-    };
-    let slope = |t: f64, y: [f64; 4]| {
-        let i = current(t, [y[0], y[1]]).to_alpha_beta(ElectricalAngle(0.7 + omega_e * t).rotation());
-        let half = 3.0_f64.sqrt() / 2.0 * i.beta;
-        let phases = [i.alpha, -i.alpha / 2.0 + half, -i.alpha / 2.0 - half];
-        let drops: [f64; 3] = core::array::from_fn(|k| p.resistance * factors[k] * phases[k]);
-        let star = (drops[0] + drops[1] + drops[2]) / 3.0;
-        let copper: f64 = drops.iter().zip(phases).map(|(u, i)| u * i).sum();
-        [
-            VOLTAGE.alpha - (drops[0] - star),
-            VOLTAGE.beta - (drops[1] - drops[2]) / 3.0_f64.sqrt(),
-            copper / end,
-            1.5 * (VOLTAGE.alpha * i.alpha + VOLTAGE.beta * i.beta) / end,
-        ]
-    };
-    let begin = Dq { d: -1.3, q: 2.4 };
-    let own = magnets(0.7);
-    let linked = Dq { d: p.inductance.d * begin.d + own.d, q: p.inductance.q * begin.q + own.q }
-        .to_alpha_beta(ElectricalAngle(0.7).rotation());
-    let mut y = [linked.alpha, linked.beta, 0.0, 0.0];
-    let h = end / f64::from(steps);
-    for k in 0..steps {
-        let t = f64::from(k) * h;
-        let ahead = |by: f64, k: [f64; 4]| core::array::from_fn(|n| y[n] + by * k[n]);
-        let k1 = slope(t, y);
-        let k2 = slope(t + h / 2.0, ahead(h / 2.0, k1));
-        let k3 = slope(t + h / 2.0, ahead(h / 2.0, k2));
-        let k4 = slope(t + h, ahead(h, k3));
-        y = core::array::from_fn(|n| y[n] + h / 6.0 * (k1[n] + 2.0 * (k2[n] + k3[n]) + k4[n]));
-    }
-    let i = current(end, [y[0], y[1]]);
-    let stored = (p.stored_energy(i) - p.stored_energy(begin)) / end;
-    [i.d, i.q, (y[3] - y[2] - stored) * p.electrical_ratio / omega_e, y[2], y[3]]
-}
-
 /// Harmonics alone, phases alone, both: the errors of currents, torque, copper and electrical power fall by 16 when the tick is
 /// halved.
 #[test]
 fn a_tick_is_of_fourth_order_at_constant_speed() {
-    let (omega_e, end) = (431.0, 9e-3);
+    // Constant inductances are a curve that is straight.
+    let straight = Saturation { current: 20.0, share: 1.0, residual: 0.1 };
+    let map = FluxMap::curve(&straight, MOTOR.flux_linkage, MOTOR.inductance).unwrap();
+    // Both in one part of a tick: 12·431·9e-3/128 = 0.36 rad.
+    let (voltage, begin) = (AlphaBeta { alpha: -60.0, beta: 41.0 }, Dq { d: -1.3, q: 2.4 });
+    let of = Run { voltage, begin, omega: 431.0, end: 9e-3 };
     let cases: [(&[FluxHarmonic], [f64; 3]); 3] = [(&HARMONICS, [1.0; 3]), (&[], FACTORS), (&HARMONICS, FACTORS)];
     for (harmonics, factors) in cases {
-        let oracle = runge_kutta(&MOTOR, harmonics, factors, omega_e, end, 40_000);
+        let equations = Equations { params: &MOTOR, map: &map, magnets: MOTOR.flux_linkage, harmonics, factors };
         let phases = PhaseMatrix::of(factors);
-        let motor = varying(&MOTOR, harmonics, &phases);
-        // Both in one part of a tick: 12·431·9e-3/128 = 0.36 rad.
-        let [coarse, fine] = [128, 256].map(|n| run(&motor, omega_e, end, n));
-        for (at, name) in ["i_d", "i_q", "torque", "copper", "electrical"].into_iter().enumerate() {
-            let [coarse, fine] = [coarse, fine].map(|found| (found[at] - oracle[at]).abs());
-            let order = (coarse / fine).log2();
-            assert!(fine < 1e-7 * oracle[at].abs().max(1.0), "{name}: off by {fine}");
-            // Near 4; a value whose error happens to change its sign may fall faster.
-            assert!(order > 3.8, "{name}: observed order {order}, {coarse} {fine}");
-        }
+        equations.assert_fourth_order(&varying(&MOTOR, harmonics, &phases), &of, 1e-7);
     }
 }
 
@@ -121,21 +45,7 @@ fn without_harmonics_it_is_the_motor_that_is_solved_exactly() {
     let stiff = Params { inductance: Dq { d: 1e-6, q: 2e-6 }, ..MOTOR };
     for (p, h) in [(MOTOR, 1.0 / 16e3), (round, 1.0 / 8e3), (stiff, 20e-6)] {
         for turn in [0.0, 0.02, -0.14, 0.4, 6.1, -9.0] {
-            let rotor = ElectricalAngle(0.7).rotation();
-            let omega_e = turn / h;
-            let voltage = Dq { d: -7.0, q: 11.0 + omega_e * p.flux_linkage }.to_alpha_beta(rotor);
-            let input = Input { voltage, rotor, omega_e };
-            let (mut x, mut y) = (State { current: Dq { d: -1.3, q: 2.4 } }, State { current: Dq { d: -1.3, q: 2.4 } });
-            let ours = varying(&p, &[], &PhaseMatrix::EQUAL).step(&mut x, &input, h);
-            let exact = step_with_power(&p, &mut y, input, h);
-            let through = 1.0 / (p.resistance + p.inductance.d / h);
-            let scale = 3.0 + (20.0 + (omega_e * p.flux_linkage).abs()) * through;
-            let off = (x.current.d - y.current.d).abs().max((x.current.q - y.current.q).abs());
-            // (1/4)⁴/720 of a transient for each part of the tick, of which there are 24 at most that it lives through.
-            assert!(off < 2e-5 * scale, "{p:?} {turn}: off by {off} of {scale}");
-            let most = 1.5 * p.electrical_ratio * (p.flux_linkage + (p.inductance.q - p.inductance.d) * scale) * scale;
-            // A product of two currents that each change by a quarter in a part.
-            assert!((ours.torque - exact.torque).abs() < 2e-5 * most, "{turn}: {} {}", ours.torque, exact.torque);
+            assert_solved_exactly(&varying(&p, &[], &PhaseMatrix::EQUAL), &p, h, turn);
         }
     }
 }
@@ -208,23 +118,10 @@ fn unequal_phases_make_the_negative_sequence_of_the_phasors() {
     assert!(negative_conjugate[0].hypot(negative_conjugate[1]) > 0.02 * size, "there is something to test");
 }
 
-/// Under constant acceleration, with the mean speed of each tick, against a finer tick: second order, as without harmonics.
 #[test]
 fn a_tick_in_which_the_speed_changes_is_of_second_order() {
-    let (omega, acceleration) = (300.0, 4e5);
-    let end = |n: u32| {
-        let (h, mut x) = (2e-3 / f64::from(n), State::default());
-        for k in 0..n {
-            let t = f64::from(k) * h;
-            let rotor = ElectricalAngle(omega * t + acceleration * t * t / 2.0).rotation();
-            let input = Input { voltage: VOLTAGE, rotor, omega_e: omega + acceleration * (t + h / 2.0) };
-            varying(&MOTOR, &HARMONICS, &PhaseMatrix::of(FACTORS)).step(&mut x, &input, h);
-        }
-        x.current.q
-    };
-    let exact = end(4096);
-    let order = ((end(32) - exact) / (end(64) - exact)).log2();
-    assert!((order - 2.0).abs() < 0.15, "observed order {order}");
+    let phases = PhaseMatrix::of(FACTORS);
+    assert_second_order_under_acceleration(&varying(&MOTOR, &HARMONICS, &phases));
 }
 
 /// Nothing on a motor at rest is exact zeros; a speed that is no number gives none.
