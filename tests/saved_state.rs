@@ -204,3 +204,24 @@ fn the_runs_of_these_tests_stick_and_slip() {
         assert!(moves && (at_rest || !is_dry) && (turns || !is_crank), "{} {:?}", engine.name(), setup.model);
     });
 }
+
+/// Again, in turns with others a tick behind, and on another thread.
+#[test]
+fn the_same_inputs_give_the_same_bits() {
+    each(|engine, setup, most| {
+        let one = |mechanics: &mut dyn Mechanics, k: u32| run(mechanics, setup.drive, most, k..k + 1);
+        let [mut alone, mut first, mut second] = [(); 3].map(|()| build(engine, setup));
+        let expected: Vec<_> = (0..5_000).map(|k| one(&mut *alone, k)).collect();
+        for k in 0..5_000 {
+            assert!(one(&mut *first, k) == expected[k as usize], "{} at tick {k}", engine.name());
+            if let Some(before) = k.checked_sub(1) {
+                assert!(one(&mut *second, before) == expected[before as usize], "{} at tick {k}", engine.name());
+            }
+        }
+        let elsewhere = std::thread::scope(|scope| {
+            let run = || run(&mut *build(engine, setup), setup.drive, most, 0..5_000);
+            scope.spawn(run).join().unwrap()
+        });
+        assert!(elsewhere == expected.concat(), "{} on another thread", engine.name());
+    });
+}

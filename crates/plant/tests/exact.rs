@@ -1,10 +1,8 @@
-//! The engine `exact` against closed forms.
-use servobench_base::Coordinate;
-use servobench_base::Setpoint;
-use servobench_base::state::{Reader, Writer};
+//! The engine `exact` against closed forms to the rounding. What every engine promises: `tests/contract.rs`.
+use servobench_base::{Coordinate, Setpoint, Stateful};
 use servobench_plant::{
     Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, LinearMechanics, Link,
-    Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Model, NotLinear,
+    Mechanics, MechanicsError, MechanicsSetup, Model, NotLinear,
 };
 
 const H: f64 = 1.0 / 16_000.0;
@@ -108,50 +106,6 @@ fn a_prescribed_base_is_integrated_exactly() {
     }
 }
 
-#[test]
-fn a_stuck_body_keeps_its_position_to_the_bit_while_its_neighbour_swings() {
-    let dry = DryFriction { coulomb: 50.0, breakaway: 80.0, stribeck_velocity: 1e-3 };
-    let chain = Chain::new(
-        vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body("motor", 20.0) }, body("load", 10.0)],
-        vec![Link { stiffness: 6e5, damping: 0.0 }],
-    )
-    .unwrap();
-    // 1e-4 m of stretch is 60 N: below breakaway.
-    let mut axis = build(
-        chain,
-        Drive::Effort,
-        vec![BodyState { position: 0.3, velocity: 0.0 }, BodyState { position: 0.3 + 1e-4, velocity: 0.0 }],
-    );
-    let omega = (6e5_f64 / 10.0).sqrt();
-    for k in 1..=100_000 {
-        axis.advance(&effort(0.0)).unwrap();
-        let [motor, load] = axis.bodies() else { panic!("two bodies") };
-        assert_eq!(motor.position.to_bits(), 0.3_f64.to_bits(), "tick {k}");
-        let exact = 0.3 + 1e-4 * (omega * f64::from(k) * H).cos();
-        assert!((load.position - exact).abs() < 1e-12, "tick {k}: {} {exact}", load.position);
-    }
-}
-
-/// Oracle: a body thrown with v0 against Coulomb friction stops after v0²·m/(2·f) and stays there.
-#[test]
-fn a_sliding_body_stops_where_coulomb_says() {
-    let dry = DryFriction { coulomb: 20.0, breakaway: 25.0, stribeck_velocity: 0.0 };
-    let chain =
-        Chain::new(vec![Body { friction: Friction { dry, ..Friction::NONE }, ..body("motor", 4.0) }], vec![]).unwrap();
-    let mut axis = build(chain, Drive::Effort, vec![BodyState { position: 0.0, velocity: 0.5 }]);
-    for _ in 0..3_200 {
-        axis.advance(&effort(0.0)).unwrap();
-    }
-    let stop = axis.bodies()[0];
-    assert_eq!(stop.velocity.to_bits(), 0.0_f64.to_bits());
-    // Found to first order in the step: at most a·h² = 2e-8 m beyond.
-    assert!((stop.position - 0.5_f64.powi(2) * 4.0 / 40.0).abs() < 2e-8, "{}", stop.position);
-    axis.advance(&effort(24.9)).unwrap();
-    assert_eq!(axis.bodies()[0], stop, "below breakaway nothing moves");
-    axis.advance(&effort(25.1)).unwrap();
-    assert!(axis.bodies()[0].velocity > 0.0, "above it does");
-}
-
 /// Oracle: the sum of the inertias, and whether a speed stays; between the sticking and the sliding of dry friction is no straight line.
 #[test]
 fn linear_mechanics_are_those_of_the_bodies() {
@@ -172,7 +126,8 @@ fn linear_mechanics_are_those_of_the_bodies() {
 }
 
 /// A body with a number beside it that becomes NaN where it is not zero.
-struct Broken(Vec<BodyState>, f64);
+#[derive(Stateful)]
+struct Broken(#[state(fixed)] Vec<BodyState>, f64);
 
 impl Mechanics for Broken {
     fn bodies(&self) -> &[BodyState] {
@@ -187,39 +142,7 @@ impl Mechanics for Broken {
         Ok(())
     }
 
-    fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
-        for number in [self.0[0].position, self.0[0].velocity, self.1] {
-            to.number(number);
-        }
-        Ok(())
+    fn state(&mut self) -> Option<&mut dyn Stateful> {
+        Some(self)
     }
-
-    fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
-        self.0[0] = BodyState { position: from.number()?, velocity: from.number()? };
-        self.1 = from.number()?;
-        Ok(())
-    }
-}
-
-#[test]
-fn an_mjcf_file_is_refused_with_a_way_out() {
-    let model = MjcfModel {
-        xml: "<mujoco/>".into(),
-        path: "axis.xml".into(),
-        motor_joint: "motor".into(),
-        load_joint: "load".into(),
-        actuator: "motor".into(),
-        transmission: 1.0,
-        axis: None,
-        is_smooth: false,
-    };
-    let setup = MechanicsSetup { model: Model::Mjcf(model), drive: Drive::Effort, step: H, initial: vec![] };
-    let error = Exact.build(&setup).err().unwrap();
-    assert!(error.to_string().contains("`mujoco` or `rapier`"), "{error}");
-}
-
-#[test]
-fn an_infinite_effort_ends_the_run() {
-    let mut axis = build(two_mass(0.0), Drive::Effort, vec![]);
-    assert!(matches!(axis.advance(&effort(f64::NAN)), Err(MechanicsError::Diverged { .. })));
 }

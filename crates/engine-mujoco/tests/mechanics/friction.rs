@@ -1,5 +1,5 @@
 //! Sticking and sliding.
-use super::{STEP, body, efforts, motion, mujoco, setup, ticks};
+use super::{STEP, body, efforts, motion, setup, ticks};
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
 use servobench_engine_mujoco::Mujoco;
@@ -10,41 +10,6 @@ const DRY: Friction =
 
 fn slider() -> Body {
     Body { friction: DRY, ..body("load", Coordinate::Linear, 10.0) }
-}
-
-#[test]
-fn below_breakaway_a_body_keeps_its_position_to_the_bit() {
-    let chain = Chain::new(vec![slider()], vec![]).unwrap();
-    let mut mechanics = mujoco(chain, Drive::Effort, STEP, &[(0.123_456_789, 0.0)]);
-    for k in 0..100_000 {
-        mechanics.advance(&efforts(29.9 * (f64::from(k) * 0.01).sin(), 0.0)).unwrap();
-        let state = mechanics.bodies()[0];
-        assert_eq!((state.position.to_bits(), state.velocity.to_bits()), (0.123_456_789_f64.to_bits(), 0));
-    }
-    mechanics.advance(&efforts(30.1, 0.0)).unwrap();
-    assert!(mechanics.bodies()[0].velocity > 0.0, "above breakaway it moves");
-}
-
-/// Oracle: v = v0 − f/m·t and x = v0·t − f/m·t²/2 until it stops, which it does within a tick of m·v0/f. A constant
-/// force is exact in RK4, so only rounding is left.
-#[test]
-fn sliding_slows_down_as_coulomb_says_and_stops() {
-    let chain = Chain::new(vec![Body { friction: Friction::coulomb(20.0), ..slider() }], vec![]).unwrap();
-    let v0 = 0.25;
-    let mut mechanics = mujoco(chain, Drive::Effort, STEP, &[(0.0, v0)]);
-    let stop = 10.0 * v0 / 20.0;
-    for k in 1..=ticks(stop, STEP) + 2 {
-        mechanics.advance(&efforts(0.0, 0.0)).unwrap();
-        let (t, state) = (k as f64 * STEP, mechanics.bodies()[0]);
-        if t < stop - STEP {
-            assert!((state.velocity - (v0 - 2.0 * t)).abs() < 1e-13, "{state:?}");
-            assert!((state.position - (v0 * t - t * t)).abs() < 1e-13, "{state:?}");
-        }
-    }
-    let at_rest = mechanics.bodies()[0];
-    assert_eq!(at_rest.velocity.to_bits(), 0);
-    // Stopped to first order: the last tick can overshoot by f/m·h²/2.
-    assert!((at_rest.position - v0 * v0 / 4.0).abs() < 2.0 * STEP * STEP, "{at_rest:?}");
 }
 
 /// A motor with stiction and a spring to a table with stiction. Nothing closed describes it; the engine `exact` does

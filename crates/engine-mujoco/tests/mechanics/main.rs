@@ -1,10 +1,9 @@
-//! The engine against closed forms, the matrix exponential and the engine `exact`.
+//! The engine against closed forms and the engine `exact`. What every engine promises: `tests/contract.rs`.
 
 mod base;
 mod failures;
 mod friction;
 mod mjcf;
-mod oscillator;
 
 use servobench_base::Coordinate;
 use servobench_engine_mujoco::Mujoco;
@@ -12,7 +11,6 @@ use servobench_plant::{
     Actuation, Body, BodyState, Chain, Drive, Engine as _, Friction, Input, Link, Mechanics, MechanicsSetup, MjcfModel,
     Model, chain_to_mjcf,
 };
-use std::f64::consts::TAU;
 
 /// Tick length of a 16 kHz bench (s).
 const STEP: f64 = 1.0 / 16_000.0;
@@ -33,11 +31,6 @@ fn two_mass() -> Chain {
 /// 84.22 Hz: both masses swing against each other.
 fn free_omega() -> f64 {
     (700.0_f64 * (2.0 / 0.005)).sqrt()
-}
-
-/// 59.55 Hz: the load swings against a held motor.
-fn held_omega() -> f64 {
-    (700.0_f64 / 0.005).sqrt()
 }
 
 fn setup(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> MechanicsSetup {
@@ -78,15 +71,4 @@ fn motion(setpoint: servobench_base::Setpoint) -> Input {
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
 fn ticks(time: f64, step: f64) -> usize {
     (time / step).round() as usize
-}
-
-/// Observed order from the errors at a step and at half of it.
-fn order(error: impl Fn(f64) -> f64, step: f64) -> f64 {
-    (error(step) / error(step / 2.0)).log2()
-}
-
-#[test]
-fn the_reference_frequencies_are_those_of_the_publication() {
-    assert!((free_omega() / TAU - 84.22).abs() < 0.005);
-    assert!((held_omega() / TAU - 59.55).abs() < 0.005);
 }

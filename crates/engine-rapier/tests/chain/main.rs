@@ -1,12 +1,8 @@
-//! Chains in Rapier against closed forms, matrix exponentials and the engine `exact`.
+//! Chains in Rapier against the engine `exact`, and what is Rapier's own. Closed forms: `tests/contract.rs`.
 mod agreement;
 mod allocation;
-mod determinism;
-mod friction;
-mod order;
 mod refusals;
 mod rotation;
-mod two_mass;
 
 use servobench_base::Coordinate;
 use servobench_base::Setpoint;
