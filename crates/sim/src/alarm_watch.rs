@@ -55,14 +55,7 @@ mod tests {
 
     #[test]
     fn an_alarm_is_an_event_from_its_beginning_to_its_end() {
-        let about = About {
-            scenario: "alarms".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec!["motor".into()],
-            overrides: vec![],
-        };
-        let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
+        let mut recorder = Recorder::new(About::default(), Rate::new(1).unwrap(), Vec::new(), 0);
         let mut watch = AlarmWatch::default();
         for (t, collapsed_link, motor_encoder) in
             [(0.0, false, false), (1.0, true, false), (2.0, true, true), (3.0, false, true)]

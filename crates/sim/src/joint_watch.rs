@@ -53,14 +53,7 @@ mod tests {
 
     #[test]
     fn an_end_that_binds_is_an_event_of_the_mechanics() {
-        let about = About {
-            scenario: "wall".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec!["motor".into()],
-            overrides: vec![],
-        };
-        let mut recorder = Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0);
+        let mut recorder = Recorder::new(About::default(), Rate::new(1).unwrap(), Vec::new(), 0);
         let mut watch = JointWatch::default();
         let limits = |binds: [bool; 2]| {
             ["lower", "upper"].map(str::to_owned).into_iter().zip(binds).map(|(text, binds)| JointLimit { text, binds })

@@ -136,14 +136,7 @@ mod tests {
     use servobench_trace::About;
 
     fn recorder() -> Recorder {
-        let about = About {
-            scenario: "limits".into(),
-            engine: "none".into(),
-            axis_unit: "m".into(),
-            bodies: vec!["motor".into()],
-            overrides: vec![],
-        };
-        Recorder::new(about, Rate::new(1).unwrap(), Vec::new(), 0)
+        Recorder::new(About::default(), Rate::new(1).unwrap(), Vec::new(), 0)
     }
 
     /// The events of a run in which `binds` says at each tick which limits bind; a tick is a second.

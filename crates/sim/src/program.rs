@@ -106,11 +106,15 @@ impl Program {
 
     /// One without moves.
     pub(crate) fn standing() -> Self {
-        let (index, start, from, next_start) = (0, 0.0, 0.0, f64::INFINITY);
-        let (plan_end, then, reader) = (f64::NEG_INFINITY, RequestKind::Stand, Reader::default());
-        let now = Now { index, start, from, next_start, plan_end, then, reader };
-        let course = Course { moves: Vec::new(), now };
-        Self { course, end: 0.0, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) }
+        Self::of(Vec::new(), 0.0)
+    }
+
+    /// That of `moves`, which ends at `end` (s).
+    fn of(moves: Vec<Planned>, end: f64) -> Self {
+        let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
+        let (plan_end, then) = (f64::NEG_INFINITY, RequestKind::Stand);
+        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, plan_end, then, reader: Reader::default() };
+        Self { course: Course { moves, now }, end, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) }
     }
 
     /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start, and moves that are no table as `points`.
@@ -151,11 +155,7 @@ impl Program {
             }
             check_length(Some(index), end)?;
         }
-        let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
-        let plan_end = f64::NEG_INFINITY;
-        let then = RequestKind::Stand;
-        let now = Now { index: 0, start: 0.0, from: 0.0, next_start, plan_end, then, reader: Reader::default() };
-        Ok(Self { course: Course { moves, now }, end, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) })
+        Ok(Self::of(moves, end))
     }
 
     /// End of the last step (s).

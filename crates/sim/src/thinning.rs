@@ -58,13 +58,7 @@ mod tests {
             values: (0..rows).map(value).collect(),
         };
         Recording {
-            about: About {
-                scenario: "s".into(),
-                engine: "e".into(),
-                axis_unit: "m".into(),
-                bodies: vec!["motor".into()],
-                overrides: vec![],
-            },
+            about: About::default(),
             rate,
             channels: vec![
                 channel("load.position", f64::from),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use servobench_base::{Ending, Rate, Tick};
 
 /// What a recording is of.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct About {
     /// Name of the scenario.
     pub scenario: String,

@@ -99,10 +99,6 @@ impl FmuOpener for Relay {
 }
 
 impl Slave for Relay {
-    fn capabilities(&self) -> Capabilities {
-        Capabilities::default()
-    }
-
     fn feeds_through(&self, _output: usize, _input: usize) -> bool {
         self.feeds_through
     }

@@ -1,7 +1,7 @@
 //! What FMUs say is in the recording at its time, whether they are beside the axis or its mechanics and however the run ends.
 use crate::coupled::{TABLE, bench_beside_fmus};
 use servobench_base::Severity;
-use servobench_fmi::{Capabilities, FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
+use servobench_fmi::{FmuMistake, FmuRequest, LogLine, Slave, SlaveError, StepEnd};
 use servobench_plant::{
     BodyState, Engine, EngineName, Exact, Input, LogMessage, Mechanics, MechanicsError, MechanicsSetup,
 };
@@ -23,10 +23,6 @@ impl Chatty {
 }
 
 impl Slave for Chatty {
-    fn capabilities(&self) -> Capabilities {
-        Capabilities::default()
-    }
-
     fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.say(time, Severity::Info, "step");
         if time > END - 1e-9 {

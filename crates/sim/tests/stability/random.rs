@@ -29,15 +29,6 @@ dc_link = "1e9 V"
 [drive.current]
 rate = "16 kHz"
 bandwidth = "1 kHz"
-[drive.velocity]
-rate = "16 kHz"
-gain = "1 Nm s/rad"
-kind = "p"
-[drive.position]
-rate = "16 kHz"
-gain = "1 1/s"
-[initial]
-load_velocity = "1e-9 rad/s"
 "#;
 const IDEAL: &str = r#"
 [run]
@@ -48,6 +39,10 @@ motion = "rotary"
 motor_side.inertia = "0.005 kg m2"
 [motor]
 kind = "ideal-source"
+"#;
+
+/// Loops of both; gains and rates are drawn.
+const LOOPS: &str = r#"
 [drive.velocity]
 rate = "16 kHz"
 gain = "1 Nm s/rad"
@@ -62,7 +57,7 @@ load_velocity = "1e-9 rad/s"
 /// A loop without friction, limits and quantisation.
 pub(crate) fn random_loop(random: &mut Random) -> Scenario {
     let is_pmsm = random.unit() < 0.6;
-    let mut scenario = scenario(if is_pmsm { PMSM } else { IDEAL });
+    let mut scenario = scenario(&format!("{}{LOOPS}", if is_pmsm { PMSM } else { IDEAL }));
     let base = random.one_of(&[12_000, 16_000, 20_000, 24_000]);
     let current_every = if is_pmsm { random.one_of(&[1, 1, 2]) } else { 1 };
     let velocity_every = current_every * random.one_of(&[1, 2, 4]);
