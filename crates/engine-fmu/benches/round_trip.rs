@@ -3,7 +3,7 @@
 //! `cargo bench -p servobench-engine-fmu`
 
 use servobench_engine_fmu::{HostCommand, Isolated, Wires, serve};
-use servobench_fmi::{Bounds, Capabilities, LogLine, Slave, SlaveError, StepEnd};
+use servobench_fmi::{Bounds, Slave, SlaveError, StepEnd};
 use std::hint::black_box;
 use std::io::{Read, Write, stdin, stdout};
 use std::process::{Child, Command, Stdio};
@@ -34,10 +34,6 @@ struct Mass {
 }
 
 impl Slave for Mass {
-    fn capabilities(&self) -> Capabilities {
-        Capabilities::default()
-    }
-
     fn step(&mut self, _: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.v += length * inputs[0][0];
         self.x += length * self.v;
@@ -47,18 +43,6 @@ impl Slave for Mass {
     fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         outputs.copy_from_slice(&[self.x, self.v]);
         Ok(())
-    }
-
-    fn save(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
     }
 }
 

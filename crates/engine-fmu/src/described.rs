@@ -1,6 +1,6 @@
 //! An FMU of which only the description was read: nothing of its library is loaded.
 use servobench_fmi::{
-    Capabilities, Feedthrough, LogLine, ModelDescription, Setup, Slave, SlaveError, StepEnd, Version,
+    Capabilities, Feedthrough, ModelDescription, Setup, Slave, SlaveError, StepEnd, Version,
 };
 
 /// What stands in for an FMU where none of its code is to run: it can what its description says, is wired as the FMU would be, and
@@ -71,9 +71,5 @@ impl Slave for Described {
 
     fn restore(&mut self) -> Result<(), SlaveError> {
         Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
     }
 }

@@ -66,8 +66,10 @@ impl LogLine {
 ///
 /// After an error it can only be dropped, [`SlaveError::Discarded`] apart.
 pub trait Slave: Send {
-    /// What it can do.
-    fn capabilities(&self) -> Capabilities;
+    /// What it can do: nothing, unless it says so.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::default()
+    }
 
     /// Whether an output may follow an input at once, without a step (direct feedthrough), each by its position among those
     /// that were wired; true where that is not known.

@@ -94,14 +94,15 @@ impl Scripted {
     }
 }
 
-impl Toy for Scripted {
+impl Slave for Scripted {
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.steps.lock().unwrap().push((time, length, inputs[0][0]));
         (self.answer)(time, length)
     }
 
-    fn read(&mut self, outputs: &mut [f64]) {
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         outputs[0] = self.position;
+        Ok(())
     }
 }
 
@@ -179,7 +180,7 @@ fn what_goes_wrong_in_a_step_ends_the_run_with_the_reason() {
 #[test]
 fn a_position_that_is_not_finite_is_not_passed_on() {
     let toy = Scripted { position: f64::INFINITY, ..Scripted::new(|_, _| Ok(StepEnd::Done)) };
-    let built = FmuMechanics::new(Box::new(Fmu(toy)), &single_body(1), TICK);
+    let built = FmuMechanics::new(Box::new(toy), &single_body(1), TICK);
     let error = built.err().unwrap();
     assert_eq!(error.to_string(), "engine `fmu` failed: the FMU's output `angle` is inf");
 }
@@ -203,14 +204,15 @@ fn a_prescribed_motion_is_refused() {
 /// Moves with 3 rad/s.
 struct Ramp(f64);
 
-impl Toy for Ramp {
+impl Slave for Ramp {
     fn step(&mut self, time: f64, length: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.0 = 3.0 * (time + length);
         Ok(StepEnd::Done)
     }
 
-    fn read(&mut self, outputs: &mut [f64]) {
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         outputs[0] = self.0;
+        Ok(())
     }
 }
 

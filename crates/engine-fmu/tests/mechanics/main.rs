@@ -6,9 +6,7 @@ mod saved;
 
 use servobench_base::Coordinate;
 use servobench_engine_fmu::{FmuMechanics, InSi, Ports};
-use servobench_fmi::{
-    Capabilities, FmuFile, FmuMistake, Isolation, LogLine, ModelDescription, SiPort, SiUnit, Slave, SlaveError, StepEnd,
-};
+use servobench_fmi::{FmuFile, FmuMistake, Isolation, ModelDescription, SiPort, SiUnit, Slave, SlaveError, StepEnd};
 use servobench_plant::{
     Actuation, Body, Chain, Drive, Engine, Exact, FmuBody, FmuModel, Friction, Input, Link, Mechanics, MechanicsSetup,
     Model,
@@ -31,49 +29,6 @@ fn exact(step: f64) -> Box<dyn Mechanics> {
         .unwrap()
 }
 
-/// An FMU that can do what these tests need.
-trait Toy: Send {
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError>;
-    fn read(&mut self, outputs: &mut [f64]);
-    fn save(&mut self) {
-        unreachable!("nobody goes back")
-    }
-    fn restore(&mut self) {
-        unreachable!("nobody goes back")
-    }
-}
-
-struct Fmu<T>(T);
-
-impl<T: Toy> Slave for Fmu<T> {
-    fn capabilities(&self) -> Capabilities {
-        Capabilities::default()
-    }
-
-    fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
-        self.0.step(time, length, inputs)
-    }
-
-    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
-        self.0.read(outputs);
-        Ok(())
-    }
-
-    fn save(&mut self) -> Result<(), SlaveError> {
-        self.0.save();
-        Ok(())
-    }
-
-    fn restore(&mut self) -> Result<(), SlaveError> {
-        self.0.restore();
-        Ok(())
-    }
-
-    fn take_log(&mut self) -> Vec<LogLine> {
-        Vec::new()
-    }
-}
-
 /// The engine `exact` as an FMU: torque of the motor and, if it is wired, force on the table in; positions and velocities out.
 struct ExactFmu(Box<dyn Mechanics>);
 
@@ -83,16 +38,17 @@ impl ExactFmu {
     }
 }
 
-impl Toy for ExactFmu {
+impl Slave for ExactFmu {
     fn step(&mut self, _: f64, _: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         let force = inputs.get(1).map_or(0.0, |force| force[0]);
         self.0.advance(&input(inputs[0][0], force)).unwrap();
         Ok(StepEnd::Done)
     }
 
-    fn read(&mut self, outputs: &mut [f64]) {
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         let states = self.0.bodies().iter().flat_map(|body| [body.position, body.velocity]);
         outputs.iter_mut().zip(states).for_each(|(output, state)| *output = state);
+        Ok(())
     }
 }
 
@@ -169,7 +125,7 @@ fn ports(model: &FmuModel, variables: &[(&str, &str, &str)]) -> Result<Ports, Ve
     Ports::new(model.inputs(), model.outputs(), &description(variables))
 }
 
-fn mechanics(toy: impl Toy + 'static, model: &FmuModel, variables: &[(&str, &str, &str)]) -> FmuMechanics {
-    let slave = InSi::new(Box::new(Fmu(toy)), ports(model, variables).unwrap());
+fn mechanics(slave: impl Slave + 'static, model: &FmuModel, variables: &[(&str, &str, &str)]) -> FmuMechanics {
+    let slave = InSi::new(Box::new(slave), ports(model, variables).unwrap());
     FmuMechanics::new(Box::new(slave), model, TICK).unwrap()
 }

@@ -6,17 +6,18 @@ use servobench_fmi::FmuEntry;
 /// in them.
 struct InOtherUnits(ExactFmu);
 
-impl Toy for InOtherUnits {
+impl Slave for InOtherUnits {
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         // 1 N·m is 1000 N·mm, 1 kN is 1000 N.
         self.0.step(time, length, &[inputs[0].map(|torque| torque / 1000.0), inputs[1].map(|force| force * 1000.0)])
     }
 
-    fn read(&mut self, outputs: &mut [f64]) {
-        self.0.read(outputs);
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        self.0.read(None, outputs)?;
         // rad → rev, rad/s → rpm, m → mm, m/s → m/min.
         let factors = [0.15915494309189535, 9.549296585513721, 1000.0, 60.0];
         outputs.iter_mut().zip(factors).for_each(|(output, factor)| *output *= factor);
+        Ok(())
     }
 }
 

@@ -6,22 +6,24 @@ use servobench_plant::{BodyState, EngineName, MechanicsError};
 /// [`ExactFmu`] with its last state.
 struct Saving(ExactFmu, Vec<u64>);
 
-impl Toy for Saving {
+impl Slave for Saving {
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         self.0.step(time, length, inputs)
     }
 
-    fn read(&mut self, outputs: &mut [f64]) {
-        self.0.read(outputs);
+    fn read(&mut self, _: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
+        self.0.read(None, outputs)
     }
 
-    fn save(&mut self) {
+    fn save(&mut self) -> Result<(), SlaveError> {
         self.1.clear();
         self.0.0.save(&mut words(|word| self.1.push(word))).unwrap();
+        Ok(())
     }
 
-    fn restore(&mut self) {
+    fn restore(&mut self) -> Result<(), SlaveError> {
         self.0.0.restore(&mut Reader::new(&self.1)).unwrap();
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
-//! The engine `fmu` with a real library: one in C, which is compiled and packed by the test as a tool would.
+//! The engine `fmu` with real libraries in C, which are compiled and packed by the test as a tool would.
 mod leaving;
+mod oscillator;
 
 use servobench_base::Severity;
 use servobench_engine_fmu::{Code, Fmu, FmuMechanics, HostCommand, HostError, host as serve};
@@ -88,30 +89,28 @@ impl File {
 
     fn compiled_with(options: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let library = folder.path().join("mass.so");
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/mass.c");
-        let compiled = Command::new("cc")
-            .args(["-O2", "-shared", "-fPIC"])
-            .args(options)
-            .arg("-o")
-            .arg(&library)
-            .arg(source)
-            .status()
-            .unwrap();
-        assert!(compiled.success(), "the C compiler that the workspace is built with anyway");
-        let path = folder.path().join("mass.fmu");
-        let mut zip = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
-        let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-        for (name, content) in [
-            ("modelDescription.xml", DESCRIPTION.as_bytes().to_vec()),
-            ("binaries/linux64/mass.so", std::fs::read(&library).unwrap()),
-        ] {
-            zip.start_file(name, stored).unwrap();
-            zip.write_all(&content).unwrap();
-        }
-        zip.finish().unwrap();
+        let path = packed(folder.path(), "mass", DESCRIPTION, "mass.c", options);
         Self { _folder: folder, path }
     }
+}
+
+/// Compiles `source` of this folder and packs it with `description` into the FMU `name` in `folder`.
+fn packed(folder: &Path, name: &str, description: &str, source: &str, options: &[&str]) -> PathBuf {
+    let library = folder.join(name).with_extension("so");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native").join(source);
+    let mut compiler = Command::new("cc");
+    compiler.args(["-O2", "-shared", "-fPIC"]).args(options).arg("-o").args([&library, &source]).arg("-lm");
+    assert!(compiler.status().unwrap().success(), "the C compiler that the workspace is built with anyway");
+    let path = folder.join(name).with_extension("fmu");
+    let mut zip = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
+    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let binary = (format!("binaries/linux64/{name}.so"), std::fs::read(&library).unwrap());
+    for (name, content) in [("modelDescription.xml".into(), description.as_bytes().to_vec()), binary] {
+        zip.start_file(name, stored).unwrap();
+        zip.write_all(&content).unwrap();
+    }
+    zip.finish().unwrap();
+    path
 }
 
 fn isolated(call_timeout: Duration) -> Isolation {

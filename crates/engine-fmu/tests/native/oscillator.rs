@@ -1,7 +1,7 @@
 //! Two masses with a spring and a damper between them, split into two FMUs by force and displacement: the orders that
 //! `docs/coupling.md` promises hold with FMUs, what is unstable is found, and iterating holds where that is so.
 //!
-//! The FMUs are in C, compiled and packed by the test, and loaded as a scenario loads them. Each is exact for the inputs that it is
+//! The FMUs are loaded as a scenario loads them. Each is exact for the inputs that it is
 //! told: what is left is the coupling's own error.
 mod files;
 mod masses;
@@ -9,30 +9,8 @@ mod masses;
 use files::Files;
 use masses::{Outcome, RATE, TwoMasses, settings, state};
 use servobench_coupling::{Acceleration, CouplingError, Iteration, Method, Order, Settings};
-use servobench_engine_fmu::{Code, Fmu, HostCommand, HostError, host as serve};
-use servobench_fmi::{Bounds, Isolation};
+use servobench_fmi::Isolation;
 use std::time::Duration;
-
-/// Not a test: the process that an FMU of these tests lives in.
-#[test]
-#[ignore = "the process that the other tests start"]
-fn host() {
-    match serve() {
-        // Somebody runs all tests that are ignored.
-        Ok(()) | Err(HostError::NoPage) => {}
-        Err(error) => panic!("{error}"),
-    }
-}
-
-const ENGINE: Fmu = Fmu {
-    host: || {
-        let args = ["--exact", "host", "--ignored", "--nocapture"];
-        Ok(HostCommand { program: std::env::current_exe()?, args: args.map(Into::into).to_vec(), env: Vec::new() })
-    },
-    code: Code::Anywhere,
-};
-const ISOLATED: Isolation =
-    Isolation::Process { bounds: Bounds { call_timeout: Duration::from_mins(1), memory: 300_000_000 } };
 
 /// ω² = c·(1/m₁ + 1/m₂) = 150 s⁻², ω = 12.2 rad/s; from rest, with a force that sets in smoothly.
 const RESOLVED: TwoMasses = TwoMasses { m1: 1.0, m2: 2.0, c: 100.0, d: 2.0, force: (50.0, 8.0), v1: 0.0 };
@@ -125,14 +103,14 @@ fn in_processes_of_their_own_all_is_the_same_to_the_bit() {
     for files in [Files::new(), Files::that_hold()] {
         for (method, order, _) in promises() {
             let way = |isolation| way(&RESOLVED, &files, isolation, &settings(method.clone(), order, STEPS[0]));
-            assert_eq!(way(Isolation::None), way(ISOLATED), "{method:?}, {order:?}");
+            assert_eq!(way(Isolation::None), way(super::isolated(Duration::from_mins(1))), "{method:?}, {order:?}");
         }
     }
 }
 
 /// The run over `seconds`, or what ended it.
 fn run(files: &Files, settings: &Settings, seconds: u32) -> Outcome {
-    let mut master = STIFF.coupled(files, ISOLATED, settings)?;
+    let mut master = STIFF.coupled(files, super::isolated(Duration::from_mins(1)), settings)?;
     while master.tick().0 < u64::from(seconds * RATE) {
         master.advance()?;
     }

@@ -1,6 +1,6 @@
 //! Two masses with a spring and a damper between them: as two FMUs that are coupled, and as they are together.
+use super::files::Files;
 use crate::ENGINE;
-use crate::files::Files;
 use servobench_base::{Divider, Rate};
 use servobench_coupling::{
     Block, Connection, CouplingError, Input, InputPort, Master, Member, Method, Network, Order, Port, Settings, StepEnd,
