@@ -1,7 +1,5 @@
 //! An FMU of which only the description was read: nothing of its library is loaded.
-use servobench_fmi::{
-    Capabilities, Feedthrough, ModelDescription, Setup, Slave, SlaveError, StepEnd, Version,
-};
+use servobench_fmi::{Capabilities, Feedthrough, ModelDescription, Setup, Slave, SlaveError, StepEnd, Version};
 
 /// What stands in for an FMU where none of its code is to run: it can what its description says, is wired as the FMU would be, and
 /// has all

@@ -37,7 +37,12 @@ fn mark(attributes: &[Attribute]) -> Result<Mark, Error> {
                 "constant" | "recomputed" => Mark::Constant,
                 "derived" => Mark::Derived,
                 "fixed" => Mark::Fixed,
-                _ => return Err(Error::new(word.span(), "not a mark of a state: use constant, derived, recomputed or fixed")),
+                _ => {
+                    return Err(Error::new(
+                        word.span(),
+                        "not a mark of a state: use constant, derived, recomputed or fixed",
+                    ));
+                }
             };
             if mark != Mark::None {
                 return Err(Error::new(word.span(), "a field has one mark"));

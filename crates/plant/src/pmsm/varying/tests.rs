@@ -33,7 +33,7 @@ fn a_tick_is_of_fourth_order_at_constant_speed() {
     for (harmonics, factors) in cases {
         let equations = Equations { params: &MOTOR, map: &map, magnets: MOTOR.flux_linkage, harmonics, factors };
         let phases = PhaseMatrix::of(factors);
-        equations.assert_fourth_order(&varying(&MOTOR, harmonics, &phases), &of, 1e-7);
+        equations.assert_fourth_order(&varying(&MOTOR, harmonics, &phases), &of, 1e-7, 3.8);
     }
 }
 
