@@ -31,7 +31,7 @@ pub struct Params {
 }
 
 /// State from tick to tick: the last set-points.
-#[derive(Debug, Clone, PartialEq, Stateful)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct State {
     kept: [Setpoint; CAPACITY + 2],
     /// Index of the newest.
@@ -55,9 +55,7 @@ impl Params {
         let rest = (whole as f64 * period - delay).max(0.0);
         Ok(Self { whole, rest, share: rest / period })
     }
-}
 
-impl Params {
     /// How long, in a task of the period `period` (s).
     #[must_use]
     pub fn length(&self, period: f64) -> f64 {
@@ -74,7 +72,7 @@ impl State {
 }
 
 /// The last values of something that is no set-point and between two samples a line.
-#[derive(Debug, Clone, PartialEq, Stateful)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct Values {
     kept: [f64; CAPACITY + 2],
     /// Index of the newest.

@@ -7,20 +7,15 @@
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
-mod watch;
-
+use crate::blocks::{self, Blocks};
 use crate::current::operating_point::{self, Envelope};
 use crate::feedforward::MotorReference;
 use crate::measurement::{self, Edge};
 use crate::params::{Params, Stage};
-use crate::{Blocks, Demand, EffortLimits};
-use crate::{current, delay, derivative, filter, overload, position, supervision, velocity};
+use crate::supervision::{Finding, Motion};
+use crate::{Demand, EffortLimits, current, delay, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint, Stateful};
 use servobench_config::ParameterError;
-
-mod held;
-
-pub use held::Held;
 
 /// Which encoder closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -77,22 +72,39 @@ enum Closed {
     None,
 }
 
+/// What each loop said at its last turn, which is what a faster one and a recording see until the next.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
+pub struct Held {
+    /// Load-side reference, delay-matched (axis coordinate).
+    pub reference: Setpoint,
+    /// Motor's own reference (axis coordinate).
+    pub motor_reference: MotorReference,
+    /// Velocity reference of the velocity loop at its last cycle (axis coordinate).
+    pub velocity_reference: f64,
+    /// True where the speed limit cut it.
+    pub speed_is_cut: bool,
+    /// Effort fed forward (motor coordinate).
+    pub feedforward: f64,
+    /// Effort reference (motor coordinate) and what cut it: the effort limit, or the current limit below it.
+    pub effort: velocity::Output,
+    /// q-axis current reference (A, peak).
+    pub current_reference: f64,
+    /// References of both axes (A, peak), where the d axis has no constant one.
+    pub references: Dq,
+    /// Output of the current loop.
+    pub current: current::Output,
+}
+
 /// State from tick to tick.
-#[derive(Debug, Clone, PartialEq, Stateful)]
+#[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct State {
     delay: delay::State,
     /// Velocity offsets wait with the set-points that they belong to.
     offset_delay: delay::Values,
-    position: position::State,
-    measurement: measurement::State,
-    acceleration: derivative::State,
+    blocks: blocks::State,
     velocity: velocity::State,
-    filters: filter::State,
     current: current::State,
     operation: operating_point::State,
-    /// Thermal loads of the motor and of the drive.
-    loads: [overload::State; 2],
-    supervision: supervision::State,
     /// Velocity after the filter (motor coordinate).
     filtered_velocity: f64,
     last_position: Option<f64>,
@@ -112,27 +124,7 @@ impl State {
     /// [`ParameterError`] names the first parameter of `p` that is out of its bound.
     pub fn new(p: &Params, start: Setpoint) -> Result<Self, ParameterError> {
         p.check()?;
-        Ok(Self {
-            delay: delay::State::new(start),
-            offset_delay: delay::Values::new(0.0),
-            position: position::State::default(),
-            measurement: measurement::State::default(),
-            acceleration: derivative::State::default(),
-            velocity: velocity::State::default(),
-            filters: filter::State::default(),
-            current: current::State::default(),
-            operation: operating_point::State::default(),
-            loads: [overload::State::default(); 2],
-            supervision: supervision::State::default(),
-            filtered_velocity: 0.0,
-            last_position: None,
-            closed: Closed::Position,
-            position_turn: Countdown::default(),
-            velocity_turn: Countdown::default(),
-            current_turn: Countdown::default(),
-            velocity_command: 0.0,
-            held: Held::default(),
-        })
+        Ok(Self { delay: delay::State::new(start), ..Self::default() })
     }
 
     /// Velocity as the velocity loop sees it (axis coordinate).
@@ -154,16 +146,19 @@ impl State {
     /// Thermal loads of the motor and of the drive: 1 is what the continuous current makes.
     #[must_use]
     pub fn loads(&self) -> [f64; 2] {
-        self.loads.map(|load| load.load)
+        self.blocks.loads.map(|load| load.load)
     }
 
     /// Whether a thermal load is reached that is a fault.
     #[must_use]
     pub fn is_overloaded(&self, p: &Params) -> bool {
-        let loads = [&p.blocks.motor_load, &p.blocks.drive_load].into_iter().zip(&self.loads);
-        let is_fault =
-            |load: &Option<overload::Params>| load.is_some_and(|load| load.reaction == overload::Reaction::Fault);
-        loads.into_iter().any(|(load, state)| state.is_reached && is_fault(load))
+        p.blocks.is_overloaded(&self.blocks)
+    }
+
+    /// What the supervision of motor and power stage has found since the power is on.
+    #[must_use]
+    pub const fn finding(&self) -> Option<Finding> {
+        self.blocks.supervision.found
     }
 
     /// What the loops said at their last turn.
@@ -220,7 +215,7 @@ fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
         Demand::Position { setpoint, velocity_offset, effort_offset } => {
             if x.closed != Closed::Position {
                 x.close(Closed::Position);
-                x.position = position::State::default();
+                x.blocks.close_position_loop();
                 x.delay = delay::State::new(setpoint);
                 x.offset_delay = delay::Values::new(velocity_offset);
             }
@@ -251,8 +246,8 @@ impl State {
     fn close(&mut self, closed: Closed) {
         if closed == Closed::None && self.closed != Closed::None {
             (self.velocity, self.current) = (velocity::State::default(), current::State::default());
-            (self.filters, self.operation) = (filter::State::default(), operating_point::State::default());
-            self.acceleration = derivative::State::default();
+            self.operation = operating_point::State::default();
+            self.blocks.power_off();
             let Held { reference, motor_reference, .. } = self.held;
             self.held = Held { reference, motor_reference, ..Held::default() };
         }
@@ -260,6 +255,7 @@ impl State {
     }
 
     /// Sign in which the speed limit or the effort limit cut what the loops asked for at their last turn; 0 where none did.
+    #[inline(always)]
     fn cut(&self, p: &Params) -> f64 {
         if self.velocity_command.abs() > p.blocks.max_speed * p.transmission.abs() {
             return self.velocity_command.signum();
@@ -284,20 +280,15 @@ impl State {
 fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensors) {
     let reference = delay::step(&p.reference_delay, &mut x.delay, setpoint);
     let motor_reference = p.feedforward.motor_reference(reference);
-    let mut error = match sensors.feedback {
+    let error = match sensors.feedback {
         Feedback::Load(position) => reference.x - position,
         Feedback::Motor => motor_reference.position - p.transmission * sensors.motor_position,
     };
-    if let Some(shaping) = &p.blocks.position {
-        let cut = x.cut(p);
-        error = position::step(shaping, &mut x.position, error, cut, p.period(p.position_every));
-    }
+    let cut = x.cut(p);
+    let error = p.blocks.position_error(&mut x.blocks, error, cut, p.period(p.position_every));
     x.held.reference = reference;
     x.held.motor_reference = motor_reference;
-    let gain = match &p.blocks.schedule {
-        Some(schedule) => schedule.factors(x.filtered_velocity).0 * p.position_gain,
-        None => p.position_gain,
-    };
+    let gain = p.blocks.gain_factors(x.filtered_velocity).0 * p.position_gain;
     x.held.velocity_reference = gain * error + p.feedforward.velocity * motor_reference.velocity;
     x.held.feedforward = p.transmission * p.feedforward.effort(setpoint);
 }
@@ -305,7 +296,6 @@ fn position_loop(p: &Params, x: &mut State, setpoint: Setpoint, sensors: &Sensor
 #[inline(always)]
 fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sensors) {
     let h = p.period(p.velocity_every);
-    let method = p.blocks.measurement.as_ref();
     let mut followed = x.held.velocity_reference;
     let mut asked = x.velocity_command;
     if x.closed == Closed::Position && p.feedforward.interpolate {
@@ -315,8 +305,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         };
         let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period();
         // What is measured is as old as a difference and the filter make it: it is compared with what is as old.
-        let of_encoder = if sensors.motor_velocity.is_some() { 0.0 } else { h / 2.0 };
-        let age = p.velocity_filter_time + method.map_or(of_encoder, |method| method.age(h));
+        let age = p.velocity_filter_time + p.blocks.velocity_age(sensors.motor_velocity, h);
         followed = fed_forward(since - age);
         x.held.velocity_reference = fed_forward(since);
         asked = x.held.velocity_reference;
@@ -329,37 +318,28 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     }
     let last = x.last_position.replace(sensors.motor_position).unwrap_or(sensors.motor_position);
     let travelled = sensors.motor_position - last;
-    let measured = match method {
-        None => sensors.motor_velocity.unwrap_or(travelled / h),
-        Some(method) => {
-            let (position, edge, effort) = (sensors.motor_position, sensors.motor_edge, x.held.effort.effort);
-            measurement::step(method, &mut x.measurement, measurement::Input { position, travelled, edge, effort }, h)
-        }
-    };
+    let (position, edge, effort) = (sensors.motor_position, sensors.motor_edge, x.held.effort.effort);
+    let input = measurement::Input { position, travelled, edge, effort, of_encoder: sensors.motor_velocity };
+    let measured = p.blocks.measured_velocity(&mut x.blocks, input, h);
     // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
-    if let Some(supervision) = &p.blocks.supervision {
-        watch::motion(supervision, x, sensors, h);
+    let velocity = x.filtered_velocity;
+    if x.closed != Closed::None {
+        let (dc_link, winding, is_cut) = (sensors.dc_link, sensors.winding, x.held.effort.cut.is_some());
+        p.blocks.watch_motion(&mut x.blocks, Motion { velocity, dc_link, winding, is_cut }, h);
     }
-    let cogging = p.blocks.cogging.as_ref();
-    let mut feedforward = cogging.map_or(x.held.feedforward, |cogging| {
-        x.held.feedforward + cogging.effort(sensors.motor_position, x.filtered_velocity)
-    });
-    if let Some(method) = method {
-        feedforward += x.measurement.compensation(method);
-    }
+    let feedforward = p.blocks.feedforward(&x.blocks, x.held.feedforward, position, velocity);
     let mut chosen = None;
     let available = match &p.stage {
         Stage::Current { params, .. } => {
-            let loads = [p.blocks.motor_load.as_ref(), p.blocks.drive_load.as_ref()];
-            let max_current = overload::limit(loads, &mut x.loads, x.held.current.current, params.max_current, h);
+            let max_current = p.blocks.max_current(&mut x.blocks, x.held.current.current, params.max_current, h);
             if params.operation.is_plain() && max_current >= params.max_current {
                 EffortLimits::both(params.max_effort())
             } else {
-                let max_voltage = watch::voltage_limit(params, &p.blocks, sensors);
+                let max_voltage = p.blocks.max_voltage(params, sensors.dc_link);
                 let params = current::Params { max_current, max_voltage, ..*params };
                 operating_point::step(&params, &mut x.operation, x.held.current.computed, h);
-                let omega_e = params.motor.electrical_ratio * x.filtered_velocity;
+                let omega_e = params.motor.electrical_ratio * velocity;
                 let envelope = Envelope::new(&params, &x.operation, omega_e);
                 chosen = Some((params, envelope));
                 envelope.limits()
@@ -367,23 +347,18 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
         }
         Stage::Direct { .. } => EffortLimits::NONE,
     };
-    let (reference, velocity) = (followed / p.transmission, x.filtered_velocity);
+    let reference = followed / p.transmission;
     let mut input = velocity::Input { reference, velocity, feedforward, available, limits };
-    let mut filtered = |effort: f64| filter::step(&p.blocks.filters, &mut x.filters, effort);
     x.held.effort = match x.closed {
         Closed::Position | Closed::Velocity => {
-            let scheduled = p
-                .blocks
-                .schedule
-                .as_ref()
-                .map(|schedule| velocity::Params { k_p: schedule.factors(velocity).1 * p.velocity.k_p, ..p.velocity });
-            let params = scheduled.as_ref().unwrap_or(&p.velocity);
-            if let Some(derivative) = &p.blocks.acceleration {
-                input.feedforward -= params.k_p * derivative::step(derivative, &mut x.acceleration, velocity, h);
-            }
-            velocity::step_shaped(params, &mut x.velocity, input, h, p.blocks.reference_weight, filtered)
+            let params = velocity::Params { k_p: p.blocks.gain_factors(velocity).1 * p.velocity.k_p, ..p.velocity };
+            input.feedforward -= params.k_p * p.blocks.acceleration(&mut x.blocks, velocity, h);
+            let shaped = |effort| p.blocks.effort(&mut x.blocks, effort);
+            velocity::step_shaped(&params, &mut x.velocity, input, h, p.blocks.reference_weight, shaped)
         }
-        Closed::Effort => velocity::limited(&p.velocity, available, limits, filtered(feedforward)),
+        Closed::Effort => {
+            velocity::limited(&p.velocity, available, limits, p.blocks.effort(&mut x.blocks, feedforward))
+        }
         Closed::None => velocity::Output::default(),
     };
     if let Some((params, envelope)) = chosen {
@@ -411,14 +386,12 @@ fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &S
         omega_e: p.motor.electrical_ratio * x.filtered_velocity,
     };
     x.held.current = if blocks.measures_dc_link {
-        let max_voltage = watch::voltage_limit(p, blocks, sensors);
+        let max_voltage = blocks.max_voltage(p, sensors.dc_link);
         current::step(&current::Params { max_voltage, ..*p }, &mut x.current, input, h)
     } else {
         current::step(p, &mut x.current, input, h)
     };
-    if let Some(supervision) = &blocks.supervision {
-        watch::currents(supervision, p, x, &input, h);
-    }
+    blocks.watch_currents(&mut x.blocks, p, &input, x.filtered_velocity, x.held.current.current.q, h);
 }
 
 #[cfg(test)]

@@ -5,28 +5,20 @@
 #![cfg_attr(not(test), no_std)]
 
 mod blocks;
-pub mod cogging;
 pub mod current;
 pub mod delay;
 mod demand;
-pub mod derivative;
 pub mod device;
 mod estimate;
 pub mod feedforward;
-pub mod filter;
 mod firmware;
 mod linearised;
-pub mod measurement;
 pub mod modes;
-pub mod overload;
 mod params;
-pub mod position;
-pub mod schedule;
-pub mod supervision;
 pub mod unwrap;
 pub mod velocity;
 
-pub use blocks::{Blocks, Parameter as BlockParameter};
+pub use blocks::*;
 pub use demand::{Demand, EffortLimits, Offsets};
 pub use estimate::{EffortFeedforward, Estimate};
 pub use firmware::{Feedback, Held, Sensors, State, step};

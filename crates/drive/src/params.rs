@@ -154,8 +154,7 @@ impl Params {
                 (position - self.period(*every)) / 2.0 + params.motor.inductance.q / params.gains.k_p.q
             }
         };
-        let filters = &self.blocks.filters;
-        if filters.sections().is_empty() { path } else { (path + filters.delay()).max(0.0) }
+        (path + self.blocks.effort_delay()).max(0.0)
     }
 }
 

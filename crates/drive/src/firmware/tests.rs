@@ -1,5 +1,6 @@
 //! Tests of the firmware.
 use super::*;
+use crate::blocks::{derivative, filter, position};
 use crate::params::tests::{emps, every, synchronous};
 use crate::velocity::Cut;
 
@@ -366,7 +367,7 @@ fn integral_and_derivative_are_parts_of_their_loops() {
     for _ in 0..16 {
         step(&with, &mut x, &REST, EffortLimits::NONE, &Sensors::default());
     }
-    assert_eq!((x.position.integral.to_bits(), x.acceleration.rate.to_bits()), (0, 0), "{x:?}");
+    assert_eq!((x.blocks.position.integral.to_bits(), x.blocks.acceleration.rate.to_bits()), (0, 0), "{x:?}");
 }
 
 /// Oracle: by hand. At the speed limit, and at the effort limit, the integral does not grow in the direction of the limit.
@@ -382,18 +383,18 @@ fn the_integral_of_the_position_waits_at_limits() {
             for _ in 0..16 {
                 step(&p, &mut x, &demand, EffortLimits::NONE, &Sensors::default());
             }
-            let first = x.position.integral;
+            let first = x.blocks.position.integral;
             assert!((first - sign * far * 1e-3 / 40e-3).abs() < 1e-15, "the limit is met in the first cycle: {first}");
             for _ in 0..1600 {
                 step(&p, &mut x, &demand, EffortLimits::NONE, &Sensors::default());
             }
-            assert_eq!(x.position.integral.to_bits(), first.to_bits());
+            assert_eq!(x.blocks.position.integral.to_bits(), first.to_bits());
             assert_eq!(x.held.speed_is_cut, max_speed.is_finite(), "between two cycles of the position loop too");
             let beyond = Sensors { motor_position: sign * 1.001 * far, ..Sensors::default() };
             for _ in 0..1600 {
                 step(&p, &mut x, &demand, EffortLimits::NONE, &beyond);
             }
-            assert!(sign * x.position.integral < sign * first, "against it it does");
+            assert!(sign * x.blocks.position.integral < sign * first, "against it it does");
         }
     }
 }

@@ -1,13 +1,13 @@
 //! What a position loop adds to its proportional part: integral and derivative of the position error.
 //!
 //! ```text
-//! ω_ref = K_v·(e + I + D) + g·v_ref        I += T_p/T_i·e        D: the filtered derivative of e ([`crate::derivative`])
+//! ω_ref = K_v·(e + I + D) + g·v_ref        I += T_p/T_i·e        D: the filtered derivative of e ([`derivative`])
 //! ```
 //! Forward Euler, as in the velocity loop. Conditional integration (anti-windup): while the speed limit or the effort limit cuts what
 //! the loops below ask for, the integral does not grow in the direction of the cut.
 //! The derivative counts as a velocity loop of the gain K_v·T_d beside the reference that is fed forward.
 //! Sources: Åström & Hägglund, *Advanced PID Control*, 2006, §3.4 and §3.5.
-use crate::derivative;
+use super::derivative;
 use servobench_base::Stateful;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::TIME;

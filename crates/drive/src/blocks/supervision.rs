@@ -266,6 +266,7 @@ pub struct Currents {
 }
 
 /// A cycle of the velocity loop of `h` (s).
+#[cold]
 pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
     let speed = u.velocity.abs();
     let stands = p.stall.is_some_and(|stall| u.is_cut && speed <= stall.speed);
@@ -286,6 +287,7 @@ pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
 }
 
 /// A cycle of the current loop of `h` (s).
+#[cold]
 pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
     if let Some(commutation) = p.commutation {
         let speed = u.velocity.abs();

@@ -64,6 +64,8 @@ pub struct Input {
     pub edge: Option<Edge>,
     /// Effort that was asked for in the last cycle (N·m or N).
     pub effort: f64,
+    /// Velocity that the encoder gives (rad/s or m/s), where it gives one.
+    pub of_encoder: Option<f64>,
 }
 
 impl Params {
@@ -77,21 +79,21 @@ impl Params {
         }
     }
 
+    /// A method that is linear in what it sees: the M/T method gives differences of positions, as finely as one likes.
+    #[must_use]
+    pub const fn linearised(self) -> Self {
+        match self {
+            Self::Difference | Self::Mt(_) => Self::Difference,
+            Self::Observer(observer) => Self::Observer(observer),
+        }
+    }
+
     /// How old the velocity is that is measured in cycles of `h` (s), with many edges in each.
     #[must_use]
     pub fn age(&self, h: f64) -> f64 {
         match self {
             Self::Difference | Self::Mt(_) => h / 2.0,
             Self::Observer(_) => 0.0,
-        }
-    }
-
-    /// The observer, where it is one.
-    #[must_use]
-    pub const fn observer(&self) -> Option<&observer::Params> {
-        match self {
-            Self::Observer(observer) => Some(observer),
-            Self::Difference | Self::Mt(_) => None,
         }
     }
 }
@@ -101,13 +103,10 @@ impl State {
     #[inline(always)]
     #[must_use]
     pub fn compensation(&self, p: &Params) -> f64 {
-        p.observer().map_or(0.0, |observer| -observer.compensation * self.observer.disturbance)
-    }
-
-    /// What the observer knows.
-    #[must_use]
-    pub const fn observer(&self) -> &observer::State {
-        &self.observer
+        match p {
+            Params::Difference | Params::Mt(_) => 0.0,
+            Params::Observer(observer) => -observer.compensation * self.observer.disturbance,
+        }
     }
 }
 
