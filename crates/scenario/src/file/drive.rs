@@ -18,7 +18,7 @@ use servobench_config::{choices, not_negative, positive};
 use servobench_drive::current::operating_point::{self, Strategy};
 use servobench_drive::measurement::{Method, mt, observer};
 use servobench_drive::{
-    self as drive, BlockParameter, EffortFeedforward, current, derivative, feedforward, position, velocity,
+    self as drive, BlockParameter, Blocks, EffortFeedforward, current, derivative, feedforward, position, velocity,
 };
 
 choices! {
@@ -128,7 +128,7 @@ table! {
 
 table! {
     /// Velocity loop, in the motor coordinate.
-    pub(crate) struct Velocity {
+    pub(crate) struct Velocity sets Blocks {
         /// Task rate; it divides the rate of the current loop, or the base rate where there is none.
         rate: Rate = "8 kHz",
         /// P or PI; default: PI.
@@ -143,9 +143,9 @@ table! {
         /// default: none.
         filter_time: f64 = drive::Parameter::VELOCITY_FILTER_TIME,
         /// default: none.
-        max_speed: f64 = BlockParameter::MAX_SPEED,
+        max_speed: f64 = BlockParameter::MAX_SPEED => max_speed,
         /// default: 1.
-        reference_weight: f64 = BlockParameter::REFERENCE_WEIGHT,
+        reference_weight: f64 = BlockParameter::REFERENCE_WEIGHT => reference_weight,
         /// How the velocity of the motor is measured; by default an encoder without increments and errors gives it, of any other the
         /// drive takes differences.
         measurement: Method = OneOf,

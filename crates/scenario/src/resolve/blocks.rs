@@ -25,12 +25,7 @@ pub(super) struct Known<'a> {
 pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> Result<Blocks, Reported> {
     let filters = torque_filter::resolve(drive, known.rate, report);
     let velocity = drive.velocity.optional()?;
-    let or = |slot: Option<&Slot<f64>>, default: f64| match slot {
-        Some(slot) => Ok::<_, Reported>(slot.optional()?.copied().unwrap_or(default)),
-        None => Ok(default),
-    };
-    let max_speed = or(velocity.map(|velocity| &velocity.max_speed), f64::INFINITY);
-    let reference_weight = or(velocity.map(|velocity| &velocity.reference_weight), 1.0);
+    let (blocks, are_right) = velocity.map_or((Blocks::default(), Ok(())), file::Velocity::parameters);
     if let Some(velocity) = velocity
         && let (Some(span), Some(file::VelocityKind::P)) = (velocity.reference_weight.span(), velocity.kind.given())
     {
@@ -46,19 +41,19 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
     };
     let measurement = measurement::resolve(drive, known, report);
     let (acceleration, position) = (measurement::acceleration(drive, report), measurement::position(drive, report));
+    are_right?;
     Ok(Blocks {
         filters: filters?,
         cogging: cogging?,
         motor_load: motor_load?,
         drive_load: drive_load?,
         schedule: schedule?,
-        max_speed: max_speed?,
-        reference_weight: reference_weight?,
         supervision: supervision?,
         measures_dc_link,
         measurement: measurement?,
         acceleration: acceleration?,
         position: position?,
+        ..blocks
     })
 }
 

@@ -179,6 +179,7 @@ fn blocks_of_the_firmware_are_those_of_the_file() {
         position,
         supervision,
         measures_dc_link,
+        ..
     } = &params.blocks;
     let (zero_frequency, zero_damping, pole_frequency, pole_damping) = (400.0, 0.1, 500.0, 0.7);
     let exact = [
