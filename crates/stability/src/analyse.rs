@@ -70,7 +70,7 @@ pub fn analyse_master<'a>(
     if depth == Depth::Verdict && !is_unstable {
         return Ok((slowest, None));
     }
-    let [below, above] = boundary::nearest(&mut analysis.equations, whole, GainName::Position, is_unstable);
+    let [below, above] = boundary::nearest(&mut analysis.equations, whole, GainName::Position, is_unstable)?;
     let margin = if is_unstable { below.unwrap_or(0.0) } else { above.unwrap_or(f64::INFINITY) };
     Ok((slowest, Some(margin)))
 }
@@ -248,20 +248,25 @@ impl<'a> Analysis<'a> {
 
     fn named(&mut self, name: LoopName, gain_name: GainName, pole: Pole) -> Result<Instability, StabilityError> {
         let (gain, unit) = self.gain(gain_name);
-        let mut boundaries = self.boundaries(self.whole(), gain_name, true);
+        let mut boundaries = self.boundaries(self.whole(), gain_name, true)?;
         let alone = self.alone(name);
         if boundaries.is_none() && alone != self.whole() && self.unstable(alone)?.is_some() {
-            boundaries = Boundaries { alone: true, ..self.boundaries(alone, gain_name, true) };
+            boundaries = Boundaries { alone: true, ..self.boundaries(alone, gain_name, true)? };
         }
         let speed = self.scheduled.1.map(|speed| (speed, self.speed_unit()));
         Ok(Instability { name, gain_name, gain, unit, pole, boundaries, speed })
     }
 
-    fn boundaries(&mut self, closed: Closed, gain_name: GainName, is_unstable: bool) -> Boundaries {
+    fn boundaries(
+        &mut self,
+        closed: Closed,
+        gain_name: GainName,
+        is_unstable: bool,
+    ) -> Result<Boundaries, StabilityError> {
         let (gain, _) = self.gain(gain_name);
-        let [below, above] = boundary::nearest(&mut self.equations, closed, gain_name, is_unstable)
+        let [below, above] = boundary::nearest(&mut self.equations, closed, gain_name, is_unstable)?
             .map(|factor| factor.map(|factor| Boundary { factor, gain: factor * gain }));
-        Boundaries { below, above, alone: false }
+        Ok(Boundaries { below, above, alone: false })
     }
 
     /// The gain of the current loop that is too large, where the loop by itself is unstable.
@@ -324,7 +329,7 @@ impl<'a> Analysis<'a> {
         };
         let (gain, unit) = self.gain(gain_name);
         let is_asked = is_closed && depth == Depth::Boundaries;
-        let boundaries = is_asked.then(|| self.boundaries(self.whole(), gain_name, is_unstable));
+        let boundaries = is_asked.then(|| self.boundaries(self.whole(), gain_name, is_unstable)).transpose()?;
         let least_damped = if is_asked { self.least_damped(self.alone(name))? } else { None };
         let bandwidth = self.model.bandwidth(name);
         Ok(Some(LoopReport { name, gain_name, gain, unit, bandwidth, boundaries, least_damped }))

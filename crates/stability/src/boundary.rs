@@ -7,6 +7,7 @@
 //! back within a step, in which it would have gone half of the way.
 use crate::analyse::Poles;
 use crate::equations::{Closed, Equations};
+use crate::error::StabilityError;
 use crate::report::GainName;
 
 /// Gains are scanned to this factor and its reciprocal.
@@ -32,9 +33,10 @@ pub(crate) fn nearest(
     closed: Closed,
     name: GainName,
     is_unstable: bool,
-) -> [Option<f64>; 2] {
+) -> Result<[Option<f64>; 2], StabilityError> {
     let mut scan = Scan { equations, closed, name, is_unstable };
-    [-1.0, 1.0].map(|sign| scan.nearest(sign).map(f64::exp))
+    let (below, above) = (scan.nearest(-1.0)?, scan.nearest(1.0)?);
+    Ok([below, above].map(|factor| factor.map(f64::exp)))
 }
 
 struct Scan<'a, 'b> {
@@ -46,24 +48,27 @@ struct Scan<'a, 'b> {
 
 impl Scan<'_, '_> {
     /// Logarithm of the nearest factor in the direction `sign`.
-    fn nearest(&mut self, sign: f64) -> Option<f64> {
+    fn nearest(&mut self, sign: f64) -> Result<Option<f64>, StabilityError> {
         let mut here = 0.0_f64;
-        let mut poles = self.poles(here);
+        let mut poles = self.poles(here)?;
         while here.abs() < REACH.ln() {
-            let next = here + sign * self.step(poles.as_ref(), here + sign * DIFFERENCE);
-            poles = self.poles(next);
+            let next = here + sign * self.step(poles.as_ref(), here + sign * DIFFERENCE)?;
+            poles = self.poles(next)?;
             if self.is_other(poles.as_ref()) {
-                return Some(self.bisect(here, next));
+                return self.bisect(here, next).map(Some);
             }
             here = next;
         }
-        None
+        Ok(None)
     }
 
     /// The poles with the gain by e to the power of `exponent`; `None` where the loop grows beyond all numbers within a period.
-    fn poles(&mut self, exponent: f64) -> Option<Poles> {
+    fn poles(&mut self, exponent: f64) -> Result<Option<Poles>, StabilityError> {
         self.equations.with(self.closed, self.name.factors(exponent.exp()));
-        Poles::new(self.equations).ok()
+        match Poles::new(self.equations) {
+            Err(StabilityError::Overflow { .. }) => Ok(None),
+            poles => poles.map(Some),
+        }
     }
 
     /// Whether the verdict is another one.
@@ -72,19 +77,19 @@ impl Scan<'_, '_> {
         is_unstable != self.is_unstable
     }
 
-    fn bisect(&mut self, mut same: f64, mut other: f64) -> f64 {
+    fn bisect(&mut self, mut same: f64, mut other: f64) -> Result<f64, StabilityError> {
         while (other - same).abs() > ACCURACY {
             let middle = f64::midpoint(same, other);
-            let poles = self.poles(middle);
+            let poles = self.poles(middle)?;
             *(if self.is_other(poles.as_ref()) { &mut other } else { &mut same }) = middle;
         }
-        f64::midpoint(same, other)
+        Ok(f64::midpoint(same, other))
     }
 
     /// How far the gain can go until the verdict could be half-way at its change, from where `poles` are at `beside`: a stable loop
     /// changes with the first pole that leaves the circle, an unstable one with the last that comes in.
-    fn step(&mut self, poles: Option<&Poles>, beside: f64) -> f64 {
-        let (Some(poles), Some(moved)) = (poles, self.poles(beside)) else { return LONGEST_STEP };
+    fn step(&mut self, poles: Option<&Poles>, beside: f64) -> Result<f64, StabilityError> {
+        let (Some(poles), Some(moved)) = (poles, self.poles(beside)?) else { return Ok(LONGEST_STEP) };
         let mut steps = (LONGEST_STEP, SHORTEST_STEP);
         for (block, pole) in poles.values.iter().filter(|(_, pole)| pole.norm_sqr() > DELAY * DELAY) {
             let of_block = moved.values.iter().filter(|(other, _)| other == block).map(|(_, moved)| moved);
@@ -99,6 +104,6 @@ impl Scan<'_, '_> {
                 steps.1 = steps.1.max(step);
             }
         }
-        (if self.is_unstable { steps.1 } else { steps.0 }).clamp(SHORTEST_STEP, LONGEST_STEP)
+        Ok((if self.is_unstable { steps.1 } else { steps.0 }).clamp(SHORTEST_STEP, LONGEST_STEP))
     }
 }
