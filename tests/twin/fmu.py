@@ -8,7 +8,7 @@ from verdict_classes.case import Tree
 
 from machine import Axis
 
-SOURCE = Path(__file__).resolve().parents[2] / "crates" / "engine-fmu" / "tests" / "oscillator"
+SOURCE = Path(__file__).resolve().parents[2] / "crates" / "engine-fmu" / "tests" / "native" / "oscillator"
 """Of the FMUs of two masses, with which the coupling is tested."""
 FILE = "spring.fmu"
 
