@@ -171,7 +171,7 @@ impl Blocks {
         }
     }
 
-    /// How old that velocity is (s), with the one `of_encoder` where it gives one.
+    /// Age of that velocity (s), with the velocity `of_encoder` if the encoder gives one.
     #[inline(always)]
     pub(crate) fn velocity_age(&self, of_encoder: Option<f64>, h: f64) -> f64 {
         match &self.measurement {
@@ -193,7 +193,7 @@ impl Blocks {
         effort
     }
 
-    /// What the velocity loop takes off its velocity error, at a cycle with the measured `velocity`.
+    /// Derivative part that the velocity loop subtracts from its velocity error, at a cycle with the measured `velocity`.
     #[inline(always)]
     pub(crate) fn acceleration(&self, x: &mut State, velocity: f64, h: f64) -> f64 {
         match &self.acceleration {

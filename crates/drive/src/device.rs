@@ -109,7 +109,7 @@ pub struct Measured {
     pub motor_encoder_error: bool,
     /// Whether that of the load does.
     pub load_encoder_error: bool,
-    /// What the supervision of motor and power stage has found.
+    /// Finding of the supervision of motor and power stage.
     pub finding: Option<Finding>,
 }
 

@@ -72,7 +72,7 @@ enum Closed {
     None,
 }
 
-/// What each loop said at its last turn, which is what a faster one and a recording see until the next.
+/// Outputs of each loop at its last turn: faster loops and recordings see them until the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Held {
     /// Load-side reference, delay-matched (axis coordinate).
@@ -155,7 +155,7 @@ impl State {
         p.blocks.is_overloaded(&self.blocks)
     }
 
-    /// What the supervision of motor and power stage has found since the power is on.
+    /// Finding of the supervision of motor and power stage since the power is on.
     #[must_use]
     pub const fn finding(&self) -> Option<Finding> {
         self.blocks.supervision.found

@@ -39,7 +39,7 @@ const PARTS: [(u32, Part); 5] = [
     (MjtState::mjSTATE_ACT as u32, Part::field("act")),
     (REST, Part::derived("rest")),
 ];
-/// What moves in no proportion to what acts.
+/// Parts whose forces are not proportional to small deviations.
 const NOT_SMOOTH: [MjtDisableBit; 3] =
     [MjtDisableBit::mjDSBL_FRICTIONLOSS, MjtDisableBit::mjDSBL_LIMIT, MjtDisableBit::mjDSBL_CONTACT];
 const ALL: u32 = MjtState::mjSTATE_INTEGRATION as u32;

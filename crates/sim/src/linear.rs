@@ -6,7 +6,7 @@ use crate::external::External;
 use crate::master_at_rest::{MasterAtRest, MasterOverBus};
 use crate::program::Program;
 use servobench_base::state::{Form, Part, Reader, Stateful as _, Writer, words};
-use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Rate, Setpoint};
+use servobench_base::{AlphaBeta, Dq, ElectricalAngle, Setpoint};
 use servobench_drive::{self as drive, Stage, measurement};
 use servobench_linear::{Factors, LinearError, Running};
 use servobench_plant::{
@@ -146,7 +146,7 @@ impl AtRest {
             has_begun: false,
             external: External { setpoint: Some(Setpoint::default()), ..External::default() },
             now: Instant::default(),
-            recorder: silent(base_rate),
+            recorder: Recorder::silent(About::default(), base_rate),
         };
         let (mut fresh, mut form) = (Vec::new(), Form::default());
         at_rest.write(&mut words(|word| fresh.push(word)))?;
@@ -195,17 +195,6 @@ impl AtRest {
         power.restore(from)?;
         Ok(())
     }
-}
-
-fn silent(rate: Rate) -> Recorder {
-    let about = About {
-        scenario: String::new(),
-        engine: String::new(),
-        axis_unit: String::new(),
-        bodies: Vec::new(),
-        overrides: Vec::new(),
-    };
-    Recorder::silent(about, rate)
 }
 
 fn part(to: &mut dyn Writer, name: &'static str, save: impl FnOnce(&mut dyn Writer)) {

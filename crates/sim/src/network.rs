@@ -199,7 +199,7 @@ pub(crate) struct Measurement {
     pub(crate) is_overloaded: bool,
     /// Whether the encoders of motor and load say that they have failed.
     pub(crate) encoder_errors: [bool; 2],
-    /// What the supervision of motor and power stage has found.
+    /// Finding of the supervision of motor and power stage.
     pub(crate) finding: Option<Finding>,
     /// The switches.
     pub(crate) switches: SwitchReading,

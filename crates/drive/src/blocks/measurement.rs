@@ -88,7 +88,7 @@ impl Params {
         }
     }
 
-    /// How old the velocity is that is measured in cycles of `h` (s), with many edges in each.
+    /// Age (s) of a velocity that is measured in cycles of `h` (s), with many edges in each.
     #[must_use]
     pub fn age(&self, h: f64) -> f64 {
         match self {
