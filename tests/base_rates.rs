@@ -2,7 +2,7 @@
 //! docs/loop.md says.
 use servobench_base::Rate;
 use servobench_plant::Engine;
-use servobench_scenario::{Actuator, Feedback, Override, Scenario, load, load_with};
+use servobench_scenario::{Actuator, Document, Feedback, Override, Scenario, load};
 use servobench_sim::{Bench, Outcome};
 use servobench_suite::judge;
 use servobench_tests::{engines, faults, ready_scenarios};
@@ -40,7 +40,10 @@ fn ideal(mut scenario: Scenario) -> Scenario {
 fn at_times(path: &Path, rate: Rate, times: u32) -> Result<Scenario, String> {
     let text = format!("run.base_rate=\"{} Hz\"", rate.hertz() * times);
     let overrides: [Override; 1] = [text.parse().map_err(|error| format!("{error}"))?];
-    load_with(path, &overrides).map(|loaded| loaded.scenario).map_err(|error| error.to_string())
+    Document::open(path, None)
+        .and_then(|document| document.scenario(&overrides))
+        .map(|loaded| loaded.scenario)
+        .map_err(|error| error.to_string())
 }
 
 fn outcome(scenario: &Scenario, engine: &dyn Engine) -> Result<Outcome, String> {

@@ -3,7 +3,7 @@
 //! `cargo xtask bench [--json]`. The axis of `scenarios/feed-axis-move.toml` for a second at 16 kHz on `exact`, one recorded channel, one
 //! core. Rounds of all rows alternate, so that a busy machine slows all of them; the least of each counts. Ratios are to the ideal axis.
 use servobench_plant::Exact;
-use servobench_scenario::{Override, Scenario, parse_with};
+use servobench_scenario::{Document, Override, Scenario};
 use servobench_sim::Bench;
 use std::time::Instant;
 
@@ -103,7 +103,9 @@ fn scenario(keys: &[&str]) -> Scenario {
     let (axis, _) = AXIS.split_once("[limits]").unwrap_or_else(|| panic!("the axis has limits"));
     let keys: Vec<Override> =
         keys.iter().map(|key| key.parse().unwrap_or_else(|error| panic!("{key}: {error}"))).collect();
-    let loaded = parse_with("axis.toml", axis, None, &keys).unwrap_or_else(|error| panic!("{error}"));
+    let loaded = Document::parse("axis.toml", axis, None, None)
+        .and_then(|document| document.scenario(&keys))
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut scenario = loaded.scenario;
     scenario.duration = Some(1.0);
     scenario.record.channels = vec!["load.position".parse().unwrap_or_else(|error| panic!("{error}"))];

@@ -7,7 +7,7 @@ use crate::fmu_trust::trusted;
 use crate::outputs::{reads, reads_stdin};
 use miette::Severity;
 use servobench_files::FileId;
-use servobench_scenario::{LoadError, Loaded, MOST_OF_A_SCENARIO, Override, load_within, parse_within, root_of};
+use servobench_scenario::{Document, LoadError, Loaded, MOST_OF_A_SCENARIO, Override, root_of};
 use servobench_suite::Source;
 use std::collections::HashSet;
 use std::ffi::OsStr;
@@ -180,20 +180,20 @@ pub(crate) fn again(path: &Path, with: &OverrideArgs) -> Result<Source, LoadErro
     parsed(path, with).and_then(trusted).map(source)
 }
 
-/// The scenario at `path`, whose text is at hand, with the values of `overrides`; it and all that it names are below `root`.
-pub(crate) fn varied(path: &Path, text: &str, overrides: &[Override], root: &Path) -> Result<Source, LoadError> {
-    let mut loaded = parse_within(&path.display().to_string(), text, path.parent(), overrides, Some(root))?;
-    loaded.scenario.path = Some(path.to_owned());
-    trusted(loaded).map(source)
+/// The scenario of `document` with the values of `overrides`.
+pub(crate) fn varied(document: &Document, overrides: &[Override]) -> Result<Source, LoadError> {
+    document.scenario(overrides).and_then(trusted).map(source)
 }
 
-/// The same from its file, when it is read for the first time: it is noted, and what is doubtful in it is said.
-pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<Source, LoadError> {
+/// The scenario file at `path`, which is varied, and the scenario with the values of `overrides`: its files are noted, and warnings about
+/// it are said. It and all files that it names are below `root`.
+pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<(Document, Source), LoadError> {
     reads(path, format_args!("the scenario {}", path.display()));
-    let loaded = load_within(path, overrides, Some(root)).and_then(trusted)?;
+    let document = Document::open(path, Some(root))?;
+    let loaded = document.scenario(overrides).and_then(trusted)?;
     note_files(&loaded, path, Some(root));
     warn(&loaded);
-    Ok(source(loaded))
+    Ok((document, source(loaded)))
 }
 
 /// A file that was read before, with the values of `overrides` beside those of `with`: what it names is noted, and what is doubtful in it
@@ -239,7 +239,7 @@ fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
 fn parsed(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     let OverrideArgs { overrides, root } = with;
     if !is_stdin(path) {
-        return load_within(path, overrides, root.as_deref());
+        return Document::open(path, root.as_deref())?.scenario(overrides);
     }
     let text = if let Some(text) = TEXT_OF_STDIN.get() {
         text.clone()
@@ -247,9 +247,7 @@ fn parsed(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
         let text = read_stdin().map_err(|error| LoadError::Read { path: NAME_OF_STDIN.into(), error })?;
         TEXT_OF_STDIN.get_or_init(|| text).clone()
     };
-    let mut loaded = parse_within(NAME_OF_STDIN, &text, Some(Path::new("")), overrides, root.as_deref())?;
-    loaded.scenario.path = Some(path.to_owned());
-    Ok(loaded)
+    Document::parse(NAME_OF_STDIN, &text, Some(Path::new("")), root.as_deref())?.at(path).scenario(overrides)
 }
 
 /// Notes the files that the scenario at `path` is made of: nothing is written over them.
@@ -287,7 +285,7 @@ fn read_stdin() -> std::io::Result<String> {
 /// The embedded demo.
 pub(crate) fn demo(with: &OverrideArgs) -> Result<Vec<Source>, LoadError> {
     let demo = servobench_scenario::embedded_demo().into_iter();
-    let loaded = demo.map(|(name, text)| parse_within(name, text, None, &with.overrides, None));
+    let loaded = demo.map(|(name, text)| Document::parse(name, text, None, None)?.scenario(&with.overrides));
     loaded.map(|loaded| loaded.inspect(warn).map(source)).collect()
 }
 

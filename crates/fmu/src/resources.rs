@@ -9,7 +9,7 @@ use crate::error::FmuError;
 use crate::machine::Model;
 use crate::part::Part;
 use servobench_config::Choice as _;
-use servobench_scenario::{Loaded, Override, load_within};
+use servobench_scenario::{Document, Loaded, Override};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs;
@@ -88,8 +88,9 @@ impl Resources {
         let scenario = lines.next().ok_or_else(|| format!("`{CONTENTS}` names no scenario"))?;
         let overrides: Result<Vec<Override>, _> = lines.map(str::parse).collect();
         let overrides = overrides.map_err(|error| format!("`{CONTENTS}`: {error}"))?;
-        let loaded =
-            load_within(&folder.join(scenario), &overrides, Some(folder)).map_err(|error| error.to_string())?;
+        let loaded = Document::open(&folder.join(scenario), Some(folder))
+            .and_then(|document| document.scenario(&overrides))
+            .map_err(|error| error.to_string())?;
         Model::new(part, &loaded.scenario).map_err(|error| error.to_string())
     }
 
@@ -173,7 +174,8 @@ mod tests {
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("pvt.toml"), text).unwrap();
         fs::copy(all.join("points.csv"), room.path().join("a/points.csv")).unwrap();
-        let load = |overrides: &[Override]| load_within(&folder.join("pvt.toml"), overrides, Some(room.path()));
+        let load =
+            |overrides: &[Override]| Document::open(&folder.join("pvt.toml"), Some(room.path()))?.scenario(overrides);
         let loaded = load(&[]).unwrap_or_else(|error| panic!("{error}"));
         let resources = Resources::of(Part::Axis, &loaded).unwrap();
         let names: Vec<&str> = resources.files.iter().map(|(path, _)| path.as_str()).collect();

@@ -134,7 +134,7 @@ pub struct NamedFile {
 }
 
 /// Collects what is found while a scenario is read, and knows what a unit's meaning depends on.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Report {
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
@@ -149,7 +149,7 @@ pub(crate) struct Report {
     /// Tables of points that were read.
     pub(crate) tables: Vec<NamedFile>,
     /// Their names, and which texts these are.
-    pub(crate) known_tables: HashSet<(String, *const u8)>,
+    pub(crate) known_tables: HashSet<(String, usize)>,
     /// Points of all of them.
     pub(crate) points: usize,
     /// What a count of the bus is, once known.
@@ -171,7 +171,7 @@ impl Report {
 
     /// Notes a table that is read under this name.
     pub(crate) fn note_table(&mut self, named: &str, text: &Arc<str>) {
-        if self.known_tables.insert((named.to_owned(), text.as_ptr())) {
+        if self.known_tables.insert((named.to_owned(), text.as_ptr().addr())) {
             self.tables.push(NamedFile { named: named.to_owned(), text: Arc::clone(text) });
         }
     }

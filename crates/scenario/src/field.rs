@@ -194,7 +194,10 @@ pub(crate) fn physical(
             let help = proposals(&number.text, candidates);
             report.error(node.span, format!("`{key}` needs a unit, got the bare number {}", number.text), help);
         }
-        (Value::Text(text), _) => match reading::read(text, candidates) {
+        (Value::Quantity { number, unit, .. }, _) if let Some(read) = reading::amount(*number, unit, candidates) => {
+            return Some(read);
+        }
+        (Value::Text(text) | Value::Quantity { text, .. }, _) => match reading::read(text, candidates) {
             Ok(read) => return Some(read),
             Err(ReadError::NoQuantity(e)) => {
                 report.error(within(node.span, text, &e.at), format!("`{key}`: {}", e.message), e.help);
@@ -220,7 +223,7 @@ pub(crate) fn physical(
 /// The value as the file has it.
 pub(crate) fn written(node: &Node) -> String {
     match &node.value {
-        Value::Text(text) => format!("\"{text}\""),
+        Value::Text(text) | Value::Quantity { text, .. } => format!("\"{text}\""),
         Value::Number(Number { text, .. }) => text.clone(),
         Value::Bool(value) => value.to_string(),
         other => other.kind().to_owned(),

@@ -102,7 +102,7 @@ fn value(node: &Node, report: &mut Report) -> Option<StartValue> {
     match &node.value {
         Value::Number(number) if number.value.is_finite() => Some(StartValue::Number(number.value)),
         Value::Bool(flag) => Some(StartValue::Boolean(*flag)),
-        Value::Text(text) => Some(match any_quantity(text) {
+        Value::Text(text) | Value::Quantity { text, .. } => Some(match any_quantity(text) {
             Some((si, exponents)) => StartValue::Quantity { text: text.clone(), si, exponents },
             None => StartValue::Text(text.clone()),
         }),

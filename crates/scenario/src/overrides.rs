@@ -14,6 +14,7 @@ use crate::nearest::suggestion;
 use crate::source::{SourceId, Sources, Span};
 use crate::tree::{Entry, Node, Table, Value};
 use path::Part;
+use servobench_sweep as sweep;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -23,57 +24,95 @@ const OPTION: &str = "--set ";
 /// Tables that can stand on a model.
 const MODELLED: [&str; 3] = ["axis", "motor", "drive"];
 
-/// A key of a scenario and the value that it has instead of that of the file.
+/// A key of a scenario, as `--set` has it: `setpoint.jerk`, `program[0].move_to`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Override {
-    /// As it is given: `setpoint.jerk=200 m/s3`.
-    text: String,
-    /// The key, with the bytes of its parts in the words of the command line.
+pub struct Key {
+    /// The words of the command line up to the value.
+    words: String,
+    /// Its parts, with their bytes in the words.
     path: Vec<Part>,
-    /// Where the value begins in those.
-    value_at: usize,
 }
 
-/// Why a text is no override.
+/// A key of a scenario and the value that it has instead of that of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Override {
+    key: Key,
+    /// The words of the command line: `--set setpoint.jerk=200 m/s3`.
+    words: String,
+    /// The value, with its bytes in the words.
+    value: Node,
+}
+
+/// Why a text is not an override.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}")]
-pub struct OverrideError(String);
+pub struct OverrideError(pub(crate) String);
+
+impl FromStr for Key {
+    type Err = OverrideError;
+
+    fn from_str(text: &str) -> Result<Self, OverrideError> {
+        let words = format!("{OPTION}{}=", one_line(text)?);
+        let (path, value_at) = path::read(&words, OPTION.len()).map_err(OverrideError)?;
+        if value_at < words.len() {
+            return Err(OverrideError("a key has no `=`".to_owned()));
+        }
+        Ok(Self { words, path })
+    }
+}
+
+impl Key {
+    /// The key from its first part to the one with this index: `program[1].move_to`.
+    fn up_to(&self, last: usize) -> String {
+        path::written(&self.path[..=last])
+    }
+}
 
 impl FromStr for Override {
     type Err = OverrideError;
 
     fn from_str(text: &str) -> Result<Self, OverrideError> {
-        let text = text.trim();
-        if let Some(control) = text.chars().find(|c| c.is_control() && *c != '\t') {
-            return Err(OverrideError(format!("it must be on one line, without {control:?}")));
-        }
-        let words = format!("{OPTION}{text}");
+        let words = format!("{OPTION}{}", one_line(text)?);
         let (path, value_at) = path::read(&words, OPTION.len()).map_err(OverrideError)?;
-        value::read(SourceId::SCENARIO, &words, value_at).map_err(OverrideError)?;
-        Ok(Self { text: text.to_owned(), path, value_at })
+        let value = value::read(&words, value_at).map_err(OverrideError)?;
+        Ok(Self { key: Key { words: words[..value_at].to_owned(), path }, words, value })
+    }
+}
+
+/// `text` without spaces around it.
+fn one_line(text: &str) -> Result<&str, OverrideError> {
+    let text = text.trim();
+    match text.chars().find(|c| c.is_control() && *c != '\t') {
+        Some(control) => Err(OverrideError(format!("it must be on one line, without {control:?}"))),
+        None => Ok(text),
     }
 }
 
 /// As it is given: `setpoint.jerk=200 m/s3`.
 impl fmt::Display for Override {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
+        f.write_str(self.words.strip_prefix(OPTION).unwrap_or(&self.words))
     }
 }
 
 impl Override {
-    fn words(&self) -> String {
-        format!("{OPTION}{}", self.text)
-    }
-
-    /// The key from its first part to the one with this index: `program[1].move_to`.
-    fn key(&self, last: usize) -> String {
-        path::written(&self.path[..=last])
+    /// `key` with `value`, which is not read from a text again where it is a number.
+    ///
+    /// # Errors
+    /// [`OverrideError`] of a text that cannot be a value.
+    pub fn new(key: &Key, value: &sweep::Value) -> Result<Self, OverrideError> {
+        let (start, text) = (key.words.len(), value.written());
+        let words = format!("{}{}", key.words, one_line(&text)?);
+        let value = match value {
+            sweep::Value::Number(number, unit) => value::number(text, *number, unit, start),
+            sweep::Value::Text(_) => value::read(&words, start).map_err(OverrideError)?,
+        };
+        Ok(Self { key: key.clone(), words, value })
     }
 
     /// Whether the model of a table depends on it.
-    fn chooses_a_model(&self) -> bool {
-        let mut names = self.path.iter().map(|part| part.name.as_str());
+    pub(crate) fn chooses_a_model(&self) -> bool {
+        let mut names = self.key.path.iter().map(|part| part.name.as_str());
         names.next().is_some_and(|table| MODELLED.contains(&table)) && names.next().is_none_or(|key| key == "model")
     }
 }
@@ -88,14 +127,14 @@ impl<'a> Overriding<'a> {
     pub(crate) fn new(overrides: &'a [Override], sources: &mut Sources, report: &mut Report) -> Self {
         let mut all: Vec<(&Override, SourceId)> = Vec::new();
         for one in overrides {
-            let source = sources.add_override(one.words());
+            let source = sources.add_override(one.words.clone());
             let is_again = |(other, _): &&(&Override, SourceId)| {
-                one.path.iter().zip(&other.path).all(|(own, other)| own.name == other.name)
+                one.key.path.iter().zip(&other.key.path).all(|(own, other)| own.name == other.name)
             };
             if let Some((other, _)) = all.iter().find(is_again) {
-                let last = one.path.len() - 1;
-                let message = format!("`{}` is set twice", one.key(last));
-                report.error(span(source, &one.path), message, format!("the other is `{}`", other.words()));
+                let last = one.key.path.len() - 1;
+                let message = format!("`{}` is set twice", one.key.up_to(last));
+                report.error(span(source, &one.key.path), message, format!("the other is `{}`", other.words));
             } else {
                 all.push((one, source));
             }
@@ -115,17 +154,15 @@ impl<'a> Overriding<'a> {
 
     fn apply(&self, root: &mut Table, report: &mut Report, is_wanted: impl Fn(&Override) -> bool) {
         for (of, source) in self.all.iter().filter(|(one, _)| is_wanted(one)) {
-            // What is no value makes no override.
-            if let Ok(node) = value::read(*source, &of.words(), of.value_at) {
-                Setting { of, source: *source, report }.in_table(root, 0, node);
-            }
+            let value = of.value.clone().moved_to(*source);
+            Setting { of: &of.key, source: *source, report }.in_table(root, 0, value);
         }
     }
 }
 
 /// An override that is being carried out.
 struct Setting<'a> {
-    of: &'a Override,
+    of: &'a Key,
     source: SourceId,
     report: &'a mut Report,
 }
@@ -151,7 +188,7 @@ impl Setting<'_> {
         if self.of.path.get(index + 1).is_some_and(|next| next.is_index) {
             let keys: Vec<&str> = table.entries.iter().map(|entry| entry.key.as_str()).collect();
             let help = suggestion(&part.name, keys);
-            self.report.lacking(&part.name, key_span, format!("there is no list `{}`", self.of.key(index)), help);
+            self.report.lacking(&part.name, key_span, format!("there is no list `{}`", self.of.up_to(index)), help);
             return;
         }
         let mut entry = Entry { key: part.name.clone(), key_span, node };
@@ -171,7 +208,7 @@ impl Setting<'_> {
             Value::Array(items) => {
                 let count = items.len();
                 let Ok(at) = part.name.parse::<usize>() else {
-                    let help = format!("say which: `{}[0].{}`", self.of.key(index - 1), part.name);
+                    let help = format!("say which: `{}[0].{}`", self.of.up_to(index - 1), part.name);
                     self.refuse_with(index, "is a list", &help);
                     return;
                 };
@@ -195,14 +232,14 @@ impl Setting<'_> {
     /// Says that the list before this part has no such element.
     fn beyond(&mut self, index: usize, count: usize) {
         let part = &self.of.path[index];
-        let list = self.of.key(index - 1);
+        let list = self.of.up_to(index - 1);
         let help = match count {
             0 => format!("`{list}` is empty"),
             1 => format!("`{list}` has one element, `{list}[0]`"),
             _ => format!("`{list}` has {count} elements, `{list}[0]` to `{list}[{}]`", count - 1),
         };
         let place = Span::new(self.source, &part.place);
-        self.report.lacking(&self.of.path[0].name, place, format!("there is no `{}`", self.of.key(index)), help);
+        self.report.lacking(&self.of.path[0].name, place, format!("there is no `{}`", self.of.up_to(index)), help);
     }
 
     /// Says that what stands before this part cannot have it.
@@ -213,7 +250,7 @@ impl Setting<'_> {
     fn refuse_with(&mut self, index: usize, is: &str, help: &str) {
         let place = Span::new(self.source, &self.of.path[index].place);
         // A key does not begin with an index.
-        self.report.error(place, format!("`{}` {is}", self.of.key(index.saturating_sub(1))), help);
+        self.report.error(place, format!("`{}` {is}", self.of.up_to(index.saturating_sub(1))), help);
     }
 }
 

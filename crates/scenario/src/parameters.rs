@@ -65,7 +65,7 @@ fn flatten(path: &str, node: &Node, sources: &Sources, all: &mut Vec<Parameter>)
 /// A value as the file has it, texts without their quotes.
 fn written(value: &Value) -> String {
     match value {
-        Value::Text(text) => text.clone(),
+        Value::Text(text) | Value::Quantity { text, .. } => text.clone(),
         Value::Number(number) => number.text.clone(),
         Value::Bool(value) => value.to_string(),
         Value::Array(items) => {

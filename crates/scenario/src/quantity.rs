@@ -7,6 +7,7 @@
 //! ```
 //! A product after a quotient ("N/m s") would be read in two ways and is refused.
 use crate::unit::{hint, unit};
+use servobench_base::Shortest;
 use servobench_config::Dimension;
 use std::ops::{Range, RangeInclusive};
 use winnow::ascii::digit1;
@@ -162,6 +163,18 @@ impl Scale {
         let value = with_power_of_ten(number, self.tens) * self.numerator / self.denominator;
         let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
         objection(value, is_zero).map_or(Ok(value), Err)
+    }
+
+    /// The same of a number that is not written; `None` where its magnitude is out of bounds.
+    pub(crate) fn of_number(&self, number: f64) -> Option<f64> {
+        let scaled = if self.tens == 0 { number } else { with_power_of_ten(&Shortest(number).to_string(), self.tens) };
+        let value = scaled * self.numerator / self.denominator;
+        (value.is_finite() && objection(value, number == 0.0).is_none()).then_some(value)
+    }
+
+    /// Dimension of the unit.
+    pub(crate) const fn dimension(&self) -> Dimension {
+        self.dimension
     }
 }
 

@@ -1,5 +1,5 @@
 //! Reading a quantity of a certain dimension, and what to say when it has another.
-use crate::quantity::{self, QuantityError};
+use crate::quantity::{self, QuantityError, Scale};
 use servobench_config::Dimension;
 use servobench_config::Physical;
 use servobench_config::quantities::NAMED;
@@ -39,6 +39,14 @@ pub(crate) fn read(text: &str, candidates: &[&Physical]) -> Result<(usize, f64),
     }
     let (is, help) = other(read.dimension, candidates);
     Err(ReadError::OtherDimension { is, help })
+}
+
+/// `number` in `unit` as one of `candidates`, as [`read`] has it; `None` where it is not one of them.
+pub(crate) fn amount(number: f64, unit: &str, candidates: &[&Physical]) -> Option<(usize, f64)> {
+    let scale = Scale::read(unit).ok()?;
+    let value = scale.of_number(number)?;
+    let meant = |physical: &&Physical| Some(physical.accepts.iter().find(|(own, _)| *own == scale.dimension())?.1);
+    candidates.iter().enumerate().find_map(|(which, physical)| Some((which, value * meant(physical)?)))
 }
 
 /// What a quantity of dimension `is` is, which is not among `wanted`; and what to do about it where engineers mean one of

@@ -9,6 +9,7 @@ use crate::field::{Field, Reported, Slot, key, written};
 use crate::list::{Many, OneOrMany};
 use crate::load::all_errors;
 use crate::nearest::suggestion;
+use crate::overrides::{Key, OverrideError};
 use crate::quantity;
 use crate::simple::OneOf;
 use crate::source::{At, Place, SourceId, Sources, Span};
@@ -21,6 +22,7 @@ use servobench_config::quantities::RATIO;
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
 use servobench_sweep::{Arrangement, Axis, Distribution, Drawn, Draws, Method, Spacing, Sweep, SweepError, Value};
+use std::collections::HashMap;
 use std::ops::Range as Bytes;
 use std::path::{Path, PathBuf};
 
@@ -39,6 +41,8 @@ pub struct SweepRequest {
     pub metrics: Vec<Name>,
     /// What varies.
     pub sweep: Sweep,
+    /// The keys of the scenario that it sets, by their names in the sweep.
+    pub keys: HashMap<String, Key>,
 }
 
 table! {
@@ -172,7 +176,7 @@ impl Field for Amount {
         let value = match &node.value {
             TreeValue::Number(number) => Value::Number(number.value, String::new()),
             TreeValue::Bool(value) => Value::Text(value.to_string()),
-            TreeValue::Text(text) => amount(text),
+            TreeValue::Text(text) | TreeValue::Quantity { text, .. } => amount(text),
             TreeValue::Array(_) | TreeValue::Table(_) | TreeValue::Date => {
                 let message = format!("`{}` must be a value, got {}", key(path), node.value.kind());
                 report.error(node.span, message, "write it as text: \"[1, 2]\"");
@@ -270,6 +274,7 @@ fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> 
     let place = file.vary.span().unwrap_or(file.span);
     let sweep = Sweep::new(axes, arrangement, draws).map_err(|error| refuse(report, place, &error))?;
     let sweep = followed(sweep, file, report)?;
+    let keys = keys(file, report)?;
     let all = |list: Option<&OneOrMany<WantedMetric>>| list.map(|list| list.0.iter().map(|at| at.value.0).collect());
     Ok(SweepRequest {
         text: text.to_owned(),
@@ -278,7 +283,23 @@ fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> 
         engines: file.engine.optional()?.map(|list| list.0.iter().map(|at| at.value).collect()).unwrap_or_default(),
         metrics: all(file.metrics.optional()?).unwrap_or_default(),
         sweep,
+        keys,
     })
+}
+
+/// The keys that are set, with their parts.
+fn keys(file: &SweepFile, report: &mut Report) -> Result<HashMap<String, Key>, Reported> {
+    let mut keys = HashMap::new();
+    for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
+        let followers = vary.also.optional()?.map(|also| also.0.as_slice()).unwrap_or_default();
+        for At { value: name, span } in vary.key.at().into_iter().chain(followers) {
+            match name.parse() {
+                Ok(key) => drop(keys.insert(name.clone(), key)),
+                Err(OverrideError(why)) => report.error(*span, format!("`{name}` is not a key: {why}"), ""),
+            }
+        }
+    }
+    if report.errors.is_empty() { Ok(keys) } else { Err(Reported) }
 }
 
 /// With the keys that follow others, and those that are given.

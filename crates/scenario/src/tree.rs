@@ -14,6 +14,13 @@ pub(crate) enum Value {
     Table(Table),
     Array(Vec<Node>),
     Text(String),
+    /// A number with a unit that no file gives, but a program.
+    Quantity {
+        /// As a file would have it.
+        text: String,
+        number: f64,
+        unit: String,
+    },
     Number(Number),
     Bool(bool),
     /// A date or time: valid TOML that no scenario needs.
@@ -81,13 +88,35 @@ impl Table {
     }
 }
 
+impl Node {
+    /// The same in another text.
+    pub(crate) fn moved_to(mut self, source: SourceId) -> Self {
+        self.move_to(source);
+        self
+    }
+
+    fn move_to(&mut self, source: SourceId) {
+        self.span.source = source;
+        match &mut self.value {
+            Value::Array(items) => items.iter_mut().for_each(|item| item.move_to(source)),
+            Value::Table(table) => {
+                for entry in &mut table.entries {
+                    entry.key_span.source = source;
+                    entry.node.move_to(source);
+                }
+            }
+            Value::Text(_) | Value::Quantity { .. } | Value::Number(_) | Value::Bool(_) | Value::Date => {}
+        }
+    }
+}
+
 impl Value {
     pub(crate) fn as_table(&self) -> Option<&Table> {
         if let Self::Table(table) = self { Some(table) } else { None }
     }
 
     pub(crate) fn as_text(&self) -> Option<&str> {
-        if let Self::Text(text) = self { Some(text) } else { None }
+        if let Self::Text(text) | Self::Quantity { text, .. } = self { Some(text) } else { None }
     }
 
     /// What it is, in words.
@@ -95,7 +124,7 @@ impl Value {
         match self {
             Self::Table(_) => "a table",
             Self::Array(_) => "a list",
-            Self::Text(_) => "a string",
+            Self::Text(_) | Self::Quantity { .. } => "a string",
             Self::Number(_) => "a number",
             Self::Bool(_) => "true or false",
             Self::Date => "a date",

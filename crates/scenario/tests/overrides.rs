@@ -1,5 +1,6 @@
 //! Keys that are given another value than the file has.
-use servobench_scenario::{LoadError, Loaded, Override, Scenario, differences, parse, parse_with};
+use servobench_scenario::{Document, Key, LoadError, Loaded, Override, Scenario, differences, parse};
+use servobench_sweep::Value;
 
 const TEXT: &str = r#"
 run.base_rate = "12 kHz"
@@ -31,7 +32,7 @@ fn overrides(all: &[&str]) -> Vec<Override> {
 }
 
 fn read(text: &str, all: &[&str]) -> Result<Loaded, LoadError> {
-    parse_with("a.toml", text, None, &overrides(all))
+    Document::parse("a.toml", text, None, None)?.scenario(&overrides(all))
 }
 
 /// The scenario without what says where its values come from.
@@ -216,5 +217,78 @@ fn an_override_reads_back_as_it_is_written() {
     for text in ["a.'b c'[3].d=1", "x = [1, 2]", "x=200 m/s3", "x=-1", "x==", "x=a=b"] {
         let one: Override = text.parse().unwrap();
         assert_eq!((one.to_string().as_str(), &one.to_string().parse::<Override>().unwrap()), (text, &one));
+    }
+}
+
+/// Oracle: the same value as the words of a command line.
+#[test]
+fn a_number_with_a_unit_is_what_its_words_are() {
+    let document = Document::parse("a.toml", TEXT, None, None).unwrap();
+    let mut random = 1_u64;
+    let mut next = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for (key, units) in [
+        ("program[0].move_to", ["mm", "um", "m", "km"]),
+        ("setpoint.velocity", ["mm/s", "m/min", "um/s", "km/h"]),
+        ("axis.motor_side.mass", ["kg", "g", "t", "mg"]),
+        ("drive.feedforward.velocity", ["", "%", "", "%"]),
+    ] {
+        for unit in units {
+            let number = (0.001 + next()) * 10_f64.powi((next() * 4.0) as i32 - 2);
+            let (name, value) = (key.parse::<Key>().unwrap(), Value::Number(number, unit.to_owned()));
+            let typed = Override::new(&name, &value).unwrap();
+            let spoken: Override = format!("{key}={}", value.written()).parse().unwrap();
+            let told = |one: Override| match document.scenario(&[one]) {
+                Ok(loaded) => Ok(loaded.scenario),
+                Err(error) => Err(error.to_string()),
+            };
+            assert_eq!(typed.to_string(), spoken.to_string());
+            let same = |scenario: Scenario| Scenario { overrides: Vec::new(), ..scenario };
+            assert_eq!(told(typed).map(same), told(spoken).map(same), "{key} {number} {unit}");
+        }
+    }
+}
+
+/// A value that does not fit is refused in the same words, at the same place.
+#[test]
+fn a_number_that_does_not_fit_is_refused_as_its_words_are() {
+    let document = Document::parse("a.toml", TEXT, None, None).unwrap();
+    for (key, number, unit) in [
+        ("setpoint.velocity", 3.0, "kg"),
+        ("setpoint.velocity", 3.0, ""),
+        ("setpoint.velocity", -3.0, "m/s"),
+        ("setpoint.velocity", f64::NAN, "m/s"),
+        ("setpoint.velocity", 1e40, "m/s"),
+        ("setpoint.velocity", 3.0, "m/sek"),
+        ("setpoint.order", 2.5, ""),
+        ("setpoint.order", 2.0, "m"),
+        ("motor.kind", 1.0, "m"),
+        ("axis.mjcf.file", 1.0, "m"),
+        ("nothing.x", 1.0, "m"),
+    ] {
+        let value = Value::Number(number, unit.to_owned());
+        let typed = Override::new(&key.parse().unwrap(), &value).unwrap();
+        let spoken: Override = format!("{key}={}", value.written()).parse().unwrap();
+        let told = |one: Override| document.scenario(&[one]).expect_err(key).to_string();
+        assert_eq!(told(typed), told(spoken), "{key} {number} {unit}");
+    }
+}
+
+#[test]
+fn a_key_is_read_or_refused() {
+    for (text, expected) in [
+        ("", "a key is missing"),
+        ("setpoint.jerk=1", "a key has no `=`"),
+        ("program[x].wait", "by its number from 0 on"),
+        ("a b", "cannot be in a key"),
+        ("a\nb", "it must be on one line"),
+    ] {
+        let error = text.parse::<Key>().expect_err(text).to_string();
+        assert!(error.contains(expected), "{text:?}: {error}");
+    }
+    for text in ["setpoint.jerk", "program[0].move_to", "fmu[1].parameters.'a b'"] {
+        assert!(text.parse::<Key>().is_ok(), "{text}");
     }
 }

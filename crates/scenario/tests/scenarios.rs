@@ -4,7 +4,7 @@
 //! tables of `docs/scenario.md` and `docs/sweep.md` anew.
 use serde_json::{Value as Json, json};
 use servobench_scenario::{
-    Actuator, AxisMechanics, Override, Step, embedded_demo, embedded_models, json_schema, load, load_sweep, load_with,
+    Actuator, AxisMechanics, Document, Override, Step, embedded_demo, embedded_models, json_schema, load, load_sweep,
     parse, sweep_schema,
 };
 use std::fmt::Write as _;
@@ -68,9 +68,15 @@ fn every_sweep_loads_with_the_scenario_that_it_varies() {
         let request = load_sweep(&path).unwrap_or_else(|e| panic!("{e}"));
         assert!(!request.description.is_empty(), "{} has no description", path.display());
         for point in request.sweep.cover(100) {
-            let overrides: Vec<Override> =
-                request.sweep.overrides(point).iter().map(|one| one.parse().unwrap()).collect();
-            load_with(&request.scenario, &overrides).unwrap_or_else(|e| panic!("{e}"));
+            let overrides: Vec<Override> = request
+                .sweep
+                .settings(point)
+                .iter()
+                .map(|one| Override::new(&request.keys[one.key], &one.value).unwrap())
+                .collect();
+            Document::open(&request.scenario, None)
+                .and_then(|document| document.scenario(&overrides))
+                .unwrap_or_else(|e| panic!("{e}"));
         }
         assert!(validator.is_valid(&as_json(&read(&path))), "{}", path.display());
     }

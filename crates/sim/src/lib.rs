@@ -21,6 +21,7 @@ mod network;
 mod program;
 mod request_watch;
 mod run;
+mod same_loop;
 mod speeds;
 mod stability;
 mod stepper;

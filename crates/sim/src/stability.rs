@@ -4,6 +4,7 @@ use crate::coupled;
 use crate::error::BuildError;
 use crate::linear::{AtRest, WiredSensors};
 use crate::master_at_rest::MasterOverBus;
+use crate::same_loop;
 use crate::speeds::Speeds;
 use servobench_base::Divider;
 use servobench_drive::Stage;
@@ -158,7 +159,7 @@ pub fn analyse_stability(
     };
     let failed = |error| Ok(Analysis::NotPossible(NotAnalysed::Failed(error)));
     let running = || AtRest::new(&model, &sensors, None).map(Box::new);
-    let mut report = match stability::analyse(&model, running()?, depth) {
+    let mut report = match same_loop::report(&model, &sensors, depth)? {
         Ok(report) => Box::new(report),
         Err(error) => return failed(error),
     };

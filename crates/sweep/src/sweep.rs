@@ -87,15 +87,17 @@ impl Sweep {
         Ok(self)
     }
 
-    /// What the scenario of point `index` has as on the command line: `setpoint.jerk=50 m/s3`; followers behind all others.
+    /// The keys of point `index` and their values, followers behind all others.
     #[must_use]
-    pub fn overrides(&self, index: usize) -> Vec<String> {
-        let settings = self.point(index);
+    pub fn settings(&self, index: usize) -> Vec<Setting<'_>> {
+        let mut settings = self.point(index);
         let following = self.followers.iter().filter_map(|(key, follower)| {
             let value = settings.iter().find(|setting| setting.key == key)?.value.clone();
-            Some(Setting { key: follower, value }.written())
+            Some(Setting { key: follower, value })
         });
-        settings.iter().map(Setting::written).chain(following).collect()
+        let following: Vec<_> = following.collect();
+        settings.extend(following);
+        settings
     }
 
     /// How many points it has.
@@ -275,7 +277,7 @@ mod tests {
     fn a_follower_has_the_value_of_its_key() {
         let sweep = Sweep::new(vec![axis("a", &[1.0, 2.0])], Arrangement::Grid, Some(draws(2))).unwrap();
         let sweep = sweep.followed("a", &["b".into(), "c".into()]).unwrap();
-        let found = sweep.overrides(2);
+        let found: Vec<_> = sweep.settings(2).iter().map(Setting::written).collect();
         assert_eq!((found[0].as_str(), &found[2..]), ("a=2 m", &["b=2 m".to_owned(), "c=2 m".to_owned()][..]));
         assert!(found[1].starts_with("mass="), "{found:?}");
         for taken in ["a", "mass", "c"] {

@@ -50,7 +50,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     let folder = args.scenario.parent().unwrap_or_else(|| Path::new(""));
     let root = root_of(folder, args.with.root.as_deref())
         .map_err(|error| CliError::Read { path: args.scenario.clone(), error })?;
-    let base = sources::base(&args.scenario, &args.with.overrides, &root)?;
+    let (document, base) = sources::base(&args.scenario, &args.with.overrides, &root)?;
     let scenario = &base.scenario;
     let limits: Vec<_> = scenario.limits.iter().copied().filter(|limit| limit.max.is_some()).collect();
     if limits.is_empty() {
@@ -73,7 +73,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     };
     let mut outputs = Outputs::default();
     let output = args.output.as_deref().map(|path| outputs.anywhere("-o", path)).transpose()?;
-    let mut runs = Runs::new(args, &base, &root, &limits, &question)?;
+    let mut runs = Runs::new(args, &base, &document, &limits, &question)?;
     refuse_impossible(&question)?;
     runs.check()?;
     let kinds = if question.families.len() == 1 { "kind" } else { "kinds" };
@@ -222,7 +222,7 @@ fn without_shaper(base: &Source) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use servobench_scenario::{AxisMechanics, Override, Scenario, parse, parse_within};
+    use servobench_scenario::{AxisMechanics, Document, Key, Override, Scenario};
 
     const HEAD: &str = "run.base_rate = \"4 kHz\"\nmotor.kind = \"prescribed\"\n[[program]]\nwait = \"1 s\"\n[axis]\nmotion = \"linear\"\n";
 
@@ -254,18 +254,19 @@ mod tests {
             ];
             for bodies in bodies {
                 let text = format!("{HEAD}{bodies}");
-                let own = parse("a", &text, None).unwrap_or_else(|error| panic!("{error}\n{text}")).scenario;
+                let document = Document::parse("a", &text, None, None).unwrap();
+                let own = document.scenario(&[]).unwrap_or_else(|error| panic!("{error}\n{text}")).scenario;
                 let mode = load_mode(&own).unwrap();
                 let ranges = default_ranges(&mode, Coordinate::Linear);
                 let (springs, inertias) = structure(&own);
                 let mut ratios = Vec::new();
                 for machine in Machines::new(ranges.clone()).corners() {
                     let set = |(range, value): (&Range, &f64)| {
-                        let written = servobench_sweep::Value::Number(*value, range.unit.clone()).written();
-                        format!("{}={written}", range.key).parse::<Override>().unwrap()
+                        let value = servobench_sweep::Value::Number(*value, range.unit.clone());
+                        Override::new(&range.key.parse::<Key>().unwrap(), &value).unwrap()
                     };
                     let overrides: Vec<Override> = ranges.iter().zip(&machine).map(set).collect();
-                    let varied = parse_within("a", &text, None, &overrides, None);
+                    let varied = document.scenario(&overrides);
                     let varied = varied.unwrap_or_else(|error| panic!("{error}\n{text}{machine:?}")).scenario;
                     let (other, masses) = structure(&varied);
                     assert_eq!((other.len(), &masses), (springs.len(), &inertias), "{bodies}");

@@ -1,21 +1,21 @@
 //! The value of an override: TOML where it is such, otherwise a string.
 use crate::source::{SourceId, Span};
-use crate::tree::{Node, Value, parse_one};
+use crate::tree::{Node, Number, Value, parse_one};
 
 /// The value that begins at `start` of `words`, with its places there.
 ///
 /// # Errors
 /// What is wrong with it, in words.
-pub(super) fn read(source: SourceId, words: &str, start: usize) -> Result<Node, String> {
+pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
     let text = words[start..].trim();
     let at = words.len() - words[start..].trim_start().len();
-    let span = Span::new(source, &(at..at + text.len()));
+    let span = Span::new(SourceId::SCENARIO, &(at..at + text.len()));
     let Some(first) = text.chars().next() else {
         return Err("there is no value behind `=`; an empty string is written ''".into());
     };
     // A document of one key whose value lies at the same bytes as on the command line.
     let document = format!("k{}={}{}", " ".repeat(start - 2), " ".repeat(at - start), text);
-    match parse_one(source, &document) {
+    match parse_one(SourceId::SCENARIO, &document) {
         // A date is nothing that a scenario needs, and a remark behind a value would be dropped.
         Ok(node) if node.value != Value::Date && node.span == span => Ok(node),
         found if matches!(first, '[' | '{' | '"' | '\'') => {
@@ -24,4 +24,15 @@ pub(super) fn read(source: SourceId, words: &str, start: usize) -> Result<Node, 
         }
         _ => Ok(Node { value: Value::Text(text.to_owned()), span }),
     }
+}
+
+/// `number` in `unit`, written as `text`, which begins at `start` of the words; a pure number has an empty unit.
+pub(super) fn number(text: String, number: f64, unit: &str, start: usize) -> Node {
+    let span = Span::new(SourceId::SCENARIO, &(start..start + text.len()));
+    let value = if unit.is_empty() {
+        Value::Number(Number { whole: text.parse().ok(), text, value: number })
+    } else {
+        Value::Quantity { text, number, unit: unit.to_owned() }
+    };
+    Node { value, span }
 }

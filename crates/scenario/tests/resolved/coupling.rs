@@ -18,7 +18,7 @@ kind = "prescribed"
 
 fn with(overrides: &[&str]) -> Result<(f64, f64), String> {
     let overrides: Vec<Override> = overrides.iter().map(|one| one.parse().unwrap()).collect();
-    match parse_with("test.toml", SWAYING, None, &overrides) {
+    match Document::parse("test.toml", SWAYING, None, None).and_then(|document| document.scenario(&overrides)) {
         Ok(loaded) => {
             let link = chain(&loaded.scenario).links()[0];
             Ok((link.stiffness, link.damping))

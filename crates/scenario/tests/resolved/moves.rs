@@ -155,7 +155,9 @@ fn shapers_of_several_modes() {
              move_to = \"1 mm\"\n{step}"
         );
         let overrides: Vec<Override> = set.iter().map(|one| one.parse().unwrap()).collect();
-        let loaded = parse_with("test.toml", &text, None, &overrides).unwrap_or_else(|e| panic!("{e}"));
+        let loaded = Document::parse("test.toml", &text, None, None)
+            .and_then(|document| document.scenario(&overrides))
+            .unwrap_or_else(|e| panic!("{e}"));
         let Some(Step::Move(step)) = loaded.scenario.program.first() else { panic!() };
         step.request.filter.shapers.clone()
     };

@@ -1,6 +1,6 @@
 //! Scenarios run on the exact engine, and what their recordings have.
 use servobench_plant::Exact;
-use servobench_scenario::{Scenario, parse_within};
+use servobench_scenario::{Document, Scenario};
 use servobench_sim::{Bench, Outcome};
 use servobench_trace::Recording;
 use std::path::Path;
@@ -57,7 +57,8 @@ pub(crate) fn scenario(text: &str) -> Scenario {
 
 /// The scenario `text`, whose files are in `folder`.
 pub(crate) fn scenario_in(folder: &Path, text: &str) -> Scenario {
-    let loaded = parse_within("test", text, Some(folder), &[], Some(Path::new("/")));
+    let loaded =
+        Document::parse("test", text, Some(folder), Some(Path::new("/"))).and_then(|document| document.scenario(&[]));
     loaded.unwrap_or_else(|error| panic!("{error}\n{text}")).scenario
 }
 

@@ -2,7 +2,7 @@
 use crate::job::{Job, slow_to};
 use serde::{Deserialize, Serialize};
 use servobench_config::Choice as _;
-use servobench_scenario::{LoadError, Override, Scenario};
+use servobench_scenario::{Document, LoadError, Override, Scenario};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -67,8 +67,8 @@ impl Order {
         let folder = path.as_deref().and_then(Path::parent);
         // The caller has read them.
         let overrides: Vec<Override> = self.overrides.iter().filter_map(|one| one.parse().ok()).collect();
-        let mut scenario =
-            servobench_scenario::parse_within(&file, &self.text, folder, &overrides, root.as_deref())?.scenario;
+        let document = Document::parse(&file, &self.text, folder, root.as_deref())?;
+        let mut scenario = document.scenario(&overrides)?.scenario;
         scenario.name.clone_from(&self.name);
         scenario.path = path;
         slow_to(&mut scenario, &self.durations);

@@ -106,7 +106,8 @@ fn a_run_in_a_worker_is_the_run_here() {
                    [[program]]\nmove_to = \"10 mm\"\n";
     let text = SLIDE.replace("0.1 s", "2 s") + program;
     let overrides = ["drive.velocity.bandwidth=15 Hz", "program[0].move_to='-5 mm'"].map(|text| text.parse().unwrap());
-    let scenario = servobench_scenario::parse_with("x.toml", &text, None, &overrides);
+    let scenario = servobench_scenario::Document::parse("x.toml", &text, None, None)
+        .and_then(|document| document.scenario(&overrides));
     let mut scenario = scenario.unwrap_or_else(|error| panic!("{error}")).scenario;
     for name in ["-fast", "--engine", "a\nb", "µ \"x\"", "../up"] {
         scenario.name = name.into();

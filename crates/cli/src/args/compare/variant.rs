@@ -3,7 +3,7 @@ use servobench_scenario::Override;
 use std::str::FromStr;
 
 /// Other values of some keys, under a name.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Variant {
     /// Its name.
     pub(crate) name: String,

@@ -10,13 +10,12 @@ use servobench_advise::{Bench, Question, Reading, SetPoint};
 use servobench_base::{Coordinate, Shortest};
 use servobench_metrics::{Limit, Name};
 use servobench_plant::EngineName;
-use servobench_scenario::Override;
+use servobench_scenario::{Document, Override};
 use servobench_sim::Program;
 use servobench_suite::{
     AtATime, Engines, Job, RunError, Source, Usage, Workers, execute, instability, load_mode, map_in_parallel,
 };
 use servobench_sweep::Value;
-use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -29,7 +28,7 @@ const PERIOD: Duration = Duration::from_secs(10);
 pub(super) struct Runs<'a> {
     args: &'a AdviseArgs,
     base: &'a Source,
-    root: &'a Path,
+    document: &'a Document,
     limits: &'a [Limit],
     question: &'a Question,
     engine: EngineName,
@@ -49,7 +48,7 @@ impl<'a> Runs<'a> {
     pub(super) fn new(
         args: &'a AdviseArgs,
         base: &'a Source,
-        root: &'a Path,
+        document: &'a Document,
         limits: &'a [Limit],
         question: &'a Question,
     ) -> Result<Self, CliError> {
@@ -58,7 +57,7 @@ impl<'a> Runs<'a> {
         Ok(Self {
             args,
             base,
-            root,
+            document,
             limits,
             question,
             engine,
@@ -193,8 +192,7 @@ impl<'a> Runs<'a> {
         for written in self.set_point(point).into_iter().chain(self.machine(machine)).chain(noise) {
             overrides.push(written.parse::<Override>().map_err(|error| vec![format!("`{written}`: {error}")])?);
         }
-        sources::varied(&self.args.scenario, &self.base.text, &overrides, self.root)
-            .map_err(|error| sources::reasons(&error))
+        sources::varied(self.document, &overrides).map_err(|error| sources::reasons(&error))
     }
 
     fn reading(&self, point: &SetPoint, machine: &[f64]) -> Option<Usage> {

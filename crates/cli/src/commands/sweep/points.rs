@@ -10,9 +10,11 @@ use servobench_config::Choice as _;
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
 use servobench_results::{Digest, Digester, Planned, RunIdentity, Unfinished, printable, printable_lines};
-use servobench_scenario::{LoadError, Override, Seed, Step, SweepRequest, load_sweep, root_of};
+use servobench_scenario::{
+    Document, LoadError, Override, OverrideError, Seed, Step, SweepRequest, load_sweep, root_of,
+};
 use servobench_suite::{Job, Source, equal_length, file_name};
-use servobench_sweep::Sweep;
+use servobench_sweep::{Setting, Sweep};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ffi::OsStr;
@@ -32,7 +34,8 @@ pub(super) struct Points<'a> {
     engines: Vec<EngineName>,
     /// The scenario as it is without the sweep.
     base: Source,
-    root: PathBuf,
+    /// The file of that scenario.
+    document: Document,
     /// Names of the runs begin with it.
     stem: String,
     /// Digests of the files that scenarios name, as they were when they were first read.
@@ -48,11 +51,11 @@ impl<'a> Points<'a> {
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let root =
             root_of(folder, given).map_err(|error| CliError::Read { path: given.unwrap_or(path).to_owned(), error })?;
-        let base = sources::base(&request.scenario, &args.suite.with.overrides, &root)?;
+        let (document, base) = sources::base(&request.scenario, &args.suite.with.overrides, &root)?;
         let engines = [&args.suite.engine, &request.engines, &base.scenario.engines];
         let engines = engines.into_iter().find(|engines| !engines.is_empty()).cloned().unwrap_or_default();
         let stem = file_name(&base.scenario.name);
-        let points = Self { args, request, engines, base, root, stem, files: Mutex::default() };
+        let points = Self { args, request, engines, base, document, stem, files: Mutex::default() };
         points.check()?;
         Ok(points)
     }
@@ -139,9 +142,9 @@ impl<'a> Points<'a> {
         self.base.scenario.made_of.iter().fold(start, |digester, file| digester.with(&file.sha256)).finish()
     }
 
-    /// What varies in the run at `index`, as on the command line.
-    fn settings(&self, index: usize) -> Vec<String> {
-        self.sweep().overrides(index % self.sweep().points())
+    /// Keys that vary in the run at `index`, with their values.
+    fn settings(&self, index: usize) -> Vec<Setting<'_>> {
+        self.sweep().settings(index % self.sweep().points())
     }
 
     /// The engine of the run at `index`.
@@ -152,12 +155,12 @@ impl<'a> Points<'a> {
     /// The scenario of the run at `index`.
     fn source(&self, index: usize) -> Result<Source, NotReady> {
         let mut overrides = self.args.suite.with.overrides.clone();
-        for written in self.settings(index) {
-            let parsed = written.parse::<Override>();
-            overrides.push(parsed.map_err(|error| NotReady::Invalid(vec![format!("`{written}`: {error}")]))?);
+        for setting in self.settings(index) {
+            let wrong = |error: OverrideError| NotReady::Invalid(vec![format!("`{}`: {error}", setting.written())]);
+            let set = |key| Override::new(key, &setting.value);
+            overrides.extend(self.request.keys.get(setting.key).map(set).transpose().map_err(wrong)?);
         }
-        let scenario = &self.request.scenario;
-        let source = sources::varied(scenario, &self.base.text, &overrides, &self.root).map_err(NotReady::from)?;
+        let source = sources::varied(&self.document, &overrides).map_err(NotReady::from)?;
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         for file in &source.scenario.made_of {
             if let Some(known) = files.get(&file.path) {
@@ -178,13 +181,13 @@ impl<'a> Points<'a> {
         let refusals: Vec<(usize, NotReady)> =
             places.iter().filter_map(|index| Some((*index, self.source(*index).err()?))).collect();
         let Some((index, first)) = refusals.first() else { return Ok(()) };
-        let point = self.settings(*index);
+        let point = self.settings(*index).iter().map(Setting::written).collect::<Vec<_>>().join(", ");
         let why = first.to_string();
         if refusals.len() == places.len() {
-            return Err(CliError::NoValidPoint { checked: places.len(), point: point.join(", "), why });
+            return Err(CliError::NoValidPoint { checked: places.len(), point, why });
         }
         let of = format!("{} of the {} points that were tried are invalid", refusals.len(), places.len());
-        let first = format!("the first with {}:\n{}", printable(&point.join(", ")), printable_lines(&why));
+        let first = format!("the first with {}:\n{}", printable(&point), printable_lines(&why));
         say(&format!("servobench: {of}, {first}\n"));
         Ok(())
     }
@@ -220,7 +223,7 @@ impl Plan for Points<'_> {
     fn identity(&self, index: usize) -> RunIdentity {
         let own = &self.args.suite.with.overrides;
         let overrides = own.iter().map(ToString::to_string);
-        let overrides = overrides.chain(self.settings(index)).collect();
+        let overrides = overrides.chain(self.settings(index).iter().map(Setting::written)).collect();
         RunIdentity { overrides, ..RunIdentity::default() }
     }
 
