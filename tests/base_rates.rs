@@ -1,10 +1,10 @@
 //! Every ready scenario at 1, 2 and 4 times its base rate: the same verdict, and with ideal sensors the same motion, nearer by the order that
 //! docs/loop.md says.
+use servobench::run::judge;
 use servobench_base::Rate;
 use servobench_plant::Engine;
 use servobench_scenario::{Actuator, Document, Feedback, Override, Scenario, load};
 use servobench_sim::{Bench, Outcome};
-use servobench_suite::judge;
 use servobench_tests::{engines, faults, ready_scenarios};
 use std::path::Path;
 

@@ -3,11 +3,12 @@
 //!
 //! `cargo xtask bench [--json]`. The run: the axis of the demo for 1.5 s at 16 kHz, on one core. Rounds of all engines alternate; the
 //! median of each part counts.
+use servobench::Engines;
 use servobench_metrics::{Name, measure};
 use servobench_plant::{Engine, EngineName, Exact};
 use servobench_scenario::{Scenario, parse};
 use servobench_sim::Bench;
-use servobench_suite::{Engines, Job, Source, Workers, execute, jobs};
+use servobench_suite::{Job, Source, Workers, execute, jobs};
 use servobench_trace::Recording;
 use std::hint::black_box;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! The engines that this build has: the only place that knows of engine features.
 use crate::fmu_trust::FmuTrust;
+use servobench::Engines;
 use servobench_plant::Engine;
 use servobench_sim::FmuOpener;
-use servobench_suite::Engines;
 
 /// The engines of this build, with this one for FMUs.
 macro_rules! with_fmus_of {

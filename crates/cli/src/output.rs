@@ -4,6 +4,7 @@ use crate::build_id;
 use crate::error::CliError;
 use crate::outputs::OutputFolder;
 use jiff::Timestamp;
+use servobench::channel_limits;
 use servobench_metrics::{Metrics, REQUEST_KIND, Verdict};
 use servobench_plant::inverter;
 use servobench_plant::pmsm::Bounds;
@@ -13,7 +14,7 @@ use servobench_results::{
     printable_lines,
 };
 use servobench_scenario::{Actuator, Parameter, Scenario, Step};
-use servobench_suite::{Job, channel_limits};
+use servobench_suite::Job;
 use servobench_trace::{Recording, seal_of};
 use servobench_view::{MotorLimits, ViewOptions};
 use std::collections::HashSet;

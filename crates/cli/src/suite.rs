@@ -20,9 +20,12 @@ use crate::output::{self, Written};
 use crate::outputs::OutputFolder;
 use crate::progress::Progress;
 use crate::workers;
+use servobench::preview::warnings;
+use servobench::size::memory;
+use servobench::{Engines, Run};
 use servobench_report::{Denied, Style, brief, run_count};
 use servobench_results::{Finished, Outcome, RunIdentity, RunResult, Runs, Unfinished};
-use servobench_suite::{Broken, Engines, Job, Run, Workers, check_warnings, execute, map_in_parallel};
+use servobench_suite::{Broken, Job, Workers, execute, map_in_parallel};
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
@@ -122,7 +125,7 @@ impl Carrying<'_> {
             workers::at_a_time(args.jobs, limits),
             |index| {
                 let job = if interrupt::is_stopping() { None } else { Some(plan.job(*index)) };
-                let memory = job.as_ref().and_then(|job| job.as_ref().ok()).map_or(0, Job::memory);
+                let memory = job.as_ref().and_then(|job| job.as_ref().ok()).map_or(0, |job| memory(&job.scenario));
                 (job, memory)
             },
             |index, job| match job.filter(|_| !interrupt::is_stopping()) {
@@ -205,7 +208,7 @@ impl Carrying<'_> {
         }
         // A sweep has as many scenarios as runs, and one warning would stand in most of them.
         if !is_sweep || self.args.deny.kinds().contains(&Denied::Warnings) {
-            identity.check_warnings = Some(check_warnings(job));
+            identity.check_warnings = Some(warnings(&job.scenario, job.engine));
         }
         identity
     }

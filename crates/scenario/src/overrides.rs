@@ -62,6 +62,13 @@ impl FromStr for Key {
 }
 
 impl Key {
+    /// True of a key that is this one, in whatever words.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        self.path.len() == other.path.len()
+            && self.path.iter().zip(&other.path).all(|(own, other)| own.name == other.name)
+    }
+
     /// The key from its first part to the one with this index: `program[1].move_to`.
     fn up_to(&self, last: usize) -> String {
         path::written(&self.path[..=last])
@@ -96,6 +103,12 @@ impl fmt::Display for Override {
 }
 
 impl Override {
+    /// The key that it sets.
+    #[must_use]
+    pub const fn key(&self) -> &Key {
+        &self.key
+    }
+
     /// `key` with `value`, which is not read from a text again where it is a number.
     ///
     /// # Errors

@@ -75,8 +75,8 @@ impl Field for bool {
 
 impl Field for String {
     fn decode(path: &str, node: &Node, (): &(), report: &mut Report) -> Option<Self> {
-        if let Value::Text(text) = &node.value {
-            return Some(text.clone());
+        if let Some(text) = node.value.as_text() {
+            return Some(text.to_owned());
         }
         report.error(node.span, format!("`{}` must be a string, got {}", key(path), written(node)), "");
         None

@@ -235,8 +235,8 @@ fn a_number_with_a_unit_is_what_its_words_are() {
         ("axis.motor_side.mass", ["kg", "g", "t", "mg"]),
         ("drive.feedforward.velocity", ["", "%", "", "%"]),
     ] {
-        for unit in units {
-            let number = (0.001 + next()) * 10_f64.powi((next() * 4.0) as i32 - 2);
+        for (unit, power) in units.into_iter().zip(-2..) {
+            let number = (0.001 + next()) * 10_f64.powi(power);
             let (name, value) = (key.parse::<Key>().unwrap(), Value::Number(number, unit.to_owned()));
             let typed = Override::new(&name, &value).unwrap();
             let spoken: Override = format!("{key}={}", value.written()).parse().unwrap();

@@ -33,6 +33,12 @@ const TAIL: f64 = 0.5;
 /// that needs more has `record.rate`.
 pub const RECORDING_LIMIT: f64 = 4.0;
 
+/// Length of a run of `scenario` with `program` planned (s).
+#[must_use]
+pub fn run_length(scenario: &Scenario, program: &Program) -> f64 {
+    scenario.duration.unwrap_or(program.end() + TAIL)
+}
+
 /// A closed loop at tick 0, and what is recorded of it.
 pub struct Bench {
     pub(crate) ticks: u64,
@@ -61,7 +67,7 @@ impl Bench {
     /// [`BuildError`] for a program that cannot be planned.
     pub fn length(scenario: &Scenario) -> Result<f64, BuildError> {
         let (base_rate, program) = (scenario.base_rate, Program::new(scenario)?);
-        let ticks = base_rate.tick_at(scenario.duration.unwrap_or(program.end() + TAIL));
+        let ticks = base_rate.tick_at(run_length(scenario, &program));
         let end = base_rate.tick_at(program.end());
         let end = if base_rate.time(end) < program.end() { Tick(end.0 + 1) } else { end };
         Ok(base_rate.time(ticks.max(end)))
@@ -103,7 +109,7 @@ impl Bench {
     pub fn with_fmus(scenario: &Scenario, engine: &dyn Engine, fmu_opener: &dyn FmuOpener) -> Result<Self, BuildError> {
         let base_rate = scenario.base_rate;
         let program = Program::new(scenario)?;
-        let duration = scenario.duration.unwrap_or(program.end() + TAIL);
+        let duration = run_length(scenario, &program);
         let bus = scenario.bus.as_ref();
         check_expectations(scenario)?;
         check_length(None, duration)?;

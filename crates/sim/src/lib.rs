@@ -27,7 +27,7 @@ mod stability;
 mod stepper;
 mod thinning;
 
-pub use bench::{Bench, RECORDING_LIMIT, most_channels};
+pub use bench::{Bench, RECORDING_LIMIT, most_channels, run_length};
 pub use coupled::{ConnectionDelay, FmuDoubt, FmuOpener, NoFmus, replaces_the_drive};
 pub use error::{BuildError, UnusableFmu};
 pub use external::{Controller, External};

@@ -3,7 +3,7 @@ use crate::bench::{Bench, Loop};
 use crate::closed_loop::Source;
 use crate::external::External;
 use crate::machine::Machine;
-use crate::run::Failure;
+use crate::run::{Failure, Outcome};
 use servobench_base::state::{Reader, Writer};
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::PowerState;
@@ -30,19 +30,28 @@ pub struct States {
 pub struct Stepper {
     machine: Machine,
     selection: Selection,
+    /// Ticks of a whole run of the scenario.
+    ticks: u64,
 }
 
 impl Bench {
     /// The loop without the FMUs beside it, to be stepped from outside. Its channels are those that the scenario records.
     #[must_use]
     pub fn into_stepper(self) -> Stepper {
+        let Stepper { machine, selection, ticks } = self.into_recording_stepper();
+        let rate = machine.base_rate();
+        Stepper { machine: Machine::new(machine.axis.unrecorded(), rate), selection, ticks }
+    }
+
+    /// The same, recording every tick: [`Stepper::finish`] gives the recording.
+    #[must_use]
+    pub fn into_recording_stepper(self) -> Stepper {
         let machine = match self.closed_loop {
             Loop::Alone(machine) => *machine,
             Loop::Coupled(coupled) => coupled.alone(),
         };
-        let rate = machine.base_rate();
         let selection = machine.axis.wanted.clone();
-        Stepper { machine: Machine::new(machine.axis.unrecorded(), rate), selection }
+        Stepper { machine, selection, ticks: self.ticks }
     }
 }
 
@@ -57,6 +66,21 @@ impl Stepper {
     #[must_use]
     pub const fn tick(&self) -> Tick {
         self.machine.next()
+    }
+
+    /// True while ticks of a whole run of the scenario are left; the last one is [`finish`](Self::finish).
+    #[must_use]
+    pub const fn is_under_way(&self) -> bool {
+        self.machine.next().0 + 1 < self.ticks
+    }
+
+    /// Ends the run at the present tick: its recording, up to `failure` if there was one.
+    #[must_use]
+    pub fn finish(mut self, failure: Option<Failure>) -> Outcome {
+        if failure.is_none() {
+            self.machine.observe();
+        }
+        self.machine.finish(failure)
     }
 
     /// What [`values`](Self::values) are.

@@ -13,7 +13,7 @@ pub use limits::limits_agree;
 pub use setpoints::{only_setpoints_differ, setpoints_have_closed_form};
 
 use crate::job::{Job, Source};
-use crate::requirements::increment;
+use servobench::increment;
 use servobench_config::Choice as _;
 use servobench_scenario::Step;
 

@@ -1,30 +1,19 @@
 //! Runs one job: here, or in a worker process when its engine can end the process.
-use crate::engines::Engines;
 use crate::error::RunError;
 use crate::job::Job;
-use crate::question::question;
-use crate::requirements::rules;
 use crate::time_limit::TimeLimit;
 use crate::worker::Workers;
+use servobench::run::{Judging, early_end};
+use servobench::size::memory;
+use servobench::{Engines, Error, Run};
 use servobench_isolation::Stopwatch;
-use servobench_metrics::{EarlyEnd, Limit, Metrics, Verdict, judge_requirements, measure_only, note_incidents};
-use servobench_plant::{Engine, MechanicsError};
+use servobench_metrics::{EarlyEnd, Metrics};
+use servobench_plant::Engine;
 use servobench_scenario::Scenario;
-use servobench_sim::{Bench, Failure, FmuOpener, Reason, selected, thinned};
+use servobench_sim::{Bench, Failure, FmuOpener, Reason};
 use servobench_trace::Recording;
 use std::ops::ControlFlow;
 use std::time::Duration;
-
-/// A run that came to its end.
-#[derive(Debug)]
-pub struct Run {
-    /// What is kept of the recording, at `record.rate`.
-    pub recording: Recording,
-    /// What was measured, judged.
-    pub metrics: Metrics,
-    /// The verdict.
-    pub verdict: Verdict,
-}
 
 /// A run without a verdict.
 #[derive(Debug)]
@@ -49,15 +38,7 @@ pub(crate) enum Interruption {
 
 impl From<Failure> for Interruption {
     fn from(failure: Failure) -> Self {
-        match failure.reason {
-            Reason::Mechanics(MechanicsError::Diverged { message, .. }) => {
-                Self::Early(EarlyEnd::Diverged { time: failure.time, reason: message })
-            }
-            Reason::Program(reason) => Self::Early(EarlyEnd::GaveUp(reason)),
-            Reason::Mechanics(_) | Reason::Coupling(_) | Reason::Recording(_) | Reason::Stopped => {
-                Self::Broken(failure.into())
-            }
-        }
+        early_end(failure).map_or_else(|failure| Self::Broken(failure.into()), Self::Early)
     }
 }
 
@@ -76,32 +57,20 @@ pub fn execute(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Run, Box<Broken>> {
     let broken = |error, until_then| Box::new(Broken { error, until_then });
-    let (mut recording, interruption) =
-        recorded(job, engines, workers, progress).map_err(|error| broken(error, None))?;
+    let (recording, interruption) = recorded(job, engines, workers, progress).map_err(|error| broken(error, None))?;
     let (ended, failure) = match interruption {
         None => (None, None),
         Some(Interruption::Early(ended)) => (Some(ended), None),
         Some(Interruption::Broken(error)) => (None, Some(error)),
     };
-    let rules = rules(&job.scenario, &recording, ended, workers.linearise(job).as_ref());
-    note_incidents(&mut recording, &rules);
-    let requirements = judge_requirements(&recording, &rules);
-    let record = &job.scenario.record;
-    let recording = selected(recording, &record.channels);
-    let wanted = job.metrics();
-    let is_wanted = |name| wanted.as_ref().is_none_or(|wanted| wanted.contains(&name));
-    let mut metrics = measure_only(&recording, &question(&job.scenario), &is_wanted);
-    // What is measured does not depend on how much of it is kept.
-    let recording = match thinned(recording, record.rate) {
-        Ok(recording) => recording,
-        Err(error) => return Err(broken(RunError::NotKept(error), None)),
-    };
-    if let Some(failure) = failure {
-        return Err(broken(failure, Some((recording, metrics))));
+    let (model, wanted) = (workers.linearise(job), job.metrics());
+    let judging = Judging { ended, model: model.as_ref(), wanted: wanted.as_ref(), ..Judging::default() };
+    let run = Run::judged(&job.scenario, recording, judging);
+    let run = run.map_err(|error| broken(Error::NotKept(error).into(), None))?;
+    match failure {
+        None => Ok(run),
+        Some(failure) => Err(broken(failure, Some((run.recording, run.metrics)))),
     }
-    let of_moves: Vec<&[Limit]> = job.limits_of_moves().collect();
-    let limits = metrics.judge(&job.scenario.limits).and(metrics.judge_moves(&of_moves));
-    Ok(Run { verdict: limits.and(requirements), recording, metrics })
 }
 
 fn recorded(
@@ -111,7 +80,7 @@ fn recorded(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Recorded, RunError> {
     let engine = engines.get(job.engine)?;
-    let (need, limit) = (job.memory(), workers.limits().memory);
+    let (need, limit) = (memory(&job.scenario), workers.limits().memory);
     if need > limit {
         return Err(RunError::Memory { need, limit });
     }

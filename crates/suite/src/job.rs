@@ -1,9 +1,9 @@
 //! One scenario on one engine.
-use servobench_metrics::{Limit, Name};
+use servobench::run::limits_of_moves;
+use servobench_metrics::Name;
 use servobench_plant::{EngineName, ModelKind};
 use servobench_scenario::{AxisMechanics, Scenario, Step};
-use servobench_sim::{Program, RECORDING_LIMIT, most_channels};
-use servobench_trace::IN_MEMORY;
+use servobench_sim::Program;
 use std::collections::{HashMap, HashSet};
 
 /// One scenario on one engine.
@@ -26,9 +26,6 @@ pub struct Job {
     /// Metrics that somebody wants; `None`: all.
     wanted: Option<Vec<Name>>,
 }
-
-/// How long a run goes on after its program when the scenario does not say (s), as [`Scenario::duration`] has it.
-const TAIL: f64 = 0.5;
 
 impl Job {
     /// The scenario of `source` on `engine`, called `id`.
@@ -74,16 +71,8 @@ impl Job {
 
     /// Metrics that are wanted or limited; `None`: all.
     pub(crate) fn metrics(&self) -> Option<HashSet<Name>> {
-        let limits = self.limits_of_moves().flatten().chain(&self.scenario.limits);
+        let limits = limits_of_moves(&self.scenario).flatten().chain(&self.scenario.limits);
         Some(self.wanted.as_ref()?.iter().copied().chain(limits.map(|limit| limit.metric)).collect())
-    }
-
-    /// The limits of each move.
-    pub(crate) fn limits_of_moves(&self) -> impl Iterator<Item = &[Limit]> {
-        self.scenario.program.iter().filter_map(|step| match step {
-            Step::Move(step) => Some(step.metric_limits.as_slice()),
-            Step::Wait(_) => None,
-        })
     }
 
     /// Whether all signals are recorded that the scenario asks for.
@@ -106,59 +95,6 @@ impl Job {
         };
         self.engine.runs_in_worker(kind)
     }
-
-    /// True where it is measured from rows at `record.rate`, because every tick would take too much memory.
-    pub(crate) fn is_thinned(&self) -> bool {
-        let Some(duration) = self.length() else { return false };
-        is_too_much(duration * f64::from(self.scenario.base_rate.hertz()) + 1.0, self.channels())
-    }
-
-    /// How long it runs (s); `None` where its moves cannot be planned.
-    fn length(&self) -> Option<f64> {
-        self.scenario.duration.or_else(|| Some(run_length(&self.scenario, &Program::new(&self.scenario).ok()?)))
-    }
-
-    /// Channels that it records, at most.
-    fn channels(&self) -> usize {
-        let named = self.scenario.record.channels.len();
-        if named == 0 { most_channels(&self.scenario) } else { named }
-    }
-
-    /// Memory that the recording takes (bytes), at most; 0 when the moves cannot be planned and nothing will be recorded.
-    #[must_use]
-    pub fn memory(&self) -> u64 {
-        const VALUE: f64 = size_of::<f64>() as f64;
-        let Scenario { record, base_rate, .. } = &self.scenario;
-        let Some(duration) = self.length() else {
-            return 0;
-        };
-        let channels = self.channels();
-        let rows = |hertz: u32| duration * f64::from(hertz) + 1.0;
-        // What is more is in a file.
-        let bytes = |hertz: u32| rows(hertz).min(IN_MEMORY as f64) * channels as f64 * VALUE;
-        let (every, kept) = (bytes(base_rate.hertz()), bytes(record.rate.hertz()));
-        let bytes = if is_too_much(rows(base_rate.hertz()), channels) {
-            kept
-        } else if record.rate == *base_rate {
-            every
-        } else {
-            // Every tick until it is measured, beside what is kept of it.
-            every + kept
-        };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: more than there is")]
-        let bytes = bytes.ceil() as u64;
-        bytes
-    }
-}
-
-/// True where so many rows of `channels` are not kept.
-fn is_too_much(rows: f64, channels: usize) -> bool {
-    rows * channels as f64 * size_of::<f64>() as f64 > RECORDING_LIMIT * 1e9
-}
-
-/// How long `scenario` runs with `program` planned (s).
-pub(crate) fn run_length(scenario: &Scenario, program: &Program) -> f64 {
-    scenario.duration.unwrap_or(program.end() + TAIL)
 }
 
 /// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move alone. What comes after the program stays: a run
@@ -272,23 +208,6 @@ mod tests {
         [record]
         channels = ["load.position", "motor.position"]
     "#;
-
-    /// Instants 0 to 2000 at 1 kHz, two channels, eight bytes each.
-    #[test]
-    fn memory_is_that_of_the_recorded_values() {
-        assert_eq!(job(TEXT).memory(), 2001 * 2 * 8);
-        // Without a duration: a pause of 1 s and half a second.
-        let paused =
-            TEXT.replace("duration = \"2 s\"", "").replace("[record]", "[[program]]\nwait = \"1 s\"\n[record]");
-        assert_eq!(job(&paused).memory(), 1501 * 2 * 8);
-        let thinned = TEXT.replace("[record]", "[record]\nrate = \"100 Hz\"");
-        assert_eq!(job(&thinned).memory(), (2001 + 201) * 2 * 8);
-        // Without a list it is that of every channel which such an axis has: none of a bus or of currents, one of which there are.
-        let all = job(&TEXT.replace("channels = [\"load.position\", \"motor.position\"]", ""));
-        let channels = all.memory() / (2001 * 8);
-        assert_eq!(channels as usize, most_channels(&all.scenario));
-        assert!((10..servobench_signals::Signal::ALL.len() as u64 / 2).contains(&channels), "{channels}");
-    }
 
     /// A run of 3 s whose move takes 1 s has 2 s behind it, slowed or not.
     #[test]

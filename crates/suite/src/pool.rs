@@ -1,5 +1,5 @@
 //! Several jobs at once, results in the order of the jobs; what one of them breaks is its own.
-use crate::panicked::{Panicked, caught};
+use servobench::panicked::{Panicked, caught};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 

@@ -1,7 +1,10 @@
 //! Metrics of next to nothing are absent and refused; those of a program are of every rest.
+use servobench::check::Objection;
+use servobench::preview::preview;
+use servobench::{Engines, Run};
 use servobench_metrics::{Absence, Metrics, Name};
 use servobench_plant::{EngineName, Exact};
-use servobench_suite::{Engines, Job, Objection, Run, Source, Workers, check, execute, jobs, preview};
+use servobench_suite::{Job, Source, Workers, check, execute, jobs};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
 
@@ -146,7 +149,7 @@ fn a_window_as_large_as_the_way_judges_nothing() {
         "[limits]\nresidual_vibration_pp = \"5 mm\"",
         "[measure]\nwindow = \"0.2 m\"\n[limits]\nsettling_time = \"1 ms\"",
     );
-    let doubts = preview(&[job(&text)], &Workers::none()).unwrap().unwrap().doubts;
+    let doubts = preview(&job(&text).scenario, &[EngineName::Exact], None).unwrap().doubts;
     assert!(doubts.iter().any(|doubt| doubt.key == "measure.window"), "{doubts:?}");
     let run = run(&text);
     for name in [Name::SettlingTime, Name::MoveAndSettlingTime, Name::ProgramTime] {
@@ -155,7 +158,7 @@ fn a_window_as_large_as_the_way_judges_nothing() {
     }
     assert_eq!(run.verdict.misses.len(), 1);
     let smaller = text.replace("0.2 m\"", "0.19 m\"");
-    let doubts = preview(&[job(&smaller)], &Workers::none()).unwrap().unwrap().doubts;
+    let doubts = preview(&job(&smaller).scenario, &[EngineName::Exact], None).unwrap().doubts;
     assert!(doubts.iter().all(|doubt| doubt.key != "measure.window"), "{doubts:?}");
     assert!(self::run(&smaller).metrics.run.get(Name::SettlingTime).is_some());
 }

@@ -1,9 +1,11 @@
 //! What an engine objects to, and the key or line that is to blame.
+use servobench::Engines;
+use servobench::check::Objection;
 use servobench_plant::{
     Engine, EngineName, Exact, Mechanics, MechanicsError, MechanicsSetup, MjcfModel, Refusal, RefusedAt,
 };
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
-use servobench_suite::{Engines, Job, Objection, RunError, Source, Workers, check, jobs};
+use servobench_suite::{Job, RunError, Source, Workers, check, jobs};
 
 const TEXT: &str = r#"
 engine = "exact"
@@ -123,7 +125,7 @@ fn parameters_of_drive_and_switches_are_shown_at_their_keys() {
 #[test]
 fn who_cannot_be_asked_is_no_objection() {
     let missing = check(&job(), &Engines::NONE, &Workers::none());
-    assert!(matches!(missing, Err(RunError::EngineMissing(_))), "{missing:?}");
+    assert!(matches!(missing, Err(RunError::Loop(servobench::Error::EngineMissing(_)))), "{missing:?}");
     let panicked = check(&job(), &PANICKING, &Workers::none());
-    assert!(matches!(panicked, Err(RunError::Panicked(_))), "{panicked:?}");
+    assert!(matches!(panicked, Err(RunError::Loop(servobench::Error::Panicked(_)))), "{panicked:?}");
 }

@@ -2,9 +2,10 @@
 //!
 //! The sweep is small in ordinary runs: `SERVOBENCH_SWEEP=500 cargo test --release -p servobench-suite --test longer` runs five hundred
 //! scenarios, and prints how many were red.
+use servobench::Engines;
 use servobench_metrics::{Requirement, Standing};
 use servobench_plant::{EngineName, Exact};
-use servobench_suite::{Engines, Source, Workers, execute, jobs};
+use servobench_suite::{Source, Workers, execute, jobs};
 use servobench_testkit::Random;
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };

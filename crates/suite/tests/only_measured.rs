@@ -1,8 +1,9 @@
 //! Of a run whose recording nobody wants fewer signals are recorded; what is measured of it and what it comes to are the same.
+use servobench::{Engines, Run};
 use servobench_metrics::Name;
 use servobench_plant::{EngineName, Exact};
 use servobench_scenario::load;
-use servobench_suite::{Engines, Run, Source, Workers, execute, jobs};
+use servobench_suite::{Source, Workers, execute, jobs};
 use std::path::{Path, PathBuf};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };

@@ -1,7 +1,8 @@
 //! What is kept of a recording has no influence on what is measured.
+use servobench::{Engines, Run};
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
-use servobench_suite::{Engines, Run, Source, Workers, execute, jobs};
+use servobench_suite::{Source, Workers, execute, jobs};
 
 /// A load on a spring behind a base that moves 10 mm exactly: √(k/m)/2π = 84.2 Hz with k = 10 kg·(2π·84.2 Hz)².
 const RINGS: &str = r#"

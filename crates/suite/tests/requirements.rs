@@ -1,8 +1,9 @@
 //! Scenarios whose runs break a requirement, or come close to one, break what their first line says and nothing else.
+use servobench::Engines;
 use servobench_metrics::{Expectation, Incident, Occasion, Standing};
 use servobench_plant::{EngineName, Exact};
 use servobench_scenario::{Scenario, load};
-use servobench_suite::{Engines, Source, Workers, execute, jobs};
+use servobench_suite::{Source, Workers, execute, jobs};
 use std::path::{Path, PathBuf};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };

@@ -1,9 +1,11 @@
 //! The linear loop in `check` and in a run: both report the same.
+use servobench::preview::{Doubt, Preview, preview};
+use servobench::{Engines, Run};
 use servobench_metrics::{Requirement, Standing};
 use servobench_plant::{EngineName, Exact};
 use servobench_sim::{Analysis, MasterLoop, analyse_stability};
 use servobench_stability::Depth;
-use servobench_suite::{Doubt, Engines, Job, Preview, Run, Source, Workers, execute, jobs, preview};
+use servobench_suite::{Job, Source, Workers, execute, jobs};
 use std::path::{Path, PathBuf};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
@@ -22,7 +24,7 @@ fn changed(name: &str, from: &str, to: &str) -> Job {
 }
 
 fn previewed(job: &Job) -> Preview {
-    preview(std::slice::from_ref(job), &Workers::none()).unwrap().unwrap()
+    preview(&job.scenario, &[job.engine], None).unwrap()
 }
 
 fn run(job: &Job) -> Run {

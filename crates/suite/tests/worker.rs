@@ -1,9 +1,10 @@
 //! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
 #![cfg(unix)]
+use servobench::Engines;
 use servobench_metrics::Quantity;
 use servobench_plant::Exact;
 use servobench_suite::worker::{End, Order, Task, answer};
-use servobench_suite::{Engines, Source, Workers, execute, jobs};
+use servobench_suite::{Source, Workers, execute, jobs};
 use std::time::Duration;
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };

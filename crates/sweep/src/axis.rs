@@ -52,6 +52,33 @@ impl Value {
     }
 }
 
+/// A pure number.
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number, String::new())
+    }
+}
+
+/// A number and its unit.
+impl From<(f64, &str)> for Value {
+    fn from((number, unit): (f64, &str)) -> Self {
+        Self::Number(number, unit.to_owned())
+    }
+}
+
+/// As the file would have it: `200 m/s3`, a name, a list.
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<bool> for Value {
+    fn from(value: bool) -> Self {
+        Self::Text(value.to_string())
+    }
+}
+
 /// A key of a scenario, and the values that it takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {

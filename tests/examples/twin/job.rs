@@ -2,12 +2,12 @@
 use crate::fmus::Here;
 use crate::sabotage::{Sabotage, SabotagedEngine};
 use serde::{Deserialize, Serialize};
+use servobench::run::judge;
 use servobench_metrics::{Standing, Verdict};
 use servobench_plant::Engine;
 use servobench_scenario::{Loaded, Scenario, load};
 use servobench_signals::Signal;
 use servobench_sim::Bench;
-use servobench_suite::judge;
 use servobench_trace::{CallFate, Recording};
 use std::collections::BTreeMap;
 use std::fs;

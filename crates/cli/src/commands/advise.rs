@@ -8,6 +8,7 @@ use crate::exit::Exit;
 use crate::outputs::Outputs;
 use crate::sources;
 use runs::Runs;
+use servobench::usage::{LoadMode, limits_of_set_point, load_mode, longest_move};
 use servobench_advise::{Family, Machines, Question, Range, Stretch, advise as find, refuse_impossible};
 use servobench_base::Coordinate;
 use servobench_config::Choice as _;
@@ -16,7 +17,7 @@ use servobench_motion::Limits;
 use servobench_motion::shape::ShaperKind;
 use servobench_report::{AdviceOptions, advice_json, advice_text};
 use servobench_scenario::{KeyRange, root_of};
-use servobench_suite::{LoadMode, Source, limits_of_set_point, load_mode, longest_move};
+use servobench_suite::Source;
 use std::path::Path;
 use thiserror::Error;
 

@@ -10,15 +10,15 @@ use crate::interrupt;
 use crate::sources;
 use crate::workers;
 use miette::Severity;
+use servobench::Engines;
+use servobench::preview::{Doubt, Preview, preview};
 use servobench_config::Choice as _;
 use servobench_plant::EngineName;
 use servobench_report::{Style, elided};
 use servobench_results::printable;
 use servobench_scenario::{Diagnostic, Loaded};
 use servobench_sim::ConnectionDelay;
-use servobench_suite::{
-    Doubt, Engines, Job, Preview, RunError, Source, Workers, check as objections, exchange, jobs, preview,
-};
+use servobench_suite::{Job, RunError, Source, Workers, check as objections, exchange, jobs};
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -125,7 +125,7 @@ impl Asked {
         for job in &jobs {
             let found = match objections(job, engines, workers) {
                 Ok(found) => found,
-                Err(RunError::EngineMissing(missing)) => {
+                Err(RunError::Loop(servobench::Error::EngineMissing(missing))) => {
                     asked.missing.push(missing.name);
                     continue;
                 }
@@ -163,8 +163,10 @@ impl Asked {
 
     /// What can be said of `loaded`, whose `jobs` nothing keeps from being built.
     fn look_ahead(&mut self, loaded: &Loaded, jobs: &[Job], workers: &Workers) {
-        match preview(jobs, workers) {
-            Ok(preview) => self.preview = preview,
+        let Some(first) = jobs.first() else { return };
+        let names: Vec<EngineName> = jobs.iter().map(|job| job.engine).collect();
+        match preview(&first.scenario, &names, workers.linearise(first).as_ref()) {
+            Ok(preview) => self.preview = Some(preview),
             Err(error) => self.failed.push(error.into()),
         }
         let exchanged = std::mem::take(&mut self.exchange_doubts);

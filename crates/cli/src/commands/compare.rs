@@ -19,11 +19,14 @@ use crate::progress::Progress;
 use crate::suite::deny;
 use crate::workers;
 use earlier::Earlier;
+use servobench::Run;
+use servobench::preview::warnings;
+use servobench::size::memory;
 use servobench_report::{Compared, Comparison, Noise};
 use servobench_results::{COMPARISON, Folder, Outcome, Results, RunResult};
 use servobench_suite::{
-    Job, Run, RunError, check_warnings, comparable, equal_length, execute, limits_agree, map_in_parallel,
-    only_setpoints_differ, setpoints_have_closed_form,
+    Job, RunError, comparable, equal_length, execute, limits_agree, map_in_parallel, only_setpoints_differ,
+    setpoints_have_closed_form,
 };
 use slowing::Slowing;
 use variants::Wanted;
@@ -122,7 +125,7 @@ fn results(name: &str, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
     let written = Written { recording: Some(name.to_owned()), files: vec![name.to_owned()], ..Written::default() };
     let each = wanted.iter().zip(runs).map(|(one, run)| {
         let mut identity = output::identity(&one.job, written.clone());
-        identity.check_warnings = Some(check_warnings(&one.job));
+        identity.check_warnings = Some(warnings(&one.job.scenario, one.job.engine));
         RunResult::judged(identity, &run.recording, &run.metrics, &run.verdict)
     });
     each.collect()
@@ -143,7 +146,7 @@ fn carried_out(args: &CompareArgs, jobs: &[&Job]) -> Result<Vec<Run>, CliError> 
     let limits = workers::limits(args.time_limit, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&args.out, args.worker_timeout, limits)?);
     let progress = Progress::new(jobs.len(), false);
-    let ready = |job: &&Job| ((), job.memory());
+    let ready = |job: &&Job| ((), memory(&job.scenario));
     let ended = map_in_parallel(jobs, workers::at_a_time(None, limits), ready, |job, ()| {
         let ended = execute(job, &engines, &workers, &mut progress.of_run(&job.id, workers.slow(job)))
             .map_err(|broken| broken.error);

@@ -13,9 +13,9 @@ use crate::sources;
 use crate::suite::{
     Begun, Carrying, Files, Found, JUNIT, Ledger, deny, exit_of, how_to_resume, other_suite, suite_in, write_junit,
 };
+use servobench::Engines;
 use servobench_report::{brief, verdict_table};
 use servobench_results::{Digest, Folder, Kept, OF_A_SWEEP, RESULTS, Results, Runs, Suite};
-use servobench_suite::Engines;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use wanted::Wanted;

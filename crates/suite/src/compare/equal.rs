@@ -2,12 +2,13 @@
 use super::duration::slowable;
 use super::search::{LONGEST, Search, Steps};
 use super::{CompareError, NotReached, slow};
-use crate::engines::Engines;
 use crate::error::RunError;
 use crate::execute::execute;
 use crate::job::Job;
 use crate::pool::{AtATime, map_in_parallel};
 use crate::worker::Workers;
+use servobench::Engines;
+use servobench::size::memory;
 use servobench_metrics::{Metrics, Name, Quantity};
 use thiserror::Error;
 
@@ -256,7 +257,7 @@ impl Making<'_> {
         let ended = map_in_parallel(
             &jobs,
             *limit,
-            |job| ((), job.memory()),
+            |job| ((), memory(&job.scenario)),
             |job, ()| {
                 let run = execute(job, engines, workers, &mut |_| {}).map_err(|broken| broken.error)?;
                 let requirements = &run.verdict.requirements;

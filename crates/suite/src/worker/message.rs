@@ -1,6 +1,6 @@
 //! What a worker says.
-use crate::check::Objection;
 use serde::{Deserialize, Serialize};
+use servobench::check::Objection;
 use servobench_sim::MechanicsAtRest;
 
 /// One line of what a worker says.

@@ -2,11 +2,11 @@
 use super::message::{End, Message};
 use super::order::{Order, Task};
 use super::recording;
-use crate::check::objections;
-use crate::engines::Engines;
 use crate::error::RunError;
 use crate::execute::{Interruption, Loop, run_here};
-use crate::panicked::caught;
+use servobench::Engines;
+use servobench::check::objections;
+use servobench::panicked::caught;
 use servobench_config::Choice as _;
 use servobench_isolation::{Stopwatch, claim_standard_streams, own_memory};
 use servobench_metrics::EarlyEnd;
@@ -80,7 +80,7 @@ fn obey(order: &Order, file: &mut File, engines: &Engines, say: &mut dyn FnMut(&
             }
             Ok(End::Done)
         }
-        Task::Check => objections(&scenario, engine, engines.fmu_opener).map(|all| {
+        Task::Check => objections(&scenario, engine, engines.fmu_opener).map_err(RunError::from).map(|all| {
             say(&Message::Objections(all));
             End::Done
         }),

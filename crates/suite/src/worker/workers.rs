@@ -4,11 +4,11 @@ use super::message::{End, Message};
 use super::order::{Order, Task};
 #[cfg(unix)]
 use super::process::Worker;
-use crate::check::Objection;
 use crate::error::RunError;
 use crate::execute::{Interruption, Recorded};
 use crate::job::Job;
 use crate::time_limit::TimeLimit;
+use servobench::check::Objection;
 use servobench_metrics::EarlyEnd;
 use servobench_scenario::{AxisMechanics, TimeBound};
 use servobench_sim::MechanicsAtRest;
@@ -147,7 +147,7 @@ impl Workers {
     }
 
     /// Linear model of the MJCF file of `job`, from a worker process; `None` without a file.
-    pub(crate) fn linearise(&self, job: &Job) -> Option<MechanicsAtRest> {
+    pub fn linearise(&self, job: &Job) -> Option<MechanicsAtRest> {
         if !matches!(job.scenario.axis.mechanics, AxisMechanics::Mjcf(_)) {
             return None;
         }

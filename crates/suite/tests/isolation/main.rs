@@ -5,11 +5,13 @@ mod served;
 mod stub;
 
 use native::Native;
+use servobench::size::memory;
+use servobench::{Engines, Run};
 use servobench_plant::{BodyState, Engine, EngineName, Input, Mechanics, MechanicsError, MechanicsSetup};
 use servobench_scenario::TimeBound;
 use servobench_suite::{
-    AtATime, Broken, Engines, Job, Run, RunError, RunLimits, Source, WorkerCommand, WorkerError, Workers, execute,
-    jobs, map_in_parallel,
+    AtATime, Broken, Job, RunError, RunLimits, Source, WorkerCommand, WorkerError, Workers, execute, jobs,
+    map_in_parallel,
 };
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -101,7 +103,7 @@ fn an_engine_that_panics_costs_its_run_only() {
     let reports = map_in_parallel(
         &jobs,
         limit,
-        |job| ((), job.memory()),
+        |job| ((), memory(&job.scenario)),
         |job, ()| execute(job, &ENGINES, &workers, &mut |_| {}),
     );
     for k in [0, 2] {

@@ -1,6 +1,7 @@
 //! Real workers: the process is this test program, which serves.
 use super::native::MISCHIEF;
 use super::*;
+use servobench::size::memory;
 use servobench_isolation::contain;
 use servobench_suite::worker::serve;
 use std::ffi::OsString;
@@ -138,7 +139,8 @@ fn workers_that_serve_again_give_the_same() {
         .collect();
     let (_folder, workers) = workers_that("nothing", GENEROUS);
     let limit = AtATime { jobs: 3, memory: u64::MAX };
-    let together = map_in_parallel(&all, limit, |job| ((), job.memory()), |job, ()| run_in(&workers, job).recording);
+    let together =
+        map_in_parallel(&all, limit, |job| ((), memory(&job.scenario)), |job, ()| run_in(&workers, job).recording);
     for (job, together) in all.iter().zip(together).step_by(4) {
         let (_folder, alone) = workers_that("nothing", GENEROUS);
         assert!(run_in(&alone, job).recording == together.unwrap());

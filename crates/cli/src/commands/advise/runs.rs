@@ -6,15 +6,15 @@ use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::sources;
 use crate::workers;
+use servobench::usage::{Usage, load_mode};
+use servobench::{Engines, instability};
 use servobench_advise::{Bench, Question, Reading, SetPoint};
 use servobench_base::{Coordinate, Shortest};
 use servobench_metrics::{Limit, Name};
 use servobench_plant::EngineName;
 use servobench_scenario::{Document, Override};
 use servobench_sim::Program;
-use servobench_suite::{
-    AtATime, Engines, Job, RunError, Source, Usage, Workers, execute, instability, load_mode, map_in_parallel,
-};
+use servobench_suite::{AtATime, Job, RunError, Source, Workers, execute, map_in_parallel};
 use servobench_sweep::Value;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -108,7 +108,9 @@ impl<'a> Runs<'a> {
                     why: why.join("\n"),
                 })?;
                 if is_new && why_not.is_none() {
-                    why_not = instability(&self.job(source), &self.workers).map(|why| (self.loop_of(&machine), why));
+                    let job = self.job(source);
+                    let model = self.workers.linearise(&job);
+                    why_not = instability(&job.scenario, model.as_ref()).map(|why| (self.loop_of(&machine), why));
                 }
             }
             if is_new {

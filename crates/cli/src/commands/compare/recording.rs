@@ -4,7 +4,8 @@ use crate::error::CliError;
 use crate::interrupt;
 use crate::output;
 use crate::outputs::OutputFolder;
-use servobench_suite::{Run, file_name};
+use servobench::Run;
+use servobench_suite::file_name;
 use servobench_trace::Recording;
 use servobench_view::ViewOptions;
 

@@ -126,8 +126,7 @@ impl EngineSteps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worker::Workers;
-    use crate::{Source, jobs, preview};
+    use crate::preview::preview;
 
     /// The two-mass drive of Saarakkala and Hinkkanen: 84.22 Hz free, 59.55 Hz held.
     fn doubts(rate: &str, damping: &str, duration: &str) -> Vec<String> {
@@ -138,7 +137,7 @@ mod tests {
         );
         let scenario =
             servobench_scenario::parse("test", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-        let preview = preview(&jobs(vec![Source { scenario, text }], &[]), &Workers::none()).unwrap().unwrap();
+        let preview = preview(&scenario, &scenario.engines, None).unwrap();
         let modes = preview.modes.as_ref().unwrap();
         // Half a unit of the last digit.
         assert!((modes.free[0].omega / TAU - 84.22).abs() < 0.005 && (modes.held[0].omega / TAU - 59.55).abs() < 0.005);

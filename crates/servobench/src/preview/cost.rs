@@ -1,5 +1,5 @@
 //! What a run takes: memory and time.
-use crate::job::Job;
+use crate::size::memory;
 use servobench_plant::EngineName;
 use servobench_scenario::{AxisMechanics, Scenario};
 
@@ -15,14 +15,14 @@ pub struct Cost {
 }
 
 impl Cost {
-    pub(super) fn of(scenario: &Scenario, length: f64, jobs: &[Job]) -> Self {
+    pub(super) fn of(scenario: &Scenario, length: f64, engines: &[EngineName]) -> Self {
         let ticks = (length * f64::from(scenario.base_rate.hertz())).floor() + 1.0;
-        let memory = jobs.first().map_or(0.0, |job| job.memory() as f64);
+        let memory = memory(scenario) as f64;
         let own_file = matches!(scenario.axis.mechanics, AxisMechanics::Mjcf(_));
-        let seconds = jobs.iter().filter(|_| scenario.fmus.is_empty()).filter_map(|job| {
-            let [of_bodies, of_file] = job.engine.capabilities().tick_time?;
+        let seconds = engines.iter().filter(|_| scenario.fmus.is_empty()).filter_map(|engine| {
+            let [of_bodies, of_file] = engine.capabilities().tick_time?;
             let nanoseconds = if own_file { of_file } else { of_bodies };
-            Some((job.engine, ticks * nanoseconds * 1e-9))
+            Some((*engine, ticks * nanoseconds * 1e-9))
         });
         Self { ticks, memory, seconds: seconds.collect() }
     }

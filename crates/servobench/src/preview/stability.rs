@@ -1,11 +1,9 @@
 //! Whether the loops are stable, and how far from their boundaries.
 use super::Doubt;
-use crate::job::Job;
-use crate::worker::Workers;
 use servobench_drive::{self as drive, current, velocity};
 use servobench_metrics::Quantity;
-use servobench_scenario::parameter_key;
-use servobench_sim::{Analysis, BuildError, MasterLoop, Speeds, analyse_stability};
+use servobench_scenario::{Scenario, parameter_key};
+use servobench_sim::{Analysis, BuildError, MasterLoop, MechanicsAtRest, Speeds, analyse_stability};
 use servobench_stability::{Boundaries, Depth, GainName, Instability, LEFT_OUT, LoopReport};
 
 /// What the analysis of the linear loop says of a scenario.
@@ -17,11 +15,10 @@ pub struct LoopStability {
 }
 
 impl LoopStability {
-    pub(super) fn of(job: &Job, depth: Depth, workers: Option<&Workers>) -> Result<Self, BuildError> {
-        let (scenario, model) = (&job.scenario, workers.and_then(|workers| workers.linearise(job)));
+    pub(super) fn of(scenario: &Scenario, depth: Depth, model: Option<&MechanicsAtRest>) -> Result<Self, BuildError> {
         let is_scheduled = scenario.actuator.drive().is_some_and(|drive| drive.params.blocks.schedule.is_some());
         let speeds = if is_scheduled { Speeds::planned(scenario)? } else { None };
-        Ok(Self { analysis: analyse_stability(scenario, depth, speeds.as_ref(), model.as_ref())?, is_scheduled })
+        Ok(Self { analysis: analyse_stability(scenario, depth, speeds.as_ref(), model)?, is_scheduled })
     }
 
     /// How far each loop is from a boundary; or why that is not known.

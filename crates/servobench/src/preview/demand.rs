@@ -264,8 +264,7 @@ const fn speed_unit(units: Units) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worker::Workers;
-    use crate::{Source, jobs, preview};
+    use crate::preview::preview;
 
     /// 20 pole pairs at 6000 rpm and 4 kHz: π per period. The rotor alone, 1e-3 kg·m² at 3000 rad/s².
     const FAST: &str = r#"
@@ -298,8 +297,7 @@ mod tests {
     fn of(text: &str) -> (Demand, Vec<Doubt>) {
         let scenario =
             servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-        let jobs = jobs(vec![Source { scenario, text: text.to_owned() }], &[]);
-        let preview = preview(&jobs, &Workers::none()).unwrap().unwrap();
+        let preview = preview(&scenario, &scenario.engines, None).unwrap();
         (preview.demand, preview.doubts)
     }
 

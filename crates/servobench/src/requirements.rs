@@ -1,8 +1,6 @@
 //! From a scenario to what its run is held to beside its limits.
 mod axle;
 
-use crate::job::Job;
-use crate::worker::Workers;
 use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules};
 use servobench_plant::Encoder;
 use servobench_scenario::{Actuator, DisturbedBody, Feedback, LoopSignal, Scenario};
@@ -66,10 +64,11 @@ fn linear_loop(
     analysed(scenario, speeds.as_ref(), model)
 }
 
-/// Why the linear loop of `job` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells.
+/// Why the linear loop of `scenario` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells. `model` is an MJCF
+/// file around its rest.
 #[must_use]
-pub fn instability(job: &Job, workers: &Workers) -> Option<String> {
-    match analysed(&job.scenario, None, workers.linearise(job).as_ref()).0 {
+pub fn instability(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Option<String> {
+    match analysed(scenario, None, model).0 {
         LinearLoop::Unstable(why) => Some(why),
         LinearLoop::Stable | LinearLoop::NotAnalysed => None,
     }
@@ -113,8 +112,9 @@ fn poles(slowest: Slowest) -> Poles {
     }
 }
 
-/// What the encoder that closes the position loop tells apart (axis unit); 0 for an ideal one, or none.
-pub(crate) fn increment(scenario: &Scenario) -> f64 {
+/// Increment of the encoder that closes the position loop (axis unit); 0 for an ideal one, or none.
+#[must_use]
+pub fn increment(scenario: &Scenario) -> f64 {
     of_encoder(scenario, Encoder::resolution)
 }
 

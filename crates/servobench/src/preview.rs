@@ -31,13 +31,11 @@ pub use program::PlannedProgram;
 pub use servo::{Inertias, Modes};
 pub use stability::LoopStability;
 
-use crate::job::Job;
 use crate::panicked::caught;
-use crate::worker::Workers;
+use servobench_plant::EngineName;
 use servobench_scenario::{AxisMechanics, Scenario};
-use servobench_sim::{BuildError, Program};
+use servobench_sim::{BuildError, MechanicsAtRest, Program};
 use servobench_stability::Depth;
-use std::slice::from_ref;
 
 /// What can be said of a scenario without running it.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,22 +66,26 @@ pub struct Preview {
     pub doubts: Vec<Doubt>,
 }
 
-/// Previews the scenario of `jobs`: one scenario on each of its engines. Nothing without a job. `workers` read an MJCF file.
+/// Previews `scenario` on `engines`; `model` is its MJCF file around its rest, where it has one.
 ///
 /// # Errors
-/// [`BuildError`] of moves that cannot be planned or of bodies that cannot be; [`check`](crate::check) says where.
-pub fn preview(jobs: &[Job], workers: &Workers) -> Result<Option<Preview>, BuildError> {
-    previewed(jobs, Depth::Boundaries, Some(workers))
+/// [`BuildError`] of moves that cannot be planned or of bodies that cannot be built; [`objections`](crate::check::objections) have the place.
+pub fn preview(
+    scenario: &Scenario,
+    engines: &[EngineName],
+    model: Option<&MechanicsAtRest>,
+) -> Result<Preview, BuildError> {
+    previewed(scenario, engines, Depth::Boundaries, model)
 }
 
-/// Warnings of `check` about the scenario of `job` on its engine, each behind its place: about its files, then, where it can be built, of
-/// its preview. Of an unstable loop with an MJCF file the run itself tells.
+/// Warnings about `scenario` on `engine`, each behind its place: about its files, then, where it can be built, of its preview. An unstable
+/// loop with an MJCF file is found by the run itself.
 #[must_use]
-pub fn check_warnings(job: &Job) -> Vec<String> {
-    let found = caught(|| previewed(from_ref(job), Depth::Verdict, None));
-    let doubts = found.ok().and_then(Result::ok).flatten().map_or_else(Vec::new, |preview| preview.doubts);
-    let placed = doubts.iter().map(|doubt| placed(doubt, &job.scenario));
-    job.scenario.warnings.iter().cloned().chain(placed).collect()
+pub fn warnings(scenario: &Scenario, engine: EngineName) -> Vec<String> {
+    let found = caught(|| previewed(scenario, &[engine], Depth::Verdict, None));
+    let doubts = found.ok().and_then(Result::ok).map_or_else(Vec::new, |preview| preview.doubts);
+    let placed = doubts.iter().map(|doubt| placed(doubt, scenario));
+    scenario.warnings.iter().cloned().chain(placed).collect()
 }
 
 /// `axis.toml:12: the move has no length`
@@ -101,24 +103,26 @@ fn placed(doubt: &Doubt, scenario: &Scenario) -> String {
     }
 }
 
-fn previewed(jobs: &[Job], depth: Depth, workers: Option<&Workers>) -> Result<Option<Preview>, BuildError> {
-    let Some(first) = jobs.first() else { return Ok(None) };
-    let scenario = &first.scenario;
+fn previewed(
+    scenario: &Scenario,
+    names: &[EngineName],
+    depth: Depth,
+    model: Option<&MechanicsAtRest>,
+) -> Result<Preview, BuildError> {
     let (planned, chain) = (Program::new(scenario)?, servobench_sim::Bench::chain(scenario)?);
     let program = PlannedProgram::new(scenario, &planned);
     let demand = Demand::of(scenario, chain.as_ref(), program.run)?;
     let modes = chain.as_ref().map(|chain| Modes::of(scenario, chain));
-    let names: Vec<_> = jobs.iter().map(|job| job.engine).collect();
-    let engines = EngineSteps::of(scenario, modes.as_ref(), &names, program.run);
-    let stability = LoopStability::of(first, depth, workers)?;
+    let engines = EngineSteps::of(scenario, modes.as_ref(), names, program.run);
+    let stability = LoopStability::of(scenario, depth, model)?;
     let mut doubts = program.doubts(scenario);
     doubts.extend(stability.doubts());
     doubts.extend(demand.doubts(scenario));
     doubts.extend(engines.iter().filter_map(|engine| engine.doubt(program.run)));
     doubts.extend(coupling::doubt(scenario, modes.as_ref()));
     doubts.extend(tables::doubts(scenario));
-    doubts.extend(mjcf::doubts(scenario, &names));
-    Ok(Some(Preview {
+    doubts.extend(mjcf::doubts(scenario, names));
+    Ok(Preview {
         name: scenario.name.clone(),
         models: models(scenario),
         demand,
@@ -128,10 +132,10 @@ fn previewed(jobs: &[Job], depth: Depth, workers: Option<&Workers>) -> Result<Op
         loops: pace::loops(scenario),
         stability,
         delays: pace::delays(scenario),
-        cost: Cost::of(scenario, program.run, jobs),
+        cost: Cost::of(scenario, program.run, names),
         program,
         doubts,
-    }))
+    })
 }
 
 /// Which tables of the file stand on a model, and where that is; folders may have any name.

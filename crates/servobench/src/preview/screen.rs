@@ -253,15 +253,13 @@ fn bandwidth(one: &LoopBandwidth) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worker::Workers;
-    use crate::{Source, jobs, preview};
+    use crate::preview::preview;
     use std::path::Path;
 
     fn shown(file: &str) -> String {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file);
         let loaded = servobench_scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        let jobs = jobs(vec![Source { scenario: loaded.scenario, text: String::new() }], &[]);
-        preview(&jobs, &Workers::none()).unwrap().unwrap().screen()
+        preview(&loaded.scenario, &loaded.scenario.engines, None).unwrap().screen()
     }
 
     #[test]
@@ -281,10 +279,5 @@ mod tests {
         screen.line("none", &[]);
         let expected = format!("  loops       {part}, {},\n              z\n", "y".repeat(23));
         assert_eq!(screen.text, expected);
-    }
-
-    #[test]
-    fn no_job_has_no_preview() {
-        assert!(preview(&[], &Workers::none()).unwrap().is_none());
     }
 }

@@ -1,21 +1,20 @@
 //! Limits on metrics for which a run is too short, or its rows too far apart.
 use super::Objection;
-use crate::job::{Job, run_length};
 use crate::question::question;
+use crate::size::is_thinned;
 use servobench_metrics::{Limit, Quantity, Question, Scope};
 use servobench_scenario::{Scenario, Step};
-use servobench_sim::Program;
+use servobench_sim::{Program, run_length};
 use servobench_trace::Move;
 
 /// Milliseconds that are rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Limits of `job` that no run of it can keep, because what they are on cannot be measured.
-pub(super) fn objections(job: &Job) -> Vec<Objection> {
-    let scenario = &job.scenario;
+/// Limits of `scenario` that no run of it can keep, because what they are on cannot be measured.
+pub(super) fn objections(scenario: &Scenario) -> Vec<Objection> {
     let Ok(planned) = Program::new(scenario) else { return Vec::new() };
     let question = question(scenario);
-    let mut found = too_few_rows(job, &question);
+    let mut found = too_few_rows(scenario, &question);
     let moves: Vec<Move> = planned.moves().collect();
     let run = Planned { scenario, question, length: run_length(scenario, &planned), moves };
     found.extend(scenario.limits.iter().filter_map(|limit| run.too_short(limit)));
@@ -88,12 +87,12 @@ impl Planned<'_> {
 }
 
 /// Limits on what is made of rows that are too far apart.
-fn too_few_rows(job: &Job, question: &Question) -> Vec<Objection> {
-    let (rate, needed) = (job.scenario.record.rate.hertz(), question.coarsest_rate());
-    if !job.is_thinned() || f64::from(rate) >= needed {
+fn too_few_rows(scenario: &Scenario, question: &Question) -> Vec<Objection> {
+    let (rate, needed) = (scenario.record.rate.hertz(), question.coarsest_rate());
+    if !is_thinned(scenario) || f64::from(rate) >= needed {
         return Vec::new();
     }
-    let limits = job.scenario.limits.iter().filter(|limit| limit.metric.is_of_rows());
+    let limits = scenario.limits.iter().filter(|limit| limit.metric.is_of_rows());
     let object = |limit: &Limit| Objection {
         key: format!("limits.{}", limit.metric),
         line: None,

@@ -11,8 +11,11 @@ pub struct Panicked {
     pub words: String,
 }
 
-/// Does `work`; what it had in its hands when it panicked is lost.
-pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
+/// Does `work`; a panic loses its values and nothing else.
+///
+/// # Errors
+/// [`Panicked`] with the words of the panic.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Panicked { words: words(panic.as_ref()) })
 }
 

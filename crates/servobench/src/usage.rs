@@ -1,5 +1,5 @@
 //! How much of its limits a run used, and the mode in which its load swings: what an advice is made of.
-use crate::execute::Run;
+use crate::run::Run;
 use servobench_metrics::{Limit, Name};
 use servobench_motion::Limits;
 use servobench_planner::Generator;

@@ -1,10 +1,10 @@
-//! Which engines this build has.
+//! Engines of a build.
 use servobench_config::Choice as _;
 use servobench_plant::{Engine, EngineName};
 use servobench_sim::{FmuOpener, NoFmus};
 use thiserror::Error;
 
-/// The engines of this build; the command line lists them, since it alone has engine features.
+/// Engines of a build, and the opener of FMUs.
 #[derive(Clone, Copy)]
 pub struct Engines {
     /// Each at most once.
@@ -25,6 +25,16 @@ pub struct EngineMissing {
 }
 
 impl Engines {
+    /// The engines of this library: `exact`, and `rapier` with its feature. FMUs are not opened.
+    pub const EMBEDDED: Self = Self {
+        installed: &[
+            &servobench_plant::Exact,
+            #[cfg(feature = "rapier")]
+            &servobench_engine_rapier::Rapier,
+        ],
+        fmu_opener: &NoFmus,
+    };
+
     /// A build without engines.
     pub const NONE: Self = Self { installed: &[], fmu_opener: &NoFmus };
 

@@ -1,9 +1,9 @@
 //! The moves as they are planned, and limits that no run of them can keep.
 use super::{Doubt, Units};
-use crate::job::run_length;
 use servobench_metrics::{DisplayUnits, Limit, Name, Quantity, Scope};
 use servobench_scenario::{Actuator, BusMode, Scenario, Step};
 use servobench_sim::Program;
+use servobench_sim::run_length;
 use servobench_trace::Move;
 
 /// Durations that are no shorter than the planned one.
@@ -174,8 +174,7 @@ fn missed(limit: &Limit, planned: f64, it: &str, key: impl Fn(&str) -> String) -
 
 #[cfg(test)]
 mod tests {
-    use crate::worker::Workers;
-    use crate::{Doubt, Source, jobs, preview};
+    use crate::preview::{Doubt, preview};
 
     /// Order 2, 0.3 m at 0.6 m/s and 2 m/s²: x/v + v/a = 0.8 s.
     const MOVE: &str = r#"
@@ -202,10 +201,7 @@ mod tests {
     fn doubts(text: &str) -> Vec<(String, String)> {
         let scenario =
             servobench_scenario::parse("test", text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
-        let found = preview(&jobs(vec![Source { scenario, text: text.to_owned() }], &[]), &Workers::none())
-            .unwrap()
-            .unwrap()
-            .doubts;
+        let found = preview(&scenario, &scenario.engines, None).unwrap().doubts;
         found.into_iter().map(|Doubt { key, message, .. }| (key, message)).collect()
     }
 
