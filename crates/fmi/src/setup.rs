@@ -11,6 +11,7 @@ use crate::error::FmuError;
 use crate::slave::Port;
 use serde::{Deserialize, Serialize};
 use servobench_config::Choice as _;
+use servobench_files::nearest;
 use std::collections::HashSet;
 
 /// A start value.
@@ -153,9 +154,7 @@ fn find(it: &ModelDescription, port: &Port, counts: &[usize]) -> Result<Wire, St
 /// Position of a variable; names that are like the one that is not there help.
 fn position(it: &ModelDescription, name: &str) -> Result<usize, String> {
     it.position(name).ok_or_else(|| {
-        let distance = |known: &str| strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
-        let known = it.variables.iter().take(10_000).map(|variable| variable.name.as_str());
-        match known.min_by_key(|known| distance(known)).filter(|known| distance(known) <= 1 + name.len() / 3) {
+        match nearest(name, it.variables.iter().take(10_000).map(|variable| variable.name.as_str())) {
             Some(near) => format!("there is no such variable; is it `{near}`?"),
             None => "there is no such variable".to_owned(),
         }

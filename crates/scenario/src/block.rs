@@ -3,7 +3,6 @@ use crate::diagnostic::Report;
 use crate::field::{Field, Slot, key, written};
 use crate::file::{CamSwitch, TableOfPoints, TrackOptions};
 use crate::list::Many;
-use crate::nearest::suggestion;
 use crate::simple::{Name, OneOf};
 use crate::source::At;
 use crate::table::{GroupKey, OpenTable};
@@ -11,6 +10,7 @@ use crate::tree::Node;
 use serde_json::{Value as Json, json};
 use servobench_config::quantities::VELOCITY;
 use servobench_config::{Choice as _, Kind::Axis, Measure, positive};
+use servobench_files::suggestion;
 use servobench_plcopen::program::Rows;
 use servobench_plcopen::{AxisParameter, BlockName, BufferMode, Direction, Input, InputType, Output, Value};
 

@@ -1,9 +1,9 @@
 //! A signal of the axis, by its name.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, written};
-use crate::nearest::suggestion;
 use crate::tree::Node;
 use serde_json::{Value as Json, json};
+use servobench_files::suggestion;
 use servobench_signals::Signal;
 
 impl Field for Signal {

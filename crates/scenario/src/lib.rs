@@ -26,7 +26,6 @@ mod mjcf_files;
 mod mjcf_size;
 mod models;
 mod name_table;
-mod nearest;
 mod object_table;
 mod overrides;
 mod parameter_key;

@@ -1,11 +1,11 @@
 //! `[limits]`: metrics by name, each with what it measures.
 use crate::diagnostic::Report;
 use crate::field::Field;
-use crate::nearest::suggestion;
 use crate::source::At;
 use crate::table::object_schema;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
+use servobench_files::suggestion;
 use servobench_metrics::{Limit, Name};
 
 /// Limits in the order of the file.

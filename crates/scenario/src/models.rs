@@ -1,11 +1,10 @@
 //! Motors, drives and axes by name: beside the scenario, above it, or embedded.
 use crate::access::{FileAccess, RELATIVE, Refused};
 use crate::diagnostic::Report;
-use crate::nearest::suggestion;
 use crate::source::{Place, Sources};
 use crate::tree::{self, Node, Table, Value};
 use include_dir::{Dir, include_dir};
-use servobench_files::FileRole;
+use servobench_files::{FileRole, suggestion};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};

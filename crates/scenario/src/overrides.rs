@@ -10,10 +10,10 @@ mod path;
 mod value;
 
 use crate::diagnostic::Report;
-use crate::nearest::suggestion;
 use crate::source::{SourceId, Sources, Span};
 use crate::tree::{Entry, Node, Table, Value};
 use path::Part;
+use servobench_files::suggestion;
 use servobench_sweep as sweep;
 use std::fmt;
 use std::str::FromStr;

@@ -2,12 +2,12 @@
 use crate::diagnostic::Report;
 use crate::field::{Field, key, physical, written};
 
-use crate::nearest::suggestion;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
 use servobench_base::Rate;
 use servobench_config::Choice;
 use servobench_config::quantities::FREQUENCY;
+use servobench_files::suggestion;
 use std::iter;
 use std::ops::RangeInclusive;
 

@@ -3,10 +3,10 @@
 use crate::diagnostic::{MOST_MISTAKES, Report};
 use crate::field::{Field, Slot};
 
-use crate::nearest::suggestion;
 use crate::source::{At, Span};
 use crate::tree::{Node, Table, Value};
 use serde_json::{Map, Value as Json, json};
+use servobench_files::suggestion;
 
 /// Describes a table.
 ///

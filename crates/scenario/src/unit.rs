@@ -1,6 +1,6 @@
 //! Units by symbol, with SI prefixes.
-use crate::nearest::nearest;
 use servobench_config::Dimension as D;
+use servobench_files::nearest;
 use std::f64::consts::{PI, SQRT_2};
 
 /// What one of a unit is in SI: `numerator / denominator · 10^power`.

@@ -1,7 +1,6 @@
 //! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults and incidents that belong to it.
 use crate::diagnostic::Report;
 use crate::field::Field;
-use crate::nearest::suggestion;
 use crate::simple::OneOf;
 use crate::source::At;
 use crate::table::{object_schema, table};
@@ -10,6 +9,7 @@ use serde_json::{Value as Json, json};
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{RATIO, TIME};
 use servobench_config::{not_negative, positive};
+use servobench_files::suggestion;
 use servobench_metrics::{Incident, Requirement};
 
 /// The requirements that the file names, each with whether it holds.

@@ -3,10 +3,10 @@ use crate::block::conditions;
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
-use crate::nearest::suggestion;
 use crate::resolve::{Alternative, one_of};
 use crate::source::{At, Span};
 use crate::when::When;
+use servobench_files::suggestion;
 use servobench_plcopen::program::Condition;
 use servobench_plcopen::{BlockName, Output};
 

@@ -3,11 +3,11 @@ use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
 use crate::file::File;
-use crate::nearest::suggestion;
 use crate::scenario::{Plc, Requirements};
 use crate::source::At;
 use crate::source::Span;
 use file::ExpectedOn;
+use servobench_files::suggestion;
 use servobench_metrics::{Expectation, Incident, Occasion, Tolerances};
 
 /// What the expectations need to know of the rest of the file.

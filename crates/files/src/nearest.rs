@@ -1,7 +1,8 @@
-//! The name that was probably meant.
+//! The name that was probably meant: what a file names and nothing has.
 
 /// The candidate nearest to `name`, when one is near: differing in case only, or in at most a third of its letters.
-pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();
     candidates
         .into_iter()
@@ -24,7 +25,8 @@ fn changes(name: &str, other: &str) -> Option<usize> {
 }
 
 /// "did you mean `x`?", or a list of all candidates when none is near.
-pub(crate) fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
+#[must_use]
+pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     if let Some(near) = nearest(name, candidates.clone()) {
         return format!("did you mean `{near}`?");
     }
