@@ -91,7 +91,12 @@ impl Field<Measure> for f64 {
 
     fn schema(spec: &Measure) -> Json {
         if !spec.is_ratio() {
-            return json!({ "type": "string", "pattern": QUANTITY_PATTERN, "examples": [spec.example] });
+            return json!({
+                "type": "string",
+                "pattern": QUANTITY_PATTERN,
+                "examples": [spec.example],
+                "x-quantity": described(spec),
+            });
         }
         let mut number = json!({ "type": "number" });
         match spec.bound {
@@ -105,6 +110,18 @@ impl Field<Measure> for f64 {
         }
         json!({ "anyOf": [number, { "type": "string", "pattern": "^ *[-+]?[0-9.]+ *%? *$" }] })
     }
+}
+
+/// Quantity, bound and coordinate, for the reference: `a mass or a moment of inertia, above zero (motor coordinate)`.
+fn described(spec: &Measure) -> String {
+    let quantity = names(&spec.kind.candidates(None, None).collect::<Vec<_>>());
+    let bound = if spec.bound == Bound::Any { String::new() } else { format!(", {}", spec.bound) };
+    let coordinate = match spec.kind {
+        Kind::Plain(_) => "",
+        Kind::Axis(_) => " (axis coordinate)",
+        Kind::Motor(_) => " (motor coordinate)",
+    };
+    format!("{quantity}{bound}{coordinate}")
 }
 
 /// A parameter that its owner describes; the `title` is the name by which errors call it.

@@ -35,6 +35,7 @@ mod points;
 mod quantity;
 mod random;
 mod reading;
+mod reference;
 mod resolve;
 mod scenario;
 mod schema;
@@ -53,15 +54,16 @@ pub use document::Document;
 pub use flux_table::{FluxTableError, FluxTableMistake, read_flux_table};
 pub use key_range::{KeyRange, KeyRangeError};
 pub use load::{Loaded, load, parse};
-pub use models::{embedded_demo, embedded_models};
+pub use models::{embedded_demo, embedded_model, embedded_models};
 pub use overrides::{Key, Override, OverrideError};
 pub use parameter_key::{parameter_key, switch_key};
-pub use parameters::{Difference, Parameter, differences};
+pub use parameters::{Difference, Parameter, differences, written_values};
 pub use points::{
     Column, Counts, MOST_POINTS, Points, PointsError, PointsMistake, Profile, read_accelerations, read_points,
     read_points_in, read_velocities,
 };
 pub use random::Seed;
+pub use reference::{KeyFile, KeyReference, key_references, keys_named, value_of_schema};
 pub use scenario::{
     Actuator, Axis, AxisMechanics, Bus, BusMode, Disturbance, DisturbedBody, Drive, DriveUnits, Feedback, Fmu,
     IdleMotor, Initial, InputSource, Interpolation, LONGEST_RUN, LoopSignal, MOST_TICKS, MoveStep, ObjectWrite, Plc,

@@ -40,6 +40,12 @@ pub fn embedded_models() -> Vec<(&'static str, &'static str)> {
     all
 }
 
+/// The embedded file at `path` within `models/`: a model, or an MJCF file that a scenario may name.
+#[must_use]
+pub fn embedded_model(path: &str) -> Option<&'static str> {
+    MODELS.get_file(path).and_then(include_dir::File::contents_utf8)
+}
+
 fn texts(folder: &'static Dir<'static>, extension: &str) -> Vec<(&'static str, &'static str)> {
     let wanted = folder.files().filter(|file| file.path().extension().is_some_and(|own| own == extension));
     let mut all: Vec<_> = wanted.filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?))).collect();

@@ -1,7 +1,8 @@
 //! What a scenario file says, models merged in: key by key and as it is written, so that two runs can be told apart.
+use crate::diagnostic::Report;
 use crate::quantity;
-use crate::source::{Authority, Sources};
-use crate::tree::{Node, Table, Value};
+use crate::source::{Authority, SourceId, Sources};
+use crate::tree::{self, Node, Table, Value};
 use std::collections::BTreeMap;
 
 /// A key of a scenario file and its value.
@@ -60,6 +61,26 @@ fn flatten(path: &str, node: &Node, sources: &Sources, all: &mut Vec<Parameter>)
         }
         _ => {}
     }
+}
+
+/// Every key of a TOML text with its value as it is written, in the order of the text; what is wrong with the text is left out.
+#[must_use]
+pub fn written_values(text: &str) -> Vec<(String, String)> {
+    fn list(path: &str, node: &Node, all: &mut Vec<(String, String)>) {
+        match &node.value {
+            Value::Table(table) => {
+                table.entries.iter().for_each(|entry| list(&format!("{path}.{}", entry.key), &entry.node, all));
+            }
+            Value::Array(items) if items.iter().any(|item| matches!(item.value, Value::Table(_))) => {
+                items.iter().enumerate().for_each(|(index, item)| list(&format!("{path}.{index}"), item, all));
+            }
+            value => all.push((path.to_owned(), written(value))),
+        }
+    }
+    let parsed = tree::parse(SourceId::SCENARIO, text, &mut Report::default());
+    let mut all = Vec::new();
+    parsed.table.entries.iter().for_each(|entry| list(&entry.key, &entry.node, &mut all));
+    all
 }
 
 /// A value as the file has it, texts without their quotes.
@@ -160,6 +181,13 @@ move_time = "1 s"
         assert!(found.contains(&("program.1.wait", "1 s", Some(17))));
         assert!(found.contains(&("limits.move_time", "1 s", Some(19))));
         assert_eq!(found.len(), 11, "{found:?}");
+    }
+
+    #[test]
+    fn every_value_of_a_text_is_listed_as_it_is_written() {
+        let found = written_values("a = 'x'\n[b]\nc = [1, 2]\n[[d]]\ne.f = true\n[[d]]\ne = 1.50\n");
+        let found: Vec<_> = found.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+        assert_eq!(found, [("a", "x"), ("b.c", "[1, 2]"), ("d.0.e.f", "true"), ("d.1.e", "1.50")]);
     }
 
     #[test]

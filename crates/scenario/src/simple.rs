@@ -31,7 +31,12 @@ impl Field<&'static str> for Rate {
     }
 
     fn schema(example: &&'static str) -> Json {
-        json!({ "type": "string", "pattern": "^ *[0-9.eE+-]+ *[kM]?Hz *$", "examples": [example] })
+        json!({
+            "type": "string",
+            "pattern": "^ *[0-9.eE+-]+ *[kM]?Hz *$",
+            "examples": [example],
+            "x-quantity": "a frequency in whole hertz",
+        })
     }
 }
 

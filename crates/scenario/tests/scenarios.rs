@@ -5,7 +5,7 @@
 use serde_json::{Value as Json, json};
 use servobench_scenario::{
     Actuator, AxisMechanics, Document, Override, Step, embedded_demo, embedded_models, json_schema, load, load_sweep,
-    parse, sweep_schema,
+    parse, sweep_schema, value_of_schema,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ fn read(path: &Path) -> String {
 
 /// Every scenario file of the repository.
 fn scenarios() -> Vec<PathBuf> {
-    let folders =
-        ["scenarios", "scenarios/demo", "scenarios/plc", "scenarios/setpoints"].map(|folder| repository().join(folder));
+    let folders = ["scenarios", "scenarios/demo", "scenarios/plc", "scenarios/setpoints", "scenarios/templates"]
+        .map(|folder| repository().join(folder));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
     let mut all: Vec<PathBuf> = files
         .map(|entry| entry.unwrap().path())
@@ -367,41 +367,7 @@ fn describe_channels(schema: &Json, out: &mut String) {
     }
 }
 
-fn is_percentage(value: &Json) -> bool {
-    value["type"] == "string" && value["pattern"].is_string() && value["examples"].is_null()
-}
-
-/// What a value may be, in a few characters.
+/// Values that a key may have, as Markdown.
 fn kind(value: &Json) -> String {
-    if value["title"] == "condition" {
-        return "output, or a [condition](#conditions)".into();
-    }
-    if let (true, Some(example)) = (value["type"] == "object", value["examples"][0].as_str()) {
-        return format!("`{{ {example} }}`");
-    }
-    if let Some(example) = value["examples"][0].as_str() {
-        return format!("`\"{example}\"`");
-    }
-    if let Some(constant) = value["const"].as_str() {
-        return format!("`\"{constant}\"`");
-    }
-    for several in ["oneOf", "anyOf"] {
-        if let Some(all) = value[several].as_array() {
-            // A number may also be written in percent, which is not worth saying each time.
-            let is_said = |one: &&Json| one["type"] != "array" && !is_percentage(one);
-            let kinds: Vec<String> = all.iter().filter(is_said).map(kind).collect();
-            let more = if all.iter().any(|one| one["type"] == "array") { ", or a list" } else { "" };
-            return if kinds.len() > 12 { format!("a name{more}") } else { format!("{}{more}", kinds.join(", ")) };
-        }
-    }
-    if value["enum"].is_array() {
-        return "a name".into();
-    }
-    match value["type"].as_str().unwrap() {
-        "boolean" => "`true`, `false`".into(),
-        "integer" => format!("{} to {}", value["minimum"], value["maximum"]),
-        "object" => "`{ min = …, max = … }`".into(),
-        "string" => "string".into(),
-        other => other.to_owned(),
-    }
+    value_of_schema(value).replace("a condition", "a [condition](#conditions)")
 }
