@@ -32,6 +32,7 @@ mod plan_points;
 mod plc;
 mod run;
 mod standard_input;
+mod start;
 mod sweep;
 mod sweep_closed_forms;
 mod timing;

@@ -4,6 +4,7 @@ mod choice;
 mod compare;
 mod mistakes;
 mod shapers;
+mod start;
 mod suite;
 
 pub(crate) use advise::AdviseArgs;
@@ -11,9 +12,11 @@ pub(crate) use choice::choice;
 pub(crate) use compare::{CompareArgs, Equal, EqualTerm, Variant};
 pub(crate) use mistakes::parse;
 pub(crate) use shapers::Shapers;
+pub(crate) use start::{ExamplesArgs, ExplainArgs, InitArgs, ModelsArgs};
 pub(crate) use suite::{DenyArgs, FmuTrustArgs, Keep, MemoryArgs, RunArgs, SuiteArgs, SweepArgs};
 
 use crate::commands::{PLAN_EXAMPLES, PlanArgs};
+use crate::exit;
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -30,15 +33,11 @@ use std::time::Duration;
 
 /// Closed-loop test bench for servo axes.
 #[derive(Debug, Parser)]
-#[command(name = "servobench", version, max_term_width = 80, after_help = AFTER_HELP)]
+#[command(name = "servobench", version, max_term_width = 80, after_help = exit::help())]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
-
-const AFTER_HELP: &str = "Exit codes: 0 passed, or unjudged because there are no limits; 2 invalid input; 3 error: a run could not \
-                          be carried out or its results not be written; 4 failed: a limit is missed, a requirement broken, \
-                          an expected fault missing, or a run has what --deny names; 130 and 143 interrupted. Of several, 2 comes before 3 before 4.";
 
 const AFTER_RUN: &str = "Columns: MOVE is the set-point's duration, SETTLING the time after it until the load stays in \
                          its window, PEAK ERR the peak following error of the load, VIBR P-P its residual vibration, \
@@ -70,6 +69,18 @@ const AFTER_MAN: &str =
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Write a commented scenario of an axis to begin with, which runs as it is.
+    #[command(after_help = start::AFTER_INIT)]
+    Init(InitArgs),
+    /// List the ready scenarios, or write one of them with the files that it names.
+    #[command(after_help = start::AFTER_EXAMPLES)]
+    Examples(ExamplesArgs),
+    /// Explain a key of scenario files, a metric, a requirement, a signal, a function block or an exit code.
+    #[command(after_help = start::AFTER_EXPLAIN)]
+    Explain(ExplainArgs),
+    /// List the built-in models of motors, drives and axes, or print one.
+    #[command(after_help = start::AFTER_MODELS)]
+    Models(ModelsArgs),
     /// Run scenarios and judge them; without a file, run the demo.
     #[command(after_help = AFTER_RUN)]
     Run(RunArgs),
@@ -171,7 +182,7 @@ pub(crate) fn visible() -> clap::Command {
     clap::Command::new("servobench")
         .version(env!("CARGO_PKG_VERSION"))
         .about(whole.get_about().cloned().unwrap_or_default())
-        .after_help(AFTER_HELP)
+        .after_help(exit::help())
         .subcommand_required(true)
         .subcommands(whole.get_subcommands().filter(|inner| !inner.is_hide_set()).cloned())
 }

@@ -44,6 +44,10 @@ pub(crate) enum CliError {
     #[error("`{}` has no `[bus]`, over which objects are written: add one, or leave the scenario out for the values after \
              power-on", named(.scenario))]
     NoBus { scenario: PathBuf },
+    #[error("there is no {what} `{name}`: {help}")]
+    NoSuch { what: &'static str, name: String, help: String },
+    #[error("there are several {what} `{name}`: {}; name the folder, too", .names.join(", "))]
+    Several { what: &'static str, name: String, names: Vec<String> },
     #[error("cannot read `{}`: {error}", .path.display())]
     Read { path: PathBuf, error: io::Error },
     #[error("cannot read `{}`: {error}", .path.display())]
@@ -210,6 +214,8 @@ impl CliError {
             | Self::NoScenario { .. }
             | Self::StdinTwice
             | Self::NoBus { .. }
+            | Self::NoSuch { .. }
+            | Self::Several { .. }
             | Self::Read { .. }
             | Self::ReadResults { .. }
             | Self::NoResults { .. }

@@ -1,20 +1,28 @@
-//! How the program ends.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | 0 | every run passed, or is unjudged because there are no limits |
-//! | 2 | invalid input: usage, scenario, model |
-//! | 3 | error: a run could not be carried out (engine missing, native failure), or what it gave could not be written |
-//! | 4 | failed: a limit is missed, a requirement broken, an expected fault missing; or a run has what `--deny` names |
-//! | 130, 143 | interrupted (SIGINT, SIGTERM), as a shell says it, whatever came of the runs until then |
-//!
-//! Of several: 2 before 3 before 4.
-//!
-//! 1 is never ours: it is what a native library ends a process with. A reader that goes away (`| head`) changes nothing:
-//! the verdict keeps its code.
+//! Exit codes of the program. A reader that goes away (`| head`) changes nothing: the verdict keeps its code.
 use servobench_results::Outcome;
 use servobench_suite::RunError;
 use std::process::ExitCode;
+
+/// Every exit code with its meaning.
+pub(crate) const CODES: [(&str, &str); 7] = [
+    ("0", "passed, or unjudged because there are no limits"),
+    ("1", "not of servobench: a native library ended the process"),
+    ("2", "invalid input: arguments, scenario or model"),
+    ("3", "error: a run could not be carried out, or its results could not be written"),
+    ("4", "failed: a limit is missed, a requirement broken, an expected fault missing, or a run has what --deny names"),
+    ("130", "interrupted by SIGINT (Ctrl-C); results of runs that have ended are kept"),
+    ("143", "interrupted by SIGTERM; results of runs that have ended are kept"),
+];
+
+/// Which code a suite ends with whose runs ended with several.
+pub(crate) const PRECEDENCE: &str = "Of several, 2 comes before 3 before 4.";
+
+/// The exit codes in a paragraph, for the help.
+pub(crate) fn help() -> String {
+    let own = CODES.iter().filter(|(code, _)| *code != "1");
+    let codes = own.map(|(code, meaning)| format!("{code} {}", meaning.replace(';', ",")));
+    format!("Exit codes: {}. {PRECEDENCE}", codes.collect::<Vec<_>>().join("; "))
+}
 
 /// The exit codes. A run of several scenarios ends with the worst: 2 before 3 before 4 before 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +88,13 @@ pub(crate) const fn of_run_error(error: &RunError) -> Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_code_has_a_meaning() {
+        let all = [Exit::Passed, Exit::Input, Exit::Run, Exit::Failed, Exit::Interrupted];
+        assert!(all.iter().all(|exit| CODES.iter().any(|(code, _)| *code == exit.code().to_string())));
+        assert!(help().contains("3 error: a run could not"), "{}", help());
+    }
 
     #[test]
     fn of_several_two_comes_before_three_before_four() {

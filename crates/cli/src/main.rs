@@ -15,6 +15,7 @@ mod interrupt;
 mod output;
 mod outputs;
 mod progress;
+mod ready;
 mod resources;
 mod sources;
 mod suite;
@@ -42,6 +43,10 @@ fn main() -> ExitCode {
 fn dispatch(command: &Command) -> Exit {
     FmuTrust::of(command).settle();
     let done = match command {
+        Command::Init(args) => commands::init(args),
+        Command::Examples(args) => commands::examples(args),
+        Command::Explain(args) => commands::explain(args),
+        Command::Models(args) => commands::models(args),
         Command::Run(args) => commands::run(args),
         Command::Sweep(args) => commands::sweep(args),
         Command::Advise(args) => commands::advise(args),

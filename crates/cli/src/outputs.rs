@@ -66,6 +66,8 @@ pub(crate) enum Refused {
     Twice { option: String, other: String, path: PathBuf },
     #[error("{option}: `{}` is a folder; name a file in it", .path.display())]
     Folder { option: String, path: PathBuf },
+    #[error("`{}` exists and is not overwritten; {way_out}", .path.display())]
+    Exists { path: PathBuf, way_out: &'static str },
     #[error("{option}: `{}` is no folder; name one, or a name that is free", .path.display())]
     NoFolder { option: String, path: PathBuf },
     #[error("`{name}` is no name of a file beside the results")]
@@ -111,6 +113,15 @@ impl<'a> Outputs<'a> {
             self.files.insert(place, option.to_owned());
         }
         Ok(Output::at(path, kind))
+    }
+
+    /// A file at `path` that does not exist yet; where one does, `way_out` says what to do.
+    pub(crate) fn new_file(&mut self, option: &str, path: &Path, way_out: &'static str) -> Result<Output, Refused> {
+        // A link that leads nowhere is there, too.
+        if std::fs::symlink_metadata(path).is_ok() {
+            return Err(Refused::Exists { path: path.to_owned(), way_out });
+        }
+        self.anywhere(option, path)
     }
 
     /// The same, where that was asked for.

@@ -6,6 +6,7 @@
 
 mod advice;
 mod bound_limits;
+mod columns;
 mod compare;
 mod denied;
 mod drawing;
@@ -25,6 +26,7 @@ mod timing;
 mod verdict_table;
 
 pub use advice::{AdviceOptions, advice_json, advice_text};
+pub use columns::two_columns;
 pub use compare::{Compared, Comparison, Noise};
 pub use denied::{Denied, denials};
 pub use error::ReportError;

@@ -82,49 +82,46 @@ pub enum Amplifier {
     },
 }
 
-/// When an axis has a signal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Presence {
-    /// Always.
-    Always,
-    /// With a fieldbus.
-    OnBus,
-    /// With a body between motor and load.
-    WithTable,
-    /// With firmware.
-    WithFirmware,
-    /// With a current loop.
-    WithCurrentLoop,
-    /// With a motor that has an effort.
-    WithEffort,
-    /// With a motor that has currents.
-    WithCurrents,
-    /// With an ideal source.
-    WithOutput,
-    /// Where something disturbs the motor.
-    MotorDisturbed,
-    /// Where something disturbs the load.
-    LoadDisturbed,
-    /// With stops at the ends of the travel.
-    WithEndStops,
-    /// With a motor that has a loss in its iron.
-    WithIronLoss,
-    /// With a motor that warms up.
-    WithThermalModel,
-    /// Where the encoder on the motor errs.
-    MotorEncoderErrs,
-    /// Where the encoder on the load errs.
-    LoadEncoderErrs,
-    /// Where the measured current errs.
-    CurrentErrs,
-    /// Where the drive measures the velocity by a method of its own.
-    MeasuresVelocity,
-    /// With an inverter that is not ideal.
-    WithInverter,
-    /// With an inverter that switches.
-    WithSwitching,
-    /// With a DC link whose voltage changes.
-    WithLink,
+/// Declares [`Presence`] once: variant and meaning.
+macro_rules! presences {
+    ($($variant:ident $meaning:literal,)+) => {
+        /// When an axis has a signal.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Presence {
+            $(#[doc = $meaning] $variant,)+
+        }
+
+        impl Presence {
+            /// Its meaning in a few words.
+            #[must_use]
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => $meaning,)+ }
+            }
+        }
+    };
+}
+
+presences! {
+    Always "always",
+    OnBus "with a fieldbus",
+    WithTable "with a body between motor and load",
+    WithFirmware "with firmware",
+    WithCurrentLoop "with a current loop",
+    WithEffort "with a motor that has an effort",
+    WithCurrents "with a motor that has currents",
+    WithOutput "with an ideal source",
+    MotorDisturbed "where something disturbs the motor",
+    LoadDisturbed "where something disturbs the load",
+    WithEndStops "with stops at the ends of the travel",
+    WithIronLoss "with a motor that has a loss in its iron",
+    WithThermalModel "with a motor that warms up",
+    MotorEncoderErrs "where the encoder on the motor errs",
+    LoadEncoderErrs "where the encoder on the load errs",
+    CurrentErrs "where the measured current errs",
+    MeasuresVelocity "where the drive measures the velocity by a method of its own",
+    WithInverter "with an inverter that is not ideal",
+    WithSwitching "with an inverter that switches",
+    WithLink "with a DC link whose voltage changes",
 }
 
 impl Presence {
