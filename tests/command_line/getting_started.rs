@@ -12,7 +12,7 @@ const PAGE: &str = "docs/getting-started.md";
 enum Part {
     /// Text, with its fences.
     Text(String),
-    /// A file that the user writes.
+    /// A file that the user writes, or that a command before it has written.
     File { name: String, text: String },
     /// Commands, each with what it prints.
     Session(Vec<(String, String)>),
@@ -81,11 +81,11 @@ fn written(parts: &[Part]) -> String {
 
 /// What a user sees who types `command` in `folder`; with the exit code where it is not zero.
 fn typed(command: &str, folder: &std::path::Path) -> String {
-    let mut words = command.split_whitespace();
-    assert_eq!(words.next(), Some("servobench"), "{command}");
+    let words = shlex::split(command).unwrap_or_default();
+    assert_eq!(words.first().map(String::as_str), Some("servobench"), "{command}");
     let program = env!("CARGO_BIN_EXE_servobench");
     let output: Output = Command::new(program)
-        .args(words)
+        .args(&words[1..])
         .current_dir(folder)
         .env("COLUMNS", "80")
         .env_remove("NO_COLOR")
@@ -111,7 +111,14 @@ fn each_command_prints_what_the_page_says() {
     for part in &mut parts {
         match part {
             Part::Text(_) => {}
-            Part::File { name, text } => fs::write(folder.path().join(name), text).unwrap(),
+            Part::File { name, text } => {
+                let path = folder.path().join(name);
+                match fs::read_to_string(&path) {
+                    // A command has written it.
+                    Ok(written) => *text = written,
+                    Err(_) => fs::write(path, text).unwrap(),
+                }
+            }
             Part::Session(session) => {
                 for (command, output) in session {
                     *output = typed(command, folder.path());
