@@ -29,11 +29,9 @@ pub use feedthrough::Feedthrough;
 pub use library::calls::note_calls;
 pub use loaded::Loaded;
 pub use log::send_log_lines_to;
-pub use request::{
-    Bounds, DeclaredNumber, DeclaredUnit, FmuEntry, FmuFile, FmuMistake, FmuRequest, Isolation, IsolationKind, SiPort,
-    SiUnit,
-};
+pub use request::{DeclaredNumber, DeclaredUnit, FmuRequest};
 pub use servobench_base::Severity;
 pub use servobench_config::Choice;
-pub use setup::{Setup, Value};
+pub use servobench_fmu_file::{Bounds, FmuEntry, FmuFile, FmuMistake, Isolation, IsolationKind, SiPort, SiUnit, Value};
+pub use setup::Setup;
 pub use slave::{Capabilities, LogLine, Port, Slave, SlaveError, StepEnd};

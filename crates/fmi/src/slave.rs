@@ -1,9 +1,10 @@
 //! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
 use crate::bits;
-use crate::request::{DeclaredNumber, FmuMistake};
+use crate::request::DeclaredNumber;
 use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
 pub use servobench_base::StepEnd;
+use servobench_fmu_file::FmuMistake;
 use std::borrow::Cow;
 use thiserror::Error;
 

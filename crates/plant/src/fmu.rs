@@ -1,5 +1,5 @@
 //! An FMU as the mechanics of an axis: which of its variables are what.
-use servobench_fmi::{FmuFile, SiPort};
+use servobench_fmu_file::{FmuFile, SiPort};
 
 /// An FMU that is the mechanics of an axis.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use crate::mjcf_axis::MjcfAxis;
 use crate::refusal::{Refusal, in_one_line};
 use servobench_base::state::{Damaged, Reader, Writer};
 use servobench_base::{ParamError, Setpoint, Severity, Stateful, finite, positive};
-use servobench_fmi::FmuMistake;
+use servobench_fmu_file::FmuMistake;
 use std::path::PathBuf;
 use thiserror::Error;
 

@@ -4,7 +4,7 @@ use crate::reading::{self, ReadError, names, proposals};
 use servobench_base::Coordinate;
 use servobench_config::quantities::{ACCELERATION, FREQUENCY, JERK, POSITION, RATIO, SNAP, TIME, VELOCITY};
 use servobench_config::{Counterparts, Physical};
-use servobench_fmi::SiUnit;
+use servobench_fmu_file::SiUnit;
 use servobench_metrics::Name;
 use thiserror::Error;
 

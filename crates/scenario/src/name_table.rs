@@ -6,7 +6,7 @@ use crate::field::{Field, written};
 use crate::source::{At, Span};
 use crate::tree::{Entry, Node, Value};
 use serde_json::{Value as Json, json};
-use servobench_fmi::Value as StartValue;
+use servobench_fmu_file::Value as StartValue;
 
 /// A name and what stands behind it.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use crate::error::{Error, is_of_the_run};
 use crate::panicked::caught;
 use crate::preview::Doubt;
 use serde::{Deserialize, Serialize};
-use servobench_fmi::{FmuEntry, FmuMistake};
+use servobench_fmu_file::{FmuEntry, FmuMistake};
 use servobench_plant::{Engine, EngineName, MechanicsError, Refusal, RefusedAt};
 use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
 use servobench_sim::{Bench, BuildError, ConnectionDelay, FmuDoubt, FmuOpener, UnusableFmu};

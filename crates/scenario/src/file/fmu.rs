@@ -6,7 +6,7 @@ use servobench_config::Kind::Plain;
 use servobench_config::positive;
 use servobench_config::quantities::{RATIO, TIME};
 use servobench_coupling::MethodKind;
-use servobench_fmi::IsolationKind;
+use servobench_fmu_file::IsolationKind;
 
 table! {
     /// A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation).

@@ -15,7 +15,7 @@ use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
 use servobench_coupling::Settings;
 use servobench_files::{FileRole, suggestion};
-use servobench_fmi::{Bounds, FmuFile, Isolation, IsolationKind};
+use servobench_fmu_file::{Bounds, FmuFile, Isolation, IsolationKind};
 use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,5 +1,5 @@
 //! Parts that somebody else simulates.
-use servobench_fmi::FmuFile;
+use servobench_fmu_file::FmuFile;
 use servobench_signals::Signal;
 
 /// A Functional Mock-up Unit beside the axis and what it is connected to.

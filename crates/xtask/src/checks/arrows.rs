@@ -24,8 +24,9 @@ const PLAN: [(&str, May); 39] = [
     ("fieldbus", May::On(&["base", "config", "cia402", "motion"])),
     ("plcopen", May::On(&["base", "config", "fieldbus", "motion"])),
     ("structured-text", May::On(&["base", "config"])),
-    ("fmi", May::On(&["base", "config", "files"])),
-    ("plant", May::On(&["base", "config", "fmi"])),
+    ("fmu-file", May::On(&["config"])),
+    ("fmi", May::On(&["base", "config", "files", "fmu-file"])),
+    ("plant", May::On(&["base", "config", "fmu-file"])),
     ("linear", May::On(&["base"])),
     ("stability", May::On(&["base", "drive", "linear", "plant"])),
     ("sweep", May::On(&["base", "config"])),
@@ -40,7 +41,7 @@ const PLAN: [(&str, May); 39] = [
     (
         "scenario",
         May::On(&[
-            "base", "config", "cia402", "motion", "planner", "drive", "fieldbus", "fmi", "plant", "plcopen",
+            "base", "config", "cia402", "motion", "planner", "drive", "fieldbus", "fmu-file", "plant", "plcopen",
             "coupling", "signals", "metrics", "files", "sweep",
         ]),
     ),
@@ -80,7 +81,7 @@ const PLAN: [(&str, May); 39] = [
             "config",
             "drive",
             "engine-rapier",
-            "fmi",
+            "fmu-file",
             "metrics",
             "motion",
             "planner",
@@ -167,7 +168,7 @@ mod tests {
         let members = ["servobench-base", "servobench-plant", "servobench-drive"];
         let arrows = [("servobench-plant", "servobench-base", None), ("servobench-plant", "servobench-drive", None)];
         let found = findings(&metadata(&members, &[], &arrows));
-        let wanted = "crate `servobench-plant` must not depend on `servobench-drive`; allowed: base, config, fmi";
+        let wanted = "crate `servobench-plant` must not depend on `servobench-drive`; allowed: base, config, fmu-file";
         assert_eq!(found, [wanted]);
     }
 

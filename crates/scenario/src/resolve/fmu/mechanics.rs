@@ -8,7 +8,7 @@ use crate::scenario::{Fmu, InputSource};
 use crate::source::At;
 use servobench_base::Coordinate;
 use servobench_config::{Choice as _, choices};
-use servobench_fmi::SiPort;
+use servobench_fmu_file::SiPort;
 use servobench_plant::{FmuBody, FmuModel, ModelKind};
 use servobench_signals::Signal;
 
