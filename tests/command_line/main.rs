@@ -38,12 +38,16 @@ mod sweep_closed_forms;
 mod timing;
 #[cfg(unix)]
 mod view;
+#[cfg(unix)]
+mod view_program;
 mod workflows;
 
 use serde_json::Value;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -52,8 +56,33 @@ fn repository() -> PathBuf {
 /// `servobench`, to be run in the repository's root.
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_servobench"));
-    command.args(arguments).current_dir(repository());
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    command.args(arguments).current_dir(repository()).env("PATH", search_path(std::env::split_paths(&folders)));
     command
+}
+
+/// These folders, and behind them a stand-in for `servobench-view`. That program lies beside `servobench` in a build of the whole workspace,
+/// and is found there first; in a build without Rerun what starts it can be tested all the same.
+fn search_path(folders: impl IntoIterator<Item = PathBuf>) -> OsString {
+    static STAND_IN: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let version = env!("CARGO_PKG_VERSION");
+        #[cfg(unix)]
+        script(
+            &folder.path().join("servobench-view"),
+            &format!("[ \"$1\" = --version ] && exec echo servobench-view {version}\nshift\nexec cat - \"$@\"\n"),
+        );
+        folder
+    });
+    std::env::join_paths(folders.into_iter().chain([STAND_IN.path().to_owned()])).unwrap()
+}
+
+/// Writes a shell script that can be started.
+#[cfg(unix)]
+fn script(path: &Path, text: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    fs::write(path, format!("#!/bin/sh\n{text}")).unwrap();
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 /// Runs `servobench` in the repository's root.

@@ -58,7 +58,7 @@ fn advice_names_the_program_as_short_as_a_shell_finds_it() {
             [(folder, ": servobench view "), (work.path(), &*format!(": {} view ", program.display()))]
         {
             let arguments = [arguments, &["--out", out.to_str().unwrap()]].concat();
-            let output = command(&arguments).env("PATH", path).output().unwrap();
+            let output = command(&arguments).env("PATH", crate::search_path([path.to_owned()])).output().unwrap();
             assert!(said(&output).contains(expected), "{expected}: {}", said(&output));
         }
     }

@@ -1,5 +1,5 @@
 //! `servobench view`, with a viewer that writes down what it is told to open.
-use crate::{SLIDE, code, command, folder, repository, said, servobench};
+use crate::{SLIDE, code, command, folder, repository, said, search_path, servobench};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::Output;
@@ -9,8 +9,8 @@ use std::time::{Duration, SystemTime};
 fn viewed(folder: &Path) -> (Output, Vec<String>) {
     let viewer = repository().join("tests/viewer");
     let list = folder.join("viewed.txt");
-    let output =
-        command(&["view", folder.to_str().unwrap()]).env("PATH", viewer).env("VIEWED", &list).output().unwrap();
+    let mut view = command(&["view", folder.to_str().unwrap()]);
+    let output = view.env("PATH", search_path([viewer])).env("VIEWED", &list).output().unwrap();
     let names = fs::read_to_string(list).unwrap_or_default();
     (output, names.lines().map(|path| Path::new(path).file_name().unwrap().to_str().unwrap().to_owned()).collect())
 }

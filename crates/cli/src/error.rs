@@ -5,6 +5,7 @@ use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
 use crate::outputs::Refused;
 use crate::sources::{Unusable, named, told};
+use crate::view_program::NoViewProgram;
 use servobench_advise::AdviseError;
 use servobench_config::Choice as _;
 use servobench_isolation::ContainError;
@@ -14,7 +15,7 @@ use servobench_scenario::{Diagnostic, LoadError, Sources};
 use servobench_structured_text::ExportError;
 use servobench_suite::{CompareError, Job, RunError};
 use servobench_trace::TraceError;
-use servobench_view::ViewError;
+use servobench_view_request::{LabelError, RequestError};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io;
@@ -91,6 +92,11 @@ pub(crate) enum CliError {
     NothingForTheViewer,
     #[error(transparent)]
     ReadRecording(TraceError),
+    /// In the words of `servobench-view`.
+    #[error("{0}")]
+    NotDrawn(String),
+    #[error(transparent)]
+    Label(#[from] LabelError),
     #[error("`{}`: {}{error}", .recording.display(), options(.error))]
     Timing { recording: PathBuf, error: ReportError },
     #[error(transparent)]
@@ -158,7 +164,11 @@ pub(crate) enum CliError {
     #[error(transparent)]
     WriteRecording(TraceError),
     #[error(transparent)]
-    View(#[from] ViewError),
+    ViewProgram(#[from] NoViewProgram),
+    #[error("a recording was not drawn for the Rerun viewer: {0}")]
+    Drawing(String),
+    #[error(transparent)]
+    Request(#[from] RequestError),
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
@@ -236,8 +246,9 @@ impl CliError {
             | Self::NoAdvice(AdviseError::TooFewDraws { .. } | AdviseError::TooMuch { .. })
             | Self::TrustAgain
             | Self::NothingForTheViewer
-            | Self::View(ViewError::Label { .. })
             | Self::ReadRecording(_)
+            | Self::NotDrawn(_)
+            | Self::Label(_)
             | Self::Timing { .. }
             | Self::Output(_)
             | Self::SourceDateEpoch(_)
@@ -267,7 +278,9 @@ impl CliError {
             | Self::Print(_)
             | Self::Listen(_)
             | Self::WriteRecording(_)
-            | Self::View(_)
+            | Self::ViewProgram(_)
+            | Self::Drawing(_)
+            | Self::Request(_)
             | Self::Report(_)
             | Self::Schema(_)
             | Self::OwnProgram(_)

@@ -19,6 +19,7 @@ mod ready;
 mod resources;
 mod sources;
 mod suite;
+mod view_program;
 mod workers;
 
 use args::Command;

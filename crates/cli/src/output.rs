@@ -3,6 +3,7 @@ use crate::args::Keep;
 use crate::build_id;
 use crate::error::CliError;
 use crate::outputs::OutputFolder;
+use crate::view_program::ViewProgram;
 use jiff::Timestamp;
 use servobench::channel_limits;
 use servobench_metrics::{Metrics, REQUEST_KIND, Verdict};
@@ -16,7 +17,7 @@ use servobench_results::{
 use servobench_scenario::{Actuator, Parameter, Scenario, Step};
 use servobench_suite::Job;
 use servobench_trace::{Recording, seal_of};
-use servobench_view::{MotorLimits, ViewOptions};
+use servobench_view_request::{self as view, MotorLimits, Request, ViewOptions};
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -51,8 +52,8 @@ pub(crate) struct Written {
     pub(crate) files: Vec<String>,
 }
 
-/// Writes the recording of `job` into `folder`. Beside it goes its timing diagram where it has signals, and when `rrd` says so
-/// the recording for the Rerun viewer.
+/// Writes the recording of `job` into `folder`. Beside it goes its timing diagram where it has signals, and with a program that draws it
+/// the recording for the Rerun viewer, under a verdict.
 ///
 /// # Errors
 /// With what was written until then.
@@ -60,10 +61,10 @@ pub(crate) fn write_recording(
     job: &Job,
     recording: &Recording,
     folder: &OutputFolder,
-    shown: Option<servobench_view::Verdict>,
+    drawn: Option<(&ViewProgram, view::Verdict)>,
 ) -> Result<Written, (Box<CliError>, Written)> {
     let mut written = Written::default();
-    let done = write_each(job, recording, folder, shown, &mut written);
+    let done = write_each(job, recording, folder, drawn, &mut written);
     done.map_err(|error| (Box::new(error), written.clone())).map(|()| written)
 }
 
@@ -71,13 +72,13 @@ fn write_each(
     job: &Job,
     recording: &Recording,
     folder: &OutputFolder,
-    shown: Option<servobench_view::Verdict>,
+    drawn: Option<(&ViewProgram, view::Verdict)>,
     written: &mut Written,
 ) -> Result<(), CliError> {
     let name = format!("{}{RECORDING}", job.id);
     let path = folder.place(&name)?;
     recording.write_parquet(&path).map_err(CliError::WriteRecording)?;
-    written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path, error })?;
+    written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path: path.clone(), error })?;
     written.recording = Some(name.clone());
     written.note(name);
     // What a task requests alone has no edges that are worth a drawing.
@@ -87,10 +88,10 @@ fn write_each(
         folder.file(&name)?.write(&diagram)?;
         written.note(name);
     }
-    if let Some(verdict) = shown {
+    if let Some((program, verdict)) = drawn {
         let name = format!("{}{FOR_THE_VIEWER}", job.id);
         let options = ViewOptions { verdicts: vec![verdict], ..view_options(&job.scenario) };
-        servobench_view::write_rrd(recording, folder.place(&name)?, &options)?;
+        program.draw(&[&path], &Request { labels: Vec::new(), options }, &folder.file(&name)?)?;
         written.note(name);
     }
     Ok(())
@@ -196,21 +197,21 @@ pub(crate) const fn is_kept(keep: Keep, outcome: Outcome) -> bool {
 }
 
 /// What a viewer says of a run that was judged.
-pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> servobench_view::Verdict {
+pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> view::Verdict {
     let judged = RunResult::judged(RunIdentity::default(), recording, metrics, verdict);
     said_of(judged.verdict, judged.reasons, judged.warnings)
 }
 
 /// The words of a result for a viewer.
-pub(crate) fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<String>) -> servobench_view::Verdict {
+pub(crate) fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<String>) -> view::Verdict {
     let outcome = match outcome {
-        Outcome::Passed => servobench_view::Outcome::Passed,
-        Outcome::Unjudged => servobench_view::Outcome::Unjudged,
-        Outcome::Failed | Outcome::Invalid | Outcome::Error => servobench_view::Outcome::Failed,
+        Outcome::Passed => view::Outcome::Passed,
+        Outcome::Unjudged => view::Outcome::Unjudged,
+        Outcome::Failed | Outcome::Invalid | Outcome::Error => view::Outcome::Failed,
     };
     // A viewer shows them as they are.
     let printable = |all: Vec<String>| all.iter().map(|one| printable_lines(one)).collect();
-    servobench_view::Verdict { outcome, reasons: printable(reasons), warnings: printable(warnings) }
+    view::Verdict { outcome, reasons: printable(reasons), warnings: printable(warnings) }
 }
 
 /// What a viewer is told beside the recording: limits and the settling window.

@@ -19,6 +19,7 @@ use crate::interrupt;
 use crate::output::{self, Written};
 use crate::outputs::OutputFolder;
 use crate::progress::Progress;
+use crate::view_program::ViewProgram;
 use crate::workers;
 use servobench::preview::warnings;
 use servobench::size::memory;
@@ -26,6 +27,7 @@ use servobench::{Engines, Run};
 use servobench_report::{Denied, Style, brief, run_count};
 use servobench_results::{Finished, Outcome, RunIdentity, RunResult, Runs, Unfinished};
 use servobench_suite::{Broken, Job, Workers, execute, map_in_parallel};
+use servobench_view_request as view;
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
@@ -64,6 +66,18 @@ pub(crate) struct Carrying<'a> {
     pub(crate) args: &'a SuiteArgs,
     pub(crate) keep: Keep,
     pub(crate) engines: &'a Engines,
+    /// Draws each recording that stays.
+    pub(crate) view_program: Option<&'a ViewProgram>,
+}
+
+/// The program that draws recordings, if `args` ask for drawings; `keep` says which recordings there will be. To be asked before anything
+/// runs.
+pub(crate) fn view_program(args: &SuiteArgs, keep: Keep) -> Result<Option<ViewProgram>, CliError> {
+    match (args.rrd, keep) {
+        (false, _) => Ok(None),
+        (true, Keep::None) => Err(CliError::NothingForTheViewer),
+        (true, Keep::All | Keep::Failed) => Ok(Some(ViewProgram::find()?)),
+    }
 }
 
 impl Carrying<'_> {
@@ -156,9 +170,9 @@ impl Carrying<'_> {
 
     /// Runs one job and writes its recording, if that is to stay. One that cannot be written takes the verdict away.
     fn one(self, job: &Job, workers: &Workers, out: &OutputFolder, progress: &Progress) -> RunResult {
-        let write = |recording, outcome, shown: &dyn Fn() -> servobench_view::Verdict| {
+        let write = |recording, outcome, shown: &dyn Fn() -> view::Verdict| {
             if output::is_kept(self.keep, outcome) {
-                output::write_recording(job, recording, out, self.args.rrd.then(shown))
+                output::write_recording(job, recording, out, self.view_program.map(|program| (program, shown())))
             } else {
                 Ok(Written::default())
             }
@@ -184,9 +198,9 @@ impl Carrying<'_> {
                 let Broken { error, until_then } = *broken;
                 let mut reasons = vec![error.to_string()];
                 let written = until_then.as_ref().map(|(recording, _)| {
-                    let outcome = servobench_view::Outcome::Failed;
+                    let outcome = view::Outcome::Failed;
                     let said = reasons.clone();
-                    let shown = || servobench_view::Verdict { outcome, reasons: said.clone(), warnings: Vec::new() };
+                    let shown = || view::Verdict { outcome, reasons: said.clone(), warnings: Vec::new() };
                     write(recording, Outcome::Error, &shown).unwrap_or_else(|(unwritten, written)| {
                         reasons.push(unwritten.to_string());
                         written

@@ -34,7 +34,7 @@ pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;
 pub use table::{Cells, Table, TableColumn};
 pub use values::{GrowingValues, IN_MEMORY, Values};
-pub use whole_file::{stream_durably, stream_whole, unfinished_by, write_whole};
+pub use whole_file::{PassingFile, stream_durably, stream_whole, unfinished_by, write_whole};
 
 /// Column of a recording file that holds the instants (s).
 const TIME: &str = "time";

@@ -99,6 +99,18 @@ impl Drop for Unfinished {
     }
 }
 
+/// A file for another process to read; it is removed when this is dropped.
+#[derive(Debug)]
+pub struct PassingFile(pub(crate) Unfinished);
+
+impl PassingFile {
+    /// Path of the file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0.path
+    }
+}
+
 /// Bytes of the target's name in that of its file on the way: with what is added it has to fit into the 255 of most file systems.
 const LONGEST: usize = 200;
 

@@ -4,7 +4,7 @@ use crate::error::TraceError;
 use crate::header::{FORMAT, FORMAT_KEY, Header, RECORDING_KEY};
 use crate::recording::Recording;
 use crate::seal::Hashed;
-use crate::whole_file::Unfinished;
+use crate::whole_file::{PassingFile, Unfinished};
 use crate::{TIME, arrow, seal};
 use parquet::basic::{Repetition, Type as PhysicalType};
 use parquet::errors::{ParquetError, Result as ParquetResult};
@@ -37,6 +37,21 @@ impl Recording {
     /// and [`TraceError::Encode`], which leave an older file of that name as it was.
     pub fn write_parquet(&self, path: impl AsRef<Path>) -> Result<(), TraceError> {
         let path = path.as_ref();
+        let finish = |source| TraceError::Io { action: "put in its place", path: path.to_path_buf(), source };
+        self.unfinished(path)?.finish().map_err(finish)
+    }
+
+    /// The recording as a Parquet file for another process, under a name beside `path` that no other writer uses. The file is removed
+    /// when the result is dropped; if this process is killed before, [`unfinished_by`](crate::unfinished_by) tells it by its name.
+    ///
+    /// # Errors
+    /// As [`Recording::write_parquet`].
+    pub fn write_passing(&self, path: impl AsRef<Path>) -> Result<PassingFile, TraceError> {
+        self.unfinished(path.as_ref()).map(PassingFile)
+    }
+
+    /// The whole file, before it gets its name.
+    fn unfinished(&self, path: &Path) -> Result<Unfinished, TraceError> {
         self.check_columns()?;
         let io = |action| move |source| TraceError::Io { action, path: path.to_path_buf(), source };
         let encode = |reason| TraceError::Encode { path: path.to_path_buf(), reason };
@@ -52,7 +67,7 @@ impl Recording {
         if !seal::apply(&mut unfinished.file, &digits).map_err(io("write"))? {
             return Err(encode("the encoder left no place for the seal".into()));
         }
-        unfinished.finish().map_err(io("put in its place"))
+        Ok(unfinished)
     }
 
     /// Every channel can be a column: names differ, lengths do not.

@@ -1,28 +1,27 @@
 //! What can go wrong on the way to Rerun.
-use std::path::PathBuf;
+use servobench_view_request::LabelError;
 use thiserror::Error;
 
 /// Why a recording was not shown.
 #[derive(Debug, Error)]
 pub enum ViewError {
     /// Nothing to compare.
-    #[error("a comparison needs at least two runs, got {found}; a single run is written by `write_rrd`")]
+    #[error("a comparison needs at least two runs, got {found}; a single run has no label")]
     TooFewRuns {
         /// Number of runs given.
         found: usize,
     },
-    /// A label cannot be the first part of an entity path.
-    #[error(
-        "run {number} of the comparison has the label `{label}`, which {reason}; give every run its own short label"
-    )]
-    Label {
-        /// Which run, from 1.
-        number: usize,
-        /// Rejected label.
-        label: String,
-        /// Why it was rejected.
-        reason: &'static str,
+    /// Runs and labels do not go together.
+    #[error("{recordings} recordings and {labels} labels: several recordings need a label each, a single one has none")]
+    Labels {
+        /// Number of labels.
+        labels: usize,
+        /// Number of recordings.
+        recordings: usize,
     },
+    /// A label cannot be the first part of an entity path.
+    #[error(transparent)]
+    Label(#[from] LabelError),
     /// Rerun refused.
     #[error("rerun cannot {action}: {reason}")]
     Rerun {
@@ -30,14 +29,6 @@ pub enum ViewError {
         action: &'static str,
         /// Rerun's reason.
         reason: String,
-    },
-    /// The operating system refused.
-    #[error("cannot write `{}`: {source}", .path.display())]
-    Io {
-        /// File that was to be written.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
     },
 }
 

@@ -1,4 +1,4 @@
-//! `Recording` → Rerun: a file, or a viewer that is open.
+//! `Recording` → Rerun: the bytes of a file, or a viewer that is open.
 //!
 //! Everything stands on one timeline, `time` (s since the start of the run). A channel of more instants than
 //! [`ViewOptions::max_instants`] is thinned to a minimum/maximum envelope: the run is cut into stretches of equal length
@@ -15,7 +15,6 @@ mod layout;
 mod legend;
 mod linear;
 mod operating;
-mod options;
 mod plan;
 mod plane;
 mod planned;
@@ -38,28 +37,40 @@ mod verdict;
 
 pub use error::ViewError;
 pub use layout::Layout;
-pub use options::{MotorLimits, Outcome, Verdict, ViewOptions};
-pub use presentation::{Presentation, check_labels};
+pub use presentation::Presentation;
+pub use servobench_view_request::{MotorLimits, Outcome, Verdict, ViewOptions};
 
 use servobench_trace::Recording;
-use std::path::Path;
+use servobench_view_request::Request;
 
-/// Writes one run as an `.rrd` file with its blueprint.
+/// One run as an `.rrd` file with its blueprint.
 ///
 /// # Errors
-/// [`ViewError::Rerun`] and [`ViewError::Io`].
-pub fn write_rrd(recording: &Recording, path: impl AsRef<Path>, options: &ViewOptions) -> Result<(), ViewError> {
-    Presentation::of_run(recording, options).write(path)
+/// [`ViewError::Rerun`].
+pub fn run_rrd(recording: &Recording, options: &ViewOptions) -> Result<Vec<u8>, ViewError> {
+    Presentation::of_run(recording, options).to_rrd()
 }
 
-/// Writes several labelled runs over each other as one `.rrd` file with its blueprint.
+/// Several labelled runs over each other as one `.rrd` file with its blueprint.
 ///
 /// # Errors
-/// As [`Presentation::of_comparison`]; [`ViewError::Rerun`] and [`ViewError::Io`].
-pub fn write_comparison_rrd(
-    runs: &[(&str, &Recording)],
-    path: impl AsRef<Path>,
-    options: &ViewOptions,
-) -> Result<(), ViewError> {
-    Presentation::of_comparison(runs, options)?.write(path)
+/// As [`Presentation::of_comparison`]; [`ViewError::Rerun`].
+pub fn comparison_rrd(runs: &[(&str, &Recording)], options: &ViewOptions) -> Result<Vec<u8>, ViewError> {
+    Presentation::of_comparison(runs, options)?.to_rrd()
+}
+
+/// The `.rrd` file that `request` asks for of `recordings`: of one without a label, or of several with one each.
+///
+/// # Errors
+/// [`ViewError::Labels`]; as [`run_rrd`] and [`comparison_rrd`].
+pub fn requested_rrd(recordings: &[Recording], request: &Request) -> Result<Vec<u8>, ViewError> {
+    let Request { labels, options } = request;
+    match recordings {
+        [one] if labels.is_empty() => run_rrd(one, options),
+        all if labels.len() == all.len() => {
+            let runs: Vec<_> = labels.iter().map(String::as_str).zip(all).collect();
+            comparison_rrd(&runs, options)
+        }
+        all => Err(ViewError::Labels { labels: labels.len(), recordings: all.len() }),
+    }
 }

@@ -1,6 +1,5 @@
 //! Where a motor works, beside what it can give: effort over speed in its envelope, current in the circle of the drive, voltage in the
 //! hexagon of the inverter, and effort over the angle.
-use crate::options::MotorLimits;
 use crate::plane::{Axis, Curve, Plane};
 use crate::rerun::EntityPath;
 use crate::run::{Run, range};
@@ -10,6 +9,7 @@ use servobench_base::{Coordinate, Dq, ElectricalAngle};
 use servobench_plant::pmsm::Bounds;
 use servobench_signals::Signal;
 use servobench_trace::envelope;
+use servobench_view_request::MotorLimits;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// First parts of the entity paths of the planes.
@@ -17,6 +17,7 @@ const EFFORT_OVER_SPEED: &str = "effort_over_speed";
 const CURRENT_PLANE: &str = "current_plane";
 const VOLTAGE_PLANE: &str = "voltage_plane";
 const EFFORT_OVER_ANGLE: &str = "effort_over_angle";
+#[cfg(test)]
 pub(crate) const PATHS: [&str; 4] = [EFFORT_OVER_SPEED, CURRENT_PLANE, VOLTAGE_PLANE, EFFORT_OVER_ANGLE];
 
 /// Points of a bound.

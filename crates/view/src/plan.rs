@@ -1,6 +1,5 @@
 //! What will be plotted: the catalogue, met with what was recorded.
 use crate::catalogue::{BOUND, Headline, PLOTS, Page, Plot};
-use crate::options::ViewOptions;
 use crate::planned::{ALLOWED, Bound, Frame, PlannedPlot, Sides};
 use crate::residual;
 use crate::run::{Run, range};
@@ -9,6 +8,7 @@ use crate::style::{self, Rgb};
 use crate::unlisted::{self, Unlisted};
 use servobench_metrics::Name;
 use servobench_signals::Signal;
+use servobench_view_request::ViewOptions;
 use std::borrow::Cow;
 
 /// All plots that have at least one curve, in the order of the catalogue; the residual vibration after the errors, and at

@@ -1,14 +1,12 @@
 //! Everything together: what is logged and how it is arranged.
 use crate::blueprint::{self, Parts};
-use crate::catalogue::BOUND;
 use crate::curves;
 use crate::error::ViewError;
 use crate::layout::Layout;
 use crate::operating;
-use crate::options::ViewOptions;
 use crate::plan;
 use crate::plane::Plane;
-use crate::planned::{ALLOWED, PlannedPlot, WINDOW};
+use crate::planned::PlannedPlot;
 use crate::reached::{self, Reached};
 use crate::rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 use crate::run::Run;
@@ -17,35 +15,10 @@ use crate::signals;
 use crate::timeline_events::{self, Happenings};
 use crate::verdict::Head;
 use servobench_trace::Recording;
-use std::path::Path;
+use servobench_view_request::{ViewOptions, check_labels};
 
 /// Application id of all our recordings: the viewer keeps one blueprint for them.
 const APPLICATION: &str = "servobench";
-
-/// Whether the first part of another entity path is called that.
-fn is_reserved(label: &str) -> bool {
-    label.starts_with("__") || [BOUND, ALLOWED, WINDOW].contains(&label) || operating::PATHS.contains(&label)
-}
-
-/// Whether runs that lie over each other may be called that.
-///
-/// # Errors
-/// [`ViewError::Label`] for a label that is empty, reserved or used twice.
-pub fn check_labels(labels: &[&str]) -> Result<(), ViewError> {
-    for (index, label) in labels.iter().enumerate() {
-        let reason = if label.is_empty() {
-            "is empty"
-        } else if is_reserved(label) {
-            "is reserved"
-        } else if labels[..index].contains(label) {
-            "an earlier run has already"
-        } else {
-            continue;
-        };
-        return Err(ViewError::Label { number: index + 1, label: (*label).to_owned(), reason });
-    }
-    Ok(())
-}
 
 /// One run, or several over each other, ready for any Rerun stream: a file, or a viewer that is open.
 #[derive(Debug)]
@@ -141,18 +114,29 @@ impl<'a> Presentation<'a> {
         self.scene.as_ref().map_or(Ok(()), |scene| scene.log(stream, &self.runs))
     }
 
-    /// Writes an `.rrd` file: blueprint and data. The file appears when it is whole.
+    /// The bytes of an `.rrd` file: blueprint and data.
     ///
     /// # Errors
-    /// [`ViewError::Rerun`] and [`ViewError::Io`].
-    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
-        let path = path.as_ref();
+    /// [`ViewError::Rerun`].
+    pub fn to_rrd(&self) -> Result<Vec<u8>, ViewError> {
         let builder = RecordingStreamBuilder::new(APPLICATION).recording_name(self.name.as_str());
         let (stream, storage) = builder.enabled(true).memory().map_err(ViewError::rerun("open a stream"))?;
         self.blueprint().send(&stream)?;
         self.log(&stream)?;
         stream.flush_blocking().map_err(ViewError::rerun("flush the stream"))?;
-        let bytes = storage.drain_as_bytes().map_err(ViewError::rerun("encode the file"))?;
-        servobench_trace::write_whole(path, bytes).map_err(|source| ViewError::Io { path: path.to_path_buf(), source })
+        storage.drain_as_bytes().map_err(ViewError::rerun("encode the file"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::catalogue::BOUND;
+    use crate::operating;
+    use crate::planned::{ALLOWED, WINDOW};
+    use servobench_view_request::RESERVED;
+
+    #[test]
+    fn roots_of_other_entities_are_reserved() {
+        assert_eq!([&[BOUND, ALLOWED, WINDOW][..], &operating::PATHS].concat(), RESERVED);
     }
 }

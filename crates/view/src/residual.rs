@@ -1,7 +1,6 @@
 //! The residual vibration: the load minus its target after the last profile, as the metric has it, with its window, when
 //! it is in it for good, and what is allowed.
 use crate::catalogue::{Headline, Page};
-use crate::options::ViewOptions;
 use crate::planned::{ALLOWED, Bound, Frame, Mark, PlannedPlot, Sides, WINDOW};
 use crate::run::Run;
 use crate::scale::{Scale, shown_unit};
@@ -10,6 +9,7 @@ use crate::settling::{Settling, settling};
 use crate::style;
 use servobench_metrics::Name;
 use servobench_signals::Signal;
+use servobench_view_request::ViewOptions;
 
 /// First part of its entity paths.
 pub(crate) const PATH: &str = "residual_vibration";

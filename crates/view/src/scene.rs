@@ -1,13 +1,13 @@
 //! The 3D view: the axis and its load move, their deflection enlarged.
 use crate::curves::TIMELINE;
 use crate::linear;
-use crate::options::ViewOptions;
 use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TimeColumn, Transform3D, ViewCoordinates};
 use crate::rotary;
 use crate::run::{Run, range};
 use crate::style::{self, Rgb};
 use servobench_metrics::round_below;
 use servobench_signals::Signal;
+use servobench_view_request::ViewOptions;
 
 /// Largest number of poses per run: a screen shows far fewer.
 const POSES: usize = 4_000;

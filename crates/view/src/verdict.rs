@@ -1,7 +1,7 @@
 //! What came of a run, in words: the head of every page.
-use crate::options::{Outcome, Verdict, ViewOptions};
 use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextDocument};
 use crate::run::Run;
+use servobench_view_request::{Outcome, Verdict, ViewOptions};
 
 /// Its entity.
 const PATH: &str = "verdict";

@@ -8,7 +8,7 @@ mod slowing;
 mod variants;
 
 use crate::args::{CompareArgs, Equal};
-use crate::console::{command, print, style};
+use crate::console::{command, print, say, style};
 use crate::engines;
 use crate::error::{CliError, FailedRun};
 use crate::exit::{Exit, of_outcome};
@@ -17,6 +17,7 @@ use crate::output::{self, Written};
 use crate::outputs::{OutputFolder, Outputs};
 use crate::progress::Progress;
 use crate::suite::deny;
+use crate::view_program::ViewProgram;
 use crate::workers;
 use earlier::Earlier;
 use servobench::Run;
@@ -28,6 +29,7 @@ use servobench_suite::{
     Job, RunError, comparable, equal_length, execute, limits_agree, map_in_parallel, only_setpoints_differ,
     setpoints_have_closed_form,
 };
+use servobench_view_request::check_labels;
 use slowing::Slowing;
 use variants::Wanted;
 
@@ -40,7 +42,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         return Err(CliError::TooFewScenarios);
     }
     if let labels @ [_, _, ..] = wanted.iter().map(|one| one.label.as_str()).collect::<Vec<_>>().as_slice() {
-        servobench_view::check_labels(labels)?;
+        check_labels(labels)?;
     }
     let mut jobs: Vec<Job> = wanted.iter().map(|one| one.job.clone()).collect();
     comparable(&jobs)?;
@@ -55,6 +57,10 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         }
     }
     let name = recording::name(&wanted);
+    // The comparison itself does without.
+    let view_program = ViewProgram::find().inspect_err(|missing| {
+        say(&format!("servobench: warning: no recording for the viewer: {missing}\n"));
+    });
     let out = Outputs::default().folder("--out", &args.out, |one| one == name || one == COMPARISON)?;
     let folder = Folder::open(out.path())?;
     let former = folder.former(COMPARISON)?;
@@ -75,8 +81,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let length = equal_length(&wanted.iter().map(|one| one.job.clone()).collect::<Vec<_>>());
 
     folder.remove(&former);
-    recording::write(&out, &name, &wanted, &runs)?;
-    let results = results(&name, &wanted, &runs);
+    if let Ok(program) = &view_program {
+        recording::write(program, &out, &name, &wanted, &runs)?;
+    }
+    let drawn = view_program.is_ok().then_some(name.as_str());
+    let results = results(drawn, &wanted, &runs);
     let judged = results.iter().chain(seeded.iter().flatten());
     let exit = judged.fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)));
     let all = Results::new(results.clone());
@@ -97,7 +106,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let comparison = if has_closed_form { comparison } else { comparison.of_more_than_set_points() };
     let has_something = comparison.has_something_to_compare();
     let heading = heading::heading(args, &wanted, &earlier, slowing.as_ref());
-    let text = text_of(args, &comparison, &heading, &name);
+    let text = text_of(args, &comparison, &heading, drawn);
     let json = all.to_json()?;
     write_list(&out, &json)?;
     if !has_something {
@@ -120,9 +129,10 @@ fn earlier_runs(args: &CompareArgs, wanted: &[Wanted]) -> Result<Vec<Earlier>, C
     earlier::read(&args.against, &jobs, &taken)
 }
 
-/// What came of the runs, whose one recording is called `name`.
-fn results(name: &str, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
-    let written = Written { recording: Some(name.to_owned()), files: vec![name.to_owned()], ..Written::default() };
+/// Results of the runs, whose one recording is called `name`, if it was drawn.
+fn results(name: Option<&str>, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
+    let name = name.map(str::to_owned);
+    let written = Written { recording: name.clone(), files: name.into_iter().collect(), ..Written::default() };
     let each = wanted.iter().zip(runs).map(|(one, run)| {
         let mut identity = output::identity(&one.job, written.clone());
         identity.check_warnings = Some(warnings(&one.job.scenario, one.job.engine));
@@ -166,7 +176,7 @@ fn carried_out(args: &CompareArgs, jobs: &[&Job]) -> Result<Vec<Run>, CliError> 
 }
 
 /// Table, who is out, conclusion, notes.
-fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, heading: &str, recording: &str) -> String {
+fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, heading: &str, drawn: Option<&str>) -> String {
     let style = style();
     let out = comparison.out(style.width);
     [
@@ -175,7 +185,9 @@ fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, heading: &str, recor
         if out.is_empty() { out } else { out + "\n" },
         comparison.words(style.width) + "\n",
         comparison.notes(style.width),
-        format!("look at it: {}\n", command(&["view", &args.out.join(recording).to_string_lossy()])),
+        drawn.map_or_else(String::new, |name| {
+            format!("look at it: {}\n", command(&["view", &args.out.join(name).to_string_lossy()]))
+        }),
     ]
     .concat()
 }

@@ -11,8 +11,10 @@ use crate::output;
 use crate::outputs::Outputs;
 use crate::sources;
 use crate::suite::{
-    Begun, Carrying, Files, Found, JUNIT, Ledger, deny, exit_of, how_to_resume, other_suite, suite_in, write_junit,
+    Begun, Carrying, Files, Found, JUNIT, Ledger, deny, exit_of, how_to_resume, other_suite, suite_in, view_program,
+    write_junit,
 };
+use crate::view_program::ViewProgram;
 use servobench::Engines;
 use servobench_report::{brief, verdict_table};
 use servobench_results::{Digest, Folder, Kept, OF_A_SWEEP, RESULTS, Results, Runs, Suite};
@@ -54,9 +56,7 @@ fn reported_again(results: &Results, args: &RunArgs, folder: &Path) -> Result<Ex
 /// A suite from its beginning.
 fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     let engines = engines::installed();
-    if args.suite.rrd && args.keep == Keep::None {
-        return Err(CliError::NothingForTheViewer);
-    }
+    let view_program = view_program(&args.suite, args.keep)?;
     let mut wanted = Wanted::of(args, &engines)?;
     if wanted.ids().next().is_none() {
         return nothing_to_run(args, wanted);
@@ -78,7 +78,7 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     let suite = Suite::new(wanted.digest(), args::command_line(), here, sources::stdin(), wanted.stems());
     let suite = suite.by(Digest::of(build_id::program().as_bytes()));
     let ledger = Ledger::begin(folder, files, wanted.take_planned(), &suite)?;
-    carried_out(args, &wanted, &engines, ledger, removed)
+    carried_out(args, &wanted, (&engines, view_program.as_ref()), ledger, removed)
 }
 
 /// The rest of a suite: the same runs, of which those that ended are not run again.
@@ -88,6 +88,7 @@ fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
         return Err(CliError::OtherCommand { folder: folder.path().to_owned(), command: "sweep" });
     };
     let args = RunArgs { suite: began.suite.resumed(&now.suite, &here), verbose: now.verbose, ..began };
+    let view_program = view_program(&args.suite, args.keep)?;
     let engines = engines::installed();
     let mut wanted = Wanted::of(&args, &engines)?;
     if wanted.digest() != suite.suite {
@@ -101,18 +102,18 @@ fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
     }
     kept.plan(wanted.take_planned());
     let ledger = Ledger::resume(folder, files, kept, &suite);
-    carried_out(&args, &wanted, &engines, ledger, 0)
+    carried_out(&args, &wanted, (&engines, view_program.as_ref()), ledger, 0)
 }
 
 /// Runs what has not ended yet, and says what came of all.
 fn carried_out(
     args: &RunArgs,
     wanted: &Wanted<'_>,
-    engines: &Engines,
+    (engines, view_program): (&Engines, Option<&ViewProgram>),
     ledger: Ledger,
     removed: usize,
 ) -> Result<Exit, CliError> {
-    let carrying = Carrying { plan: wanted, args: &args.suite, keep: args.keep, engines };
+    let carrying = Carrying { plan: wanted, args: &args.suite, keep: args.keep, engines, view_program };
     carrying.out(ledger, |ledger| wanted.note_unusable(ledger), |runs, out| say_what_came(runs, args, out, removed))
 }
 

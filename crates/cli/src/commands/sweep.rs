@@ -2,14 +2,17 @@
 mod outcome;
 mod points;
 
-use crate::args::{self, Command, Keep, SweepArgs};
+use crate::args::{self, Command, SweepArgs};
 use crate::build_id;
 use crate::console::{print, say, style};
 use crate::engines;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::sources;
-use crate::suite::{Begun, Carrying, Files, Found, Ledger, deny, exit_of, other_suite, suite_in, write_junit};
+use crate::suite::{
+    Begun, Carrying, Files, Found, Ledger, deny, exit_of, other_suite, suite_in, view_program, write_junit,
+};
+use crate::view_program::ViewProgram;
 use points::Points;
 use servobench_report::run_count;
 use servobench_results::{Digest, Folder, OF_A_SWEEP, RESULTS, Runs, Suite, TABLE_CSV, is_table_of_a_sweep};
@@ -36,9 +39,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
 
 /// A sweep from its beginning.
 fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
-    if args.suite.rrd && args.keep == Keep::None {
-        return Err(CliError::NothingForTheViewer);
-    }
+    let view_program = view_program(&args.suite, args.keep)?;
     let points = Points::of(path, args)?;
     let out = args.out.clone().unwrap_or_else(|| points::default_folder(path));
     let files = files(args, &out, &points)?;
@@ -51,7 +52,7 @@ fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
     let suite = Suite::new(points.digest(), args::command_line(), here, sources::stdin(), points.stems());
     let suite = suite.by(Digest::of(build_id::program().as_bytes()));
     let ledger = Ledger::begin(folder, files, points.planned(), &suite)?;
-    carried_out(args, &points, ledger)
+    carried_out(args, &points, ledger, view_program.as_ref())
 }
 
 /// The rest of a sweep: the same points, of which those that ended are not run again.
@@ -61,6 +62,7 @@ fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
         return Err(CliError::OtherCommand { folder: folder.path().to_owned(), command: "run" });
     };
     let args = SweepArgs { suite: began.suite.resumed(&now.suite, &here), ..began };
+    let view_program = view_program(&args.suite, args.keep)?;
     let path = args.sweep.clone().ok_or(CliError::NoSweep)?;
     let points = Points::of(&path, &args)?;
     if points.digest() != suite.suite {
@@ -72,13 +74,18 @@ fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
     }
     kept.plan(points.planned());
     let ledger = Ledger::resume(folder, files, kept, &suite);
-    carried_out(&args, &points, ledger)
+    carried_out(&args, &points, ledger, view_program.as_ref())
 }
 
 /// Runs what has not ended yet, writes tables and pictures, and says what came of all.
-fn carried_out(args: &SweepArgs, points: &Points<'_>, ledger: Ledger) -> Result<Exit, CliError> {
+fn carried_out(
+    args: &SweepArgs,
+    points: &Points<'_>,
+    ledger: Ledger,
+    view_program: Option<&ViewProgram>,
+) -> Result<Exit, CliError> {
     let engines = engines::installed();
-    let carrying = Carrying { plan: points, args: &args.suite, keep: args.keep, engines: &engines };
+    let carrying = Carrying { plan: points, args: &args.suite, keep: args.keep, engines: &engines, view_program };
     let files = ledger.out().clone();
     carrying.out(ledger, |_| {}, |runs: &dyn Runs, _| outcome::say_what_came(runs, args, points, &files))
 }

@@ -4,9 +4,10 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::output;
 use crate::outputs::{Outputs, is_name, reads};
+use crate::view_program::ViewProgram;
 use servobench_results::{COMPARISON, RESULTS, Results, RunResult, read_results};
-use servobench_trace::{Recording, seal_of};
-use servobench_view::{ViewOptions, write_rrd};
+use servobench_trace::seal_of;
+use servobench_view_request::{Request, Verdict, ViewOptions};
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -69,17 +70,16 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     let rrd = path.with_extension("rrd");
     if !modified(&rrd).is_ok_and(|made| made >= written) {
         reads(path, "the recording");
-        Outputs::default().file("the recording for the viewer", &rrd)?;
-        let recording = Recording::read_parquet(path).map_err(CliError::ReadRecording)?;
+        let output = Outputs::default().file("the recording for the viewer", &rrd)?;
         let verdicts = verdict_beside(path).into_iter().collect();
         let options = ViewOptions { verdicts, ..ViewOptions::default() };
-        write_rrd(&recording, &rrd, &options)?;
+        ViewProgram::find()?.draw(&[path], &Request { labels: Vec::new(), options }, &output)?;
     }
     Ok(rrd)
 }
 
 /// What the results beside the recording at `path` say of its run; `None` where there are none, or they are of another run.
-fn verdict_beside(path: &Path) -> Option<servobench_view::Verdict> {
+fn verdict_beside(path: &Path) -> Option<Verdict> {
     let results = Results::from_json(&read_results(&path.with_file_name(RESULTS)).ok()?).ok()?;
     let (name, seal) = (path.file_name()?.to_str()?, seal_of(path).ok()??);
     let is_of = |run: &RunResult| run.recording.as_deref() == Some(name) && run.recording_seal.as_ref() == Some(&seal);
@@ -113,8 +113,8 @@ mod tests {
     use servobench_base::Rate;
     use servobench_metrics::Metrics;
     use servobench_results::RunIdentity;
-    use servobench_trace::{About, Channel, ChannelSpec};
-    use servobench_view::Outcome;
+    use servobench_trace::{About, Channel, ChannelSpec, Recording};
+    use servobench_view_request::Outcome;
 
     /// A run of so many rows at 10 Hz.
     fn recording(rows: usize) -> Recording {
@@ -151,7 +151,9 @@ mod tests {
         std::fs::write(folder.path().join(RESULTS), results).unwrap();
         let verdict = verdict_beside(&path).unwrap();
         assert_eq!((verdict.outcome, verdict.reasons), (Outcome::Failed, vec!["it broke".to_owned()]));
-        assert_eq!(recordings(folder.path()).unwrap().len(), 1);
+        // Drawn already.
+        std::fs::write(path.with_extension("rrd"), "drawn").unwrap();
+        assert_eq!(recordings(folder.path()).unwrap(), [path.with_extension("rrd")]);
         let other = folder.path().join("other.parquet");
         own.write_parquet(&other).unwrap();
         assert_eq!(verdict_beside(&other), None, "the results do not name it");

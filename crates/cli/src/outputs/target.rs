@@ -94,18 +94,34 @@ impl Output {
         self.streamed(write, true)
     }
 
+    /// Lets another process write it, which `run` gets the file for: the whole file or nothing.
+    pub(crate) fn by_process(&self, run: impl FnOnce(File) -> Result<(), CliError>) -> Result<(), CliError> {
+        match &self.to {
+            To::File(path) | To::FileAnywhere(path) => {
+                let copied =
+                    |file: &mut BufWriter<&File>| file.get_ref().try_clone().map_err(|error| self.failed(error));
+                self.whole(path, |file| run(copied(file)?), false)
+            }
+            To::Stream(path, kind) => run(opened(path, *kind).map_err(|error| self.failed(error))?),
+            To::StandardOutput => {
+                let path = Path::new("standard output");
+                run(opened(path, Kind::StandardOutput).map_err(|error| self.failed(error))?)
+            }
+        }
+    }
+
     fn streamed(
         &self,
         write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
         is_durable: bool,
     ) -> Result<(), CliError> {
         match &self.to {
-            To::File(path) => self.whole(path, write, is_durable),
+            To::File(path) => self.whole(path, |file| write(file), is_durable),
             To::FileAnywhere(path) => {
                 if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                     super::make_folder(folder)?;
                 }
-                self.whole(path, write, is_durable)
+                self.whole(path, |file| write(file), is_durable)
             }
             To::Stream(path, kind) => {
                 let mut out = BufWriter::new(Read(opened(path, *kind).map_err(|error| self.failed(error))?));
@@ -123,7 +139,7 @@ impl Output {
     fn whole(
         &self,
         path: &Path,
-        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
+        write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), CliError>,
         is_durable: bool,
     ) -> Result<(), CliError> {
         // What the system says of the file and what `write` says have one way out.

@@ -3,7 +3,8 @@
 mod axis;
 
 use axis::{Case, run};
-use servobench_view::{ViewOptions, write_comparison_rrd, write_rrd};
+use servobench_view::{ViewOptions, comparison_rrd, run_rrd};
+use std::fs;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -17,9 +18,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..ViewOptions::default()
     };
     let start = Instant::now();
-    write_rrd(&jerk, folder.join("run.rrd"), &options)?;
-    write_rrd(&case("turntable", 4, true, 1.8), folder.join("rotary.rrd"), &options)?;
-    write_comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], folder.join("compare.rrd"), &options)?;
+    fs::write(folder.join("run.rrd"), run_rrd(&jerk, &options)?)?;
+    fs::write(folder.join("rotary.rrd"), run_rrd(&case("turntable", 4, true, 1.8), &options)?)?;
+    fs::write(folder.join("compare.rrd"), comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], &options)?)?;
     println!("three recordings in {} written in {:.2} s", folder.display(), start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -9,11 +9,9 @@ use re_sdk_types::blueprint::archetypes::{ScalarAxis, ViewBlueprint, ViewContent
 use re_sdk_types::blueprint::components::QueryExpression;
 use re_sdk_types::components::{LineStrip3D, Name, Range1D, Text, TextLogLevel, Translation3D};
 use servobench_trace::Recording;
-use servobench_view::{ViewOptions, write_rrd};
+use servobench_view::{ViewOptions, comparison_rrd, run_rrd};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::BufReader;
-use std::path::Path;
+use std::io::Cursor;
 
 /// A view of the blueprint.
 #[derive(Default, Debug, Clone)]
@@ -114,9 +112,9 @@ impl Content {
     }
 }
 
-pub(crate) fn read(path: &Path) -> Content {
+pub(crate) fn read(bytes: &[u8]) -> Content {
     let mut content = Content::default();
-    for message in DecoderApp::decode_eager(BufReader::new(File::open(path).unwrap())).unwrap() {
+    for message in DecoderApp::decode_eager(Cursor::new(bytes)).unwrap() {
         let LogMsg::ArrowMsg(store, message) = message.unwrap() else { continue };
         let chunk = Chunk::from_arrow_msg(&message).unwrap();
         if store.kind() == StoreKind::Blueprint {
@@ -150,11 +148,11 @@ pub(crate) fn read(path: &Path) -> Content {
 }
 
 pub(crate) fn written(recording: &Recording, options: &ViewOptions) -> Content {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("run.rrd");
-    write_rrd(recording, &path, options).unwrap();
-    assert_eq!(folder.path().read_dir().unwrap().count(), 1, "nothing is left beside the file");
-    read(&path)
+    read(&run_rrd(recording, options).unwrap())
+}
+
+pub(crate) fn compared(runs: &[(&str, &Recording)], options: &ViewOptions) -> Content {
+    read(&comparison_rrd(runs, options).unwrap())
 }
 
 /// Every entity that a view asks for exists; a view that asks for all below an entity asks for something.

@@ -1,10 +1,10 @@
 //! What came of a run: verdict, limits, settling, calls, limits that cut, channels that nobody expected.
-use crate::content::{assert_views_are_fed, read, written};
+use crate::content::{assert_views_are_fed, compared, written};
 use crate::{example, options};
 use servobench_base::Rate;
 use servobench_metrics::{Name, Question, measure};
 use servobench_trace::{Call, CallFate, Channel, ChannelSpec, Event, Recording};
-use servobench_view::{Outcome, Verdict, ViewOptions, write_comparison_rrd};
+use servobench_view::{Outcome, Verdict, ViewOptions};
 
 fn add(recording: &mut Recording, name: &str, unit: &str, value: impl Fn(usize) -> f64) {
     let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate: recording.rate };
@@ -23,12 +23,10 @@ fn the_verdict_stands_above_every_page() {
     assert_eq!(heads, 4, "axis, set-point, drive, log");
     assert_views_are_fed(&content);
     // Of two runs, each.
-    let (folder, runs) = (tempfile::tempdir().unwrap(), [example(3), example(4)]);
-    let path = folder.path().join("compare.rrd");
+    let runs = [example(3), example(4)];
     let passed = Verdict { outcome: Outcome::Passed, ..Verdict::default() };
     let options = ViewOptions { verdicts: vec![verdict, passed], ..options() };
-    write_comparison_rrd(&[("jerk", &runs[0]), ("snap", &runs[1])], &path, &options).unwrap();
-    let text = &read(&path).documents[0];
+    let text = &compared(&[("jerk", &runs[0]), ("snap", &runs[1])], &options).documents[0];
     assert!(text.starts_with("jerk: **FAILED** · snap: passed\n\njerk\n- settling"), "{text}");
     let unknown = &written(&example(3), &crate::options()).documents[0];
     assert!(unknown.starts_with("no verdict is known"), "{unknown}");
@@ -191,10 +189,8 @@ fn a_magnitude_has_an_axis_from_zero() {
 
 #[test]
 fn a_jerk_limited_move_has_impulses_of_snap_and_no_peak_of_zero() {
-    let (folder, runs) = (tempfile::tempdir().unwrap(), [example(3), example(4)]);
-    let path = folder.path().join("compare.rrd");
-    write_comparison_rrd(&[("jerk", &runs[0]), ("snap", &runs[1])], &path, &options()).unwrap();
-    let content = read(&path);
+    let runs = [example(3), example(4)];
+    let content = compared(&[("jerk", &runs[0]), ("snap", &runs[1])], &options());
     assert_eq!(content.title("Set-point snap"), "Set-point snap (m/s⁴), peak 1000 m/s⁴, impulses (jerk)");
     assert!(!content.entities.contains("/jerk/setpoint_snap/snap"), "a line at zero would be wrong");
     // A bus need not carry the acceleration: nothing but zero is no curve.

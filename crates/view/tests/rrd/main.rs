@@ -4,14 +4,15 @@ mod axis;
 mod content;
 mod judged;
 mod motor;
+mod program;
 mod readable;
 mod scene;
 
 use axis::{Case, run};
-use content::{assert_views_are_fed, read, written};
+use content::{assert_views_are_fed, compared, read, written};
 use servobench_base::{Rate, Severity, Tick};
 use servobench_trace::{LogEntry, Recording};
-use servobench_view::{ViewError, ViewOptions, write_comparison_rrd, write_rrd};
+use servobench_view::{ViewOptions, comparison_rrd, run_rrd};
 use std::collections::BTreeSet;
 
 /// Longer than what is kept of a curve, so that thinning is at work.
@@ -136,10 +137,7 @@ fn limits_are_lines_where_they_can_be_seen_and_words_where_not() {
 #[test]
 fn runs_of_a_comparison_lie_over_each_other() {
     let (jerk, snap) = (example(3), example(4));
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("compare.rrd");
-    write_comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], &path, &options()).unwrap();
-    let content = read(&path);
+    let content = compared(&[("jerk", &jerk), ("snap", &snap)], &options());
     for entity in ["position/load", "following_error/load", "residual_vibration/load", "current/q"] {
         for run in ["jerk", "snap"] {
             assert!(content.curves.contains_key(&format!("/{run}/{entity}")), "/{run}/{entity}");
@@ -233,13 +231,10 @@ fn a_rotary_axis_and_an_axis_at_rest_have_a_3d_view() {
 #[test]
 fn labels_and_numbers_of_runs_are_checked() {
     let recording = example(3);
-    let refusal = |runs: &[(&str, &Recording)]| {
-        let folder = tempfile::tempdir().unwrap();
-        write_comparison_rrd(runs, folder.path().join("no.rrd"), &options()).unwrap_err().to_string()
-    };
+    let refusal = |runs: &[(&str, &Recording)]| comparison_rrd(runs, &options()).unwrap_err().to_string();
     assert_eq!(
         refusal(&[("one", &recording)]),
-        "a comparison needs at least two runs, got 1; a single run is written by `write_rrd`"
+        "a comparison needs at least two runs, got 1; a single run has no label"
     );
     assert_eq!(
         refusal(&[("one", &recording), ("one", &recording)]),
@@ -248,14 +243,6 @@ fn labels_and_numbers_of_runs_are_checked() {
     assert!(refusal(&[("", &recording), ("one", &recording)]).contains("which is empty"));
     assert!(refusal(&[("limit", &recording), ("one", &recording)]).contains("which is reserved"));
     assert!(refusal(&[("current_plane", &recording), ("one", &recording)]).contains("which is reserved"));
-}
-
-#[test]
-fn a_missing_folder_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("none/run.rrd");
-    let error = write_rrd(&example(3), &path, &options()).unwrap_err();
-    assert!(matches!(&error, ViewError::Io { path: named, .. } if *named == path), "{error}");
 }
 
 /// 60 s at 16 kHz and 22 channels: the file must stay one that opens at once.
@@ -268,12 +255,9 @@ fn a_long_run_makes_a_small_file() {
         (0..39).for_each(|_| channel.values.to_mut().extend_from_slice(&once));
     }
     assert_eq!(recording.len(), 960_000);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("long.rrd");
-    write_rrd(&recording, &path, &ViewOptions::default()).unwrap();
-    let size = std::fs::metadata(&path).unwrap().len();
-    assert!(size < 15_000_000, "{size} bytes");
+    let rrd = run_rrd(&recording, &ViewOptions::default()).unwrap();
+    assert!(rrd.len() < 15_000_000, "{} bytes", rrd.len());
     // As long as the file has a curve per channel, and each is bounded, this bound is that of any longer run.
-    let content = read(&path);
+    let content = read(&rrd);
     assert!(content.curves.values().all(|curve| curve.len() <= 20_000));
 }

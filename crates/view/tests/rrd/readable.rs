@@ -1,11 +1,11 @@
 //! What a person reads: titles, scales, bodies, disturbances.
 use crate::axis::{Case, run};
-use crate::content::{assert_views_are_fed, read, written};
+use crate::content::{assert_views_are_fed, compared, written};
 use crate::{MAX_INSTANTS, example, options};
 use re_sdk::EntityPath;
 use servobench_base::Rate;
 use servobench_trace::{Channel, ChannelSpec, Recording, Signal};
-use servobench_view::{ViewOptions, write_comparison_rrd};
+use servobench_view::ViewOptions;
 
 /// Largest magnitude of `values`.
 fn peak(values: &[f64]) -> f64 {
@@ -98,10 +98,7 @@ fn every_value_axis_has_two_labels_at_least() {
 #[test]
 fn a_comparison_says_the_peak_of_each_run() {
     let (jerk, snap) = (example(3), example(4));
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("compare.rrd");
-    write_comparison_rrd(&[("jerk", &jerk), ("snap", &snap)], &path, &options()).unwrap();
-    let content = read(&path);
+    let content = compared(&[("jerk", &jerk), ("snap", &snap)], &options());
     let title = content.title("Following error");
     let of = |recording: &Recording| 1e6 * peak(recording.channel("following_error.load").unwrap());
     let (said_of_jerk, said_of_snap) = (number(title, "peak", "(jerk)"), number(title, "(jerk), ", "(snap)"));

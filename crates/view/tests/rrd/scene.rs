@@ -1,8 +1,8 @@
 //! The 3D view by numbers: where bodies stand, and what stands beside them.
 use crate::axis::{Case, run};
-use crate::content::{Content, read, written};
+use crate::content::{Content, compared, written};
 use crate::{example, options};
-use servobench_view::{ViewOptions, write_comparison_rrd};
+use servobench_view::ViewOptions;
 
 /// What the ruler says of a place along the rail: the line through its first and its last tick.
 fn reading(content: &Content, place: f32) -> f64 {
@@ -64,10 +64,8 @@ fn the_ruler_is_as_long_as_what_was_asked_for() {
 fn every_body_of_a_comparison_says_of_which_run_it_is() {
     for rotary in [false, true] {
         let runs = [3, 4].map(|order| run(Case { name: "example", order, rotary, duration: 1.5 }));
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("compare.rrd");
-        write_comparison_rrd(&[("jerk", &runs[0]), ("snap", &runs[1])], &path, &options()).unwrap();
-        let labels: Vec<String> = read(&path).labels.into_values().collect();
+        let content = compared(&[("jerk", &runs[0]), ("snap", &runs[1])], &options());
+        let labels: Vec<String> = content.labels.into_values().collect();
         assert_eq!(labels, ["jerk load", "jerk motor", "snap load", "snap motor"], "rotary: {rotary}");
     }
 }
@@ -78,11 +76,11 @@ fn each_of_three_runs_has_one_name() {
     for rotary in [false, true] {
         let recordings = [3, 4, 3].map(|order| run(Case { name: "example", order, rotary, duration: 1.5 }));
         let runs: Vec<_> = ["one", "two", "three"].into_iter().zip(&recordings).collect();
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("compare.rrd");
-        write_comparison_rrd(&runs, &path, &options()).unwrap();
-        let labels: Vec<String> =
-            read(&path).labels.into_iter().map(|(entity, label)| format!("{entity}: {label}")).collect();
+        let labels: Vec<String> = compared(&runs, &options())
+            .labels
+            .into_iter()
+            .map(|(entity, label)| format!("{entity}: {label}"))
+            .collect();
         assert_eq!(
             labels,
             ["/one/axis/name: one", "/three/axis/name: three", "/two/axis/name: two"],

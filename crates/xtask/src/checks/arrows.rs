@@ -12,7 +12,8 @@ enum May {
 
 /// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
 /// of a test may come from anywhere.
-const PLAN: [(&str, May); 39] = [
+const PLAN: [(&str, May); 40] = [
+    ("features", May::On(&[])),
     ("state-derive", May::On(&[])),
     ("base", May::On(&["state-derive"])),
     ("files", May::On(&[])),
@@ -118,11 +119,14 @@ const PLAN: [(&str, May); 39] = [
             "results", "sweep", "advise",
         ]),
     ),
-    ("view", May::On(&["base", "plant", "signals", "trace", "metrics"])),
+    ("view-request", May::On(&["base", "plant", "metrics"])),
+    (
+        "view",
+        May::On(&["base", "plant", "signals", "trace", "metrics", "results", "isolation", "view-request", "features"]),
+    ),
     ("cli", May::OnAll),
     ("tests", May::OnAll),
     ("bare-metal", May::On(&["base", "cia402", "motion", "fieldbus", "plcopen"])),
-    ("features", May::On(&[])),
     ("fuzz", May::On(&[])),
     ("testkit", May::On(&[])),
     ("xtask", May::On(&["fuzz", "testkit"])),

@@ -4,10 +4,12 @@ use crate::error::CliError;
 use crate::interrupt;
 use crate::output;
 use crate::outputs::OutputFolder;
+use crate::view_program::ViewProgram;
 use servobench::Run;
 use servobench_suite::file_name;
-use servobench_trace::Recording;
-use servobench_view::ViewOptions;
+use servobench_trace::PassingFile;
+use servobench_view_request::{Request, ViewOptions};
+use std::path::Path;
 
 /// Runs that the name of the recording has in it; of more of them the first and how many others.
 const MOST_NAMED: usize = 4;
@@ -22,21 +24,27 @@ pub(super) fn name(wanted: &[Wanted]) -> String {
     format!("{}.rrd", file_name(&name))
 }
 
-/// Writes it as the file `name`.
-pub(super) fn write(out: &OutputFolder, name: &str, wanted: &[Wanted], runs: &[Run]) -> Result<(), CliError> {
+/// Draws it as the file `name`.
+pub(super) fn write(
+    program: &ViewProgram,
+    out: &OutputFolder,
+    name: &str,
+    wanted: &[Wanted],
+    runs: &[Run],
+) -> Result<(), CliError> {
     let options = wanted.iter().map(|one| output::view_options(&one.job.scenario));
     let options = options.reduce(|one, other| agreed(one, &other)).unwrap_or_default();
     let verdicts = runs.iter().map(|run| output::shown(&run.recording, &run.metrics, &run.verdict)).collect();
     let options = ViewOptions { verdicts, ..options };
+    let labels = match wanted {
+        [_] => Vec::new(),
+        all => all.iter().map(|one| one.label.clone()).collect(),
+    };
     let place = out.place(name)?;
-    match runs {
-        [one] => servobench_view::write_rrd(&one.recording, &place, &options)?,
-        many => {
-            let labels = wanted.iter().map(|one| one.label.as_str());
-            let labelled: Vec<(&str, &Recording)> = labels.zip(many.iter().map(|run| &run.recording)).collect();
-            servobench_view::write_comparison_rrd(&labelled, &place, &options)?;
-        }
-    }
+    let recordings = runs.iter().map(|run| run.recording.write_passing(&place).map_err(CliError::WriteRecording));
+    let recordings: Vec<PassingFile> = recordings.collect::<Result<_, _>>()?;
+    let paths: Vec<&Path> = recordings.iter().map(PassingFile::path).collect();
+    program.draw(&paths, &Request { labels, options }, &out.file(name)?)?;
     interrupt::written(&place);
     Ok(())
 }

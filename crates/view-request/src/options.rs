@@ -1,12 +1,13 @@
 //! What the caller knows and a recording does not.
-use servobench_base::Coordinate;
+use crate::motor::MotorLimits;
+use serde::{Deserialize, Serialize};
 use servobench_metrics::Name;
-use servobench_plant::pmsm;
 
 /// What to show beside the recorded channels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ViewOptions {
-    /// What came of each run, in their order; runs beyond the last have none.
+    /// Verdicts of the runs, in their order; runs beyond the last have none.
     pub verdicts: Vec<Verdict>,
     /// Channel name and largest magnitude (SI) that motor and drive allow it: drawn as lines at ± the value, or at + the
     /// value only where the channel is never negative.
@@ -14,51 +15,37 @@ pub struct ViewOptions {
     /// Metric and the largest value of it (SI) that passes. Drawn where it bounds a curve: the following errors, torque,
     /// current and voltage as [`ViewOptions::limits`]; vibration, overshoot and settling time in the plot of the residual
     /// vibration. Others are left out.
+    #[serde(with = "by_name")]
     pub allowed: Vec<(Name, f64)>,
     /// Settling window, ± (axis unit): drawn around the residual vibration, with the instant from which on the load is in it.
     pub window: Option<f64>,
     /// From when on residual vibration is shown when there is no move (s).
     pub residual_from: Option<f64>,
-    /// Largest number of instants per curve. A longer channel is thinned to a minimum/maximum envelope
-    /// ([`servobench_trace::envelope`]): every extreme stays, at its own instant.
+    /// Largest number of instants per curve. A longer channel is thinned to a minimum/maximum envelope: every extreme stays, at
+    /// its own instant.
     pub max_instants: usize,
     /// Factor by which the deflection of the load against the motor is enlarged in the 3D view; `None` chooses one at
     /// which the largest deflection can be seen.
     pub exaggeration: Option<f64>,
-    /// The motor and what bounds it, for the page of its operating point; `None` without a synchronous motor.
+    /// The motor and its bounds, for the page of its operating point; `None` without a synchronous motor.
     pub motor: Option<MotorLimits>,
 }
 
-/// A synchronous motor and what bounds it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotorLimits {
-    /// The motor.
-    pub motor: pmsm::Params,
-    /// Largest current that the drive asks for, and voltage that the inverter gives in every direction.
-    pub bounds: pmsm::Bounds,
-    /// Voltage of the DC link (V).
-    pub dc_link: f64,
-    /// Largest effort that the drive asks for (N·m or N); may be infinite.
-    pub effort: f64,
-    /// Axis coordinate per motor coordinate; negative for a motor that is mounted the other way round.
-    pub transmission: f64,
-    /// Whether the motor turns or moves along a line.
-    pub motion: Coordinate,
-}
-
-/// What came of a run, in words: the head of every page.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+/// Verdict of a run in words: the head of every page.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Verdict {
-    /// Whether it passed.
+    /// Outcome.
     pub outcome: Outcome,
-    /// What fails, a sentence each.
+    /// Failures, a sentence each.
     pub reasons: Vec<String>,
-    /// What fails nothing and should be known, a sentence each.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Whether a run passed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Outcome of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// It kept all its limits.
     Passed,
@@ -81,5 +68,23 @@ impl Default for ViewOptions {
             exaggeration: None,
             motor: None,
         }
+    }
+}
+
+/// Metrics by their names.
+mod by_name {
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use servobench_metrics::Name;
+
+    pub(super) fn serialize<S: Serializer>(allowed: &[(Name, f64)], to: S) -> Result<S::Ok, S::Error> {
+        let named: Vec<(&str, f64)> = allowed.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        named.serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(Name, f64)>, D::Error> {
+        let named = Vec::<(String, f64)>::deserialize(from)?;
+        let metric = |(name, value): (String, f64)| Ok((name.parse().map_err(D::Error::custom)?, value));
+        named.into_iter().map(metric).collect()
     }
 }
