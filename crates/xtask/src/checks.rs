@@ -1,16 +1,18 @@
-//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, and keys of scenario
-//! files in crates that know nothing of them, and concepts that have two types.
+//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, keys of scenario
+//! files in crates that know nothing of them, concepts that have two types, and the number of packages of the program.
 
 mod arrows;
 mod keys;
 mod licences;
 mod metadata;
+mod packages;
 mod representations;
 mod text;
 
 use crate::failure::Failure;
 use crate::workspace::Workspace;
 pub(crate) use metadata::{Metadata, Package};
+use packages::Packages;
 use std::path::PathBuf;
 
 /// The JSON Schema of scenario files.
@@ -24,6 +26,8 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let metadata = Metadata::read(workspace)?;
     let mut findings = arrows::findings(&metadata);
     findings.extend(licences::findings(&metadata));
+    let program = Packages::read(workspace)?;
+    findings.extend(program.findings());
     let files = workspace.tracked(&[])?;
     let key_paths = keys::paths(&schema(workspace)?);
     let keyless: Vec<_> = keys::below(&metadata).into_iter().map(|package| source_of(package, workspace)).collect();
@@ -43,6 +47,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         return Err(Failure::Findings { findings });
     }
     println!("nothing found in {} packages and {} files", metadata.count(), files.len());
+    println!("packages of the program without the viewer: {}", program.count());
     Ok(())
 }
 

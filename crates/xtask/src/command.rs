@@ -6,13 +6,13 @@ use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
 /// Every command: arguments and what it does.
 const COMMANDS: [(&str, &str); 17] = [
     ("setup", "fetch the MuJoCo library, once"),
-    ("demo", "set up, build, run the demo and compare its two moves"),
+    ("demo", "build, run the demo, set up, build the rest and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
     ("outside", "run the outside clients alone: what others wrote against ours"),
     ("bench [--json]", "measure a tick of the closed loop on every engine"),
     ("bench peers [--json]", "simulate one loop here and in simulators for Python, and compare the speeds"),
     ("drill faults", "end and starve 200 suites at random, and compare what --resume makes of them"),
-    ("checks", "check dependency arrows, licences and text"),
+    ("checks", "check dependency arrows, licences, text and the size of the program"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
     ("drill many", "run suites of up to 20 000 runs (SERVOBENCH_SWEEP: how many), and say what each costs"),

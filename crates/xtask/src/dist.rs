@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! servobench-<version>-<target>/bin/servobench              finds the library by $ORIGIN/../native/lib
+//!                              /bin/servobench-view         draws recordings for the Rerun viewer
 //!                              /native/lib/libmujoco.so.…
 //!                              /lib/libservobench_fmu.so    what goes into exported FMUs
 //!                              /share/man/man1              man pages; completions of bash, zsh and fish beside them, where
@@ -28,7 +29,8 @@ const TRACKED: [&str; 7] = ["models", "scenarios", "scenarios-fmu", "docs", "REA
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let library = wheel::MUJOCO.ensure(workspace)?;
     let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
-    run_command(build.args(["--package", "servobench-fmu", "--features", "servobench-cli/mujoco"]), 0)?;
+    build.args(["--package", "servobench-view", "--package", "servobench-fmu", "--features", "servobench-cli/mujoco"]);
+    run_command(&mut build, 0)?;
 
     let metadata = Metadata::read(workspace)?;
     let cli = metadata.members().find(|package| package.name == "servobench-cli");
@@ -41,6 +43,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let room = tempfile::tempdir_in(&folder).map_err(Failure::file("write into", &folder))?;
     let root = room.path().join(&name);
     copy(&workspace.binary(), &root.join("bin/servobench"))?;
+    copy_into(&workspace.binary().with_file_name("servobench-view"), &root.join("bin"))?;
     copy_into(&library, &root.join("native/lib"))?;
     copy_into(&workspace.binary().with_file_name("libservobench_fmu.so"), &root.join("lib"))?;
     for licence in wheel::MUJOCO.licences(workspace) {
@@ -50,7 +53,8 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         copy(&workspace.root.join(&file), &root.join(&file))?;
     }
     write_share(workspace, &root)?;
-    let others = metadata.closure(cli.into_iter());
+    let viewer = metadata.members().find(|package| package.name == "servobench-view");
+    let others = metadata.closure(cli.into_iter().chain(viewer));
     let text = licence_texts(others.into_iter().filter(|package| !metadata.is_member(package)));
     let file = root.join("licenses/rust-crates.txt");
     fs::write(&file, text).map_err(Failure::file("write", &file))?;
@@ -91,15 +95,15 @@ fn write_share(workspace: &Workspace, root: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Unpacks the archive where nothing of the workspace is near and runs the demo there on MuJoCo: only the packed
-/// library can serve it.
+/// Unpacks the archive where nothing of the workspace is near and runs the demo there on MuJoCo, drawn for the viewer: only the packed
+/// library and the packed program can serve it.
 fn try_out(workspace: &Workspace, archive: &Path, name: &str) -> Result<(), Failure> {
     let temporary = std::env::temp_dir();
     let room = tempfile::tempdir().map_err(Failure::file("write into", temporary))?;
     let mut unpack = workspace.command("python3", ["-m", "tarfile", "--extract"]);
     run_command(unpack.arg(archive).arg(room.path()), 0)?;
     let root = room.path().join(name);
-    let mut demo = workspace.command(root.join("bin/servobench"), ["run", "--engine", "mujoco"]);
+    let mut demo = workspace.command(root.join("bin/servobench"), ["run", "--engine", "mujoco", "--rrd"]);
     demo.arg("--out").arg(room.path().join("out"));
     // `cargo run` names folders of the workspace in this variable.
     run_command(demo.env_remove("LD_LIBRARY_PATH").current_dir(room.path()), 0)
@@ -107,7 +111,7 @@ fn try_out(workspace: &Workspace, archive: &Path, name: &str) -> Result<(), Fail
 
 /// The licence files of `packages`, each different text once, under the names of those that carry it.
 fn licence_texts<'a>(packages: impl Iterator<Item = &'a Package>) -> String {
-    let mut listing = String::from("Crates that the program contains or is built with:\n\n");
+    let mut listing = String::from("Crates that the programs contain or are built with:\n\n");
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in packages {
         let licence = package.license.as_deref().unwrap_or("see below");
