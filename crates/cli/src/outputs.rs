@@ -8,8 +8,8 @@ mod target;
 pub(crate) use target::Output;
 
 use crate::error::CliError;
-use place::{Kind, Place};
-use servobench_files::FileId;
+use place::Place;
+use servobench_files::{Destination, FileId};
 use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -33,7 +33,7 @@ pub(crate) fn reads(path: &Path, what: impl Display) {
 
 /// Notes that standard input is read.
 pub(crate) fn reads_stdin() {
-    note(place::of_stdin(), "what comes in on standard input");
+    note(FileId::of_standard_input(), "what comes in on standard input");
 }
 
 fn note(file: Option<FileId>, what: impl Display) {
@@ -97,13 +97,13 @@ impl ClaimedFolder<'_> {
 impl<'a> Outputs<'a> {
     /// The file at `path`, which `option` names.
     pub(crate) fn file(&mut self, option: &str, path: &Path) -> Result<Output, Refused> {
-        let kind = Kind::of(path);
-        if kind == Kind::Folder {
+        let kind = Destination::of(path);
+        if kind == Destination::Folder {
             return Err(Refused::Folder { option: option.to_owned(), path: path.to_owned() });
         }
         spares(option, path)?;
         // A device has room for all.
-        if kind != Kind::Device {
+        if kind != Destination::Device {
             let place = Place::of(path);
             let of_a_folder = self.folders.iter().find(|folder| folder.claims(&place)).map(|folder| &folder.option);
             if let Some(other) = of_a_folder.or_else(|| self.files.get(&place)) {
@@ -208,6 +208,6 @@ impl OutputFolder {
 
     /// The file `name` in it, of those that it is for.
     pub(crate) fn file(&self, name: &str) -> Result<Output, Refused> {
-        Ok(Output::at(&self.place(name)?, Kind::File))
+        Ok(Output::at(&self.place(name)?, Destination::File))
     }
 }

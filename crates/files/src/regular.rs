@@ -1,32 +1,26 @@
 //! Regular files, and nothing else under their names.
+use crate::sys::{self, Kind};
 use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// Which file it is, whatever it is called: links lead to the same one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct FileId {
-    device: u64,
-    inode: u64,
-}
+pub struct FileId([u64; 2]);
 
 impl FileId {
-    /// That of the file or folder at `path`.
+    /// Identity of the file or folder at `path`.
     ///
     /// # Errors
-    /// Those of the operating system; where it knows no such thing, [`ErrorKind::Unsupported`].
+    /// Those of the operating system.
     pub fn of(path: &Path) -> io::Result<Self> {
-        let about = std::fs::metadata(path)?;
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::MetadataExt as _;
-            Ok(Self { device: about.dev(), inode: about.ino() })
-        }
-        #[cfg(not(unix))]
-        {
-            drop(about);
-            Err(ErrorKind::Unsupported.into())
-        }
+        sys::identity(path).map(Self)
+    }
+
+    /// Identity of the regular file that standard input comes from, if it does.
+    #[must_use]
+    pub fn of_standard_input() -> Option<Self> {
+        sys::identity_of_standard_input().map(Self)
     }
 }
 
@@ -41,12 +35,7 @@ pub fn open(path: &Path, most: u64) -> io::Result<File> {
     regular(&std::fs::metadata(path)?, most)?;
     let mut options = OpenOptions::new();
     options.read(true);
-    #[cfg(unix)]
-    {
-        use rustix::fs::OFlags;
-        use std::os::unix::fs::OpenOptionsExt as _;
-        options.custom_flags((OFlags::NONBLOCK | OFlags::CLOEXEC).bits().cast_signed());
-    }
+    sys::without_waiting(&mut options);
     let file = options.open(path)?;
     regular(&file.metadata()?, most)?;
     Ok(file)
@@ -60,6 +49,17 @@ pub fn metadata(path: &Path, most: u64) -> io::Result<Metadata> {
     let about = std::fs::metadata(path)?;
     regular(&about, most)?;
     Ok(about)
+}
+
+/// Makes the file `path`, which must not be there yet: its owner's alone, and a program if it `is_program`.
+///
+/// # Errors
+/// Those of the operating system.
+pub fn create_private(path: &Path, is_program: bool) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    sys::make_private(&mut options, is_program);
+    options.open(path)
 }
 
 /// Reads a regular file of `most` bytes at most.
@@ -105,20 +105,14 @@ fn size(bytes: u64) -> String {
     }
 }
 
-#[cfg(unix)]
 fn kind(kind: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt as _;
-    match () {
-        () if kind.is_dir() => "a folder",
-        () if kind.is_fifo() => "a FIFO",
-        () if kind.is_socket() => "a socket",
-        () => "a device",
+    match sys::kind(kind) {
+        Kind::File => "a file",
+        Kind::Folder => "a folder",
+        Kind::Fifo => "a FIFO",
+        Kind::Socket => "a socket",
+        Kind::Device => "a device",
     }
-}
-
-#[cfg(not(unix))]
-fn kind(kind: FileType) -> &'static str {
-    if kind.is_dir() { "a folder" } else { "something else" }
 }
 
 #[cfg(all(test, unix))]

@@ -18,9 +18,8 @@ use folder::{Own, writing};
 use name::Names;
 
 pub use folder::{remove_abandoned, remove_unpacked};
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zip::{CompressionMethod, ZipArchive};
@@ -162,8 +161,8 @@ impl Archive {
         };
         let mut entry = self.zip.by_index(index).map_err(|error| broken(error.to_string()))?;
         // What is a program for its owner stays one; nobody else may do anything.
-        let mode = 0o600 | entry.unix_mode().unwrap_or(0) & 0o100;
-        let mut file = OpenOptions::new().write(true).create_new(true).mode(mode).open(&target).map_err(unwritable)?;
+        let is_program = entry.unix_mode().unwrap_or(0) & 0o100 != 0;
+        let mut file = servobench_files::create_private(&target, is_program).map_err(unwritable)?;
         let size = entry.size();
         let copied = io::copy(&mut (&mut entry).take(size), &mut file).map_err(|error| broken(error.to_string()))?;
         let is_longer = entry.read(&mut [0]).map_err(|error| broken(error.to_string()))? > 0;

@@ -13,6 +13,7 @@ use crate::archive::Unpacked;
 use crate::description::Version;
 use crate::error::{FmuError, LibraryProblem};
 use status::Outcome;
+use std::env::consts::{ARCH, DLL_SUFFIX, OS};
 use std::path::PathBuf;
 
 /// Values of a type that an instance gives and takes, all that are asked for in one call. An array takes as many values as it
@@ -25,15 +26,22 @@ pub(crate) trait Access<T> {
 /// A function of the standard and what came of it.
 pub(crate) type Called = (&'static str, Outcome);
 
-/// Folders of libraries for Linux on x86-64, as FMI 2.0 and FMI 3.0 name them. Tools mix them up.
-const FOLDERS: [&str; 2] = ["linux64", "x86_64-linux"];
+/// Folders of libraries for this platform, as FMI 2.0 (§2.3) and FMI 3.0 (§2.5.1.4) name them. Tools mix them up.
+fn folders() -> [String; 2] {
+    let (of_two, system) = match OS {
+        "windows" => ("win64", OS),
+        "macos" => ("darwin64", "darwin"),
+        _ => ("linux64", OS),
+    };
+    [of_two.into(), format!("{ARCH}-{system}")]
+}
 
 /// Where the library for this platform is.
 pub(crate) fn path(unpacked: &Unpacked) -> Result<PathBuf, FmuError> {
     let description = unpacked.description();
-    let name = format!("{}.so", description.co_simulation.model_identifier);
+    let name = format!("{}{DLL_SUFFIX}", description.co_simulation.model_identifier);
     let binaries = unpacked.folder().join("binaries");
-    let mut folders = FOLDERS;
+    let mut folders = folders();
     if description.version == Version::Three {
         folders.reverse();
     }

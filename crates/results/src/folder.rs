@@ -3,10 +3,11 @@ use crate::error::ResultsError;
 use crate::journal::{self, JournalError};
 use crate::results::files_of_results;
 use crate::runs::Runs;
+use servobench_files::FolderLock;
 use servobench_trace::unfinished_by;
 use std::collections::HashSet;
 use std::ffi::OsStr;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, TryLockError};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -36,8 +37,7 @@ const KINDS: [&str; 3] = [".parquet", ".timing.svg", ".rrd"];
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// Holds the lock (flock(2)), which the system gives back with the last descriptor.
-    _lock: File,
+    _lock: FolderLock,
 }
 
 /// Why a folder cannot be written into.
@@ -97,11 +97,10 @@ impl Folder {
     pub fn open(path: &Path) -> Result<Self, FolderError> {
         fs::create_dir_all(path).map_err(|source| FolderError::Make { path: path.to_owned(), source })?;
         let cannot_lock = |source| FolderError::Lock { path: path.to_owned(), source };
-        let folder = File::open(path).map_err(cannot_lock)?;
-        match folder.try_lock() {
-            Ok(()) => {
+        match FolderLock::of(path) {
+            Ok(lock) => {
                 remove_unfinished(path);
-                Ok(Self { path: path.to_owned(), _lock: folder })
+                Ok(Self { path: path.to_owned(), _lock: lock })
             }
             Err(TryLockError::WouldBlock) => Err(FolderError::InUse(path.to_owned())),
             Err(TryLockError::Error(error)) => Err(cannot_lock(error)),

@@ -3,10 +3,9 @@
 //! What is more than [`IN_MEMORY`] goes to a file, block by block, and when all is there the file is mapped: what nobody looks at takes no
 //! memory, and the system takes back what was looked at and [`released`](Values::release). The file has no name. It is gone when the
 //! process is, whatever ends it.
-use memmap2::Mmap;
+use servobench_files::{MappedFile, UnnamedFile, is_too_many_open};
 use std::fmt::{self, Debug};
-use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io;
 use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -24,7 +23,7 @@ pub struct Values(Place);
 #[derive(Clone)]
 enum Place {
     Memory(Vec<f64>),
-    File(Arc<Mmap>),
+    File(Arc<MappedFile>),
 }
 
 impl Values {
@@ -47,12 +46,8 @@ impl Values {
 
     /// Gives memory back that was taken to look at the values of a file. They can be looked at again; nothing is lost.
     pub fn release(&self) {
-        #[cfg(unix)]
         if let Place::File(map) = &self.0 {
-            // It is a wish: where it cannot be granted the memory stays until somebody needs it.
-            #[expect(unsafe_code, reason = "the pages of a file that nobody writes are read again as they were")]
-            // SAFETY: the mapping is shared and never written, so that a page that is dropped comes back from the file.
-            let _ = unsafe { map.unchecked_advise(memmap2::UncheckedAdvice::DontNeed) };
+            map.release();
         }
     }
 }
@@ -115,7 +110,7 @@ pub struct GrowingValues {
     /// How many of them there are before they go to the file.
     most: usize,
     /// Those before the tail, `written` of them.
-    file: Option<File>,
+    file: Option<UnnamedFile>,
     written: usize,
 }
 
@@ -193,14 +188,11 @@ impl GrowingValues {
         let folder = folder();
         let written = match &mut self.file {
             Some(file) => Ok(file),
-            none => tempfile::tempfile_in(&folder).map(|file| none.insert(file)),
+            none => UnnamedFile::new_in(&folder).map(|file| none.insert(file)),
         }
-        .and_then(|file| {
-            file.seek(SeekFrom::Start(self.written as u64 * WIDTH))?;
-            file.write_all(bytemuck::cast_slice(&self.tail))
-        });
+        .and_then(|file| file.write_at(self.written as u64 * WIDTH, bytemuck::cast_slice(&self.tail)));
         let named = |error: io::Error| {
-            let what_to_do = if is_too_many_files(&error) {
+            let what_to_do = if is_too_many_open(&error) {
                 "allow more open files (`ulimit -n`), or make fewer runs at once"
             } else {
                 "name a folder with more room by TMPDIR"
@@ -220,17 +212,9 @@ impl GrowingValues {
         }
         self.settle()?;
         let Some(file) = self.file else { return Ok(Values::default()) };
-        file.set_len(self.written as u64 * WIDTH)?;
-        #[expect(unsafe_code, reason = "a mapped file must not change: this one has no name by which anybody could")]
-        // SAFETY: only this process has the file, and it is closed here.
-        let map = unsafe { Mmap::map(&file) }?;
+        let map = file.map(self.written as u64 * WIDTH)?;
         Ok(Values(Place::File(Arc::new(map))))
     }
-}
-
-/// Whether the process, or the machine, has too many files open (EMFILE, ENFILE; errno(3)).
-fn is_too_many_files(error: &io::Error) -> bool {
-    cfg!(unix) && matches!(error.raw_os_error(), Some(23 | 24))
 }
 
 /// Where files go that may be large: `TMPDIR`; without it `/var/tmp`, which unlike `/tmp` is on a disk everywhere.
@@ -297,13 +281,6 @@ mod tests {
                 assert!(is_right(&growing.finish().unwrap(), kept), "{kept} kept, and no more");
             }
         }
-    }
-
-    /// EMFILE, ENFILE, ENOSPC, ENOENT of Linux (errno(3)).
-    #[test]
-    fn too_many_files_are_told_from_too_little_room() {
-        let are = [24, 23, 28, 2].map(|code| is_too_many_files(&io::Error::from_raw_os_error(code)));
-        assert_eq!(are, [true, true, false, false]);
     }
 
     #[test]

@@ -1,11 +1,7 @@
 //! Where a path leads: what is there is known by device and inode, so that neither links nor `./x` hide it; what is not there yet
 //! by its folder and its name.
 use servobench_files::FileId;
-use std::fs::Metadata;
 use std::path::{Component, Path, PathBuf};
-
-/// Links that are followed at most, as Linux has it.
-const MOST_LINKS: usize = 40;
 
 /// A name in a folder, both as they are found now.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -14,28 +10,6 @@ pub(super) struct Place {
     folder: Option<FileId>,
     /// What is below it.
     name: PathBuf,
-}
-
-/// What a path is, for who wants to write there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// A regular file, or nothing yet: it is replaced as a whole.
-    File,
-    Folder,
-    /// A device: what is written goes there at once, and several may write there.
-    Device,
-    /// A pipe, a socket, or a descriptor of this process by its name below `/dev` or `/proc`.
-    Pipe,
-    /// Standard output by such a name.
-    StandardOutput,
-    /// Standard error by such a name.
-    StandardError,
-}
-
-/// What standard input comes from, if that is a regular file.
-pub(super) fn of_stdin() -> Option<FileId> {
-    let stdin = Path::new("/dev/stdin");
-    std::fs::metadata(stdin).is_ok_and(|found| found.is_file()).then(|| FileId::of(stdin).ok()).flatten()
 }
 
 impl Place {
@@ -81,62 +55,6 @@ fn below(missing: &[Component<'_>]) -> PathBuf {
     path
 }
 
-impl Kind {
-    /// What is at `path`, links followed.
-    pub(super) fn of(path: &Path) -> Self {
-        if let Some(number) = descriptor(path) {
-            return match number {
-                1 => Self::StandardOutput,
-                2 => Self::StandardError,
-                _ => Self::Pipe,
-            };
-        }
-        match std::fs::metadata(path) {
-            Ok(found) if found.is_dir() => Self::Folder,
-            Ok(found) => Self::in_metadata(&found),
-            Err(_) => Self::File,
-        }
-    }
-
-    #[cfg(unix)]
-    fn in_metadata(found: &Metadata) -> Self {
-        use std::os::unix::fs::FileTypeExt;
-        let kind = found.file_type();
-        if kind.is_char_device() || kind.is_block_device() {
-            Self::Device
-        } else if kind.is_fifo() || kind.is_socket() {
-            Self::Pipe
-        } else {
-            Self::File
-        }
-    }
-
-    #[cfg(not(unix))]
-    fn in_metadata(_: &Metadata) -> Self {
-        Self::File
-    }
-}
-
-/// The descriptor of this process that `path` is a name of: `/dev/stdout` and `/dev/fd/1` lead to `/proc/self/fd/1`, which is a link to
-/// whatever is open there. To replace one of these links would help nobody.
-fn descriptor(path: &Path) -> Option<u32> {
-    let mut path = std::path::absolute(path).ok()?;
-    for _ in 0..MOST_LINKS {
-        let (folder, name) = (path.parent()?.canonicalize().ok()?, path.file_name()?);
-        if is_own_descriptors(&folder) {
-            return name.to_str()?.parse().ok();
-        }
-        path = folder.join(std::fs::read_link(folder.join(name)).ok()?);
-    }
-    None
-}
-
-/// Whether the real path `folder` is `/proc/ID/fd` of this process.
-fn is_own_descriptors(folder: &Path) -> bool {
-    let names = ["/proc/self/fd", "/proc/thread-self/fd"];
-    names.iter().any(|name| Path::new(name).canonicalize().is_ok_and(|real| real == folder))
-}
-
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
@@ -168,27 +86,5 @@ mod tests {
             assert_eq!(inside.name_in(&folder), Some("new"), "{folder:?}");
             assert_eq!(Place::of(&path("other/new")).name_in(&folder), None, "{folder:?}");
         }
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn devices_and_descriptors_are_told_from_files() {
-        let there = tempfile::tempdir().unwrap();
-        for (path, kind) in [
-            ("/dev/null", Kind::Device),
-            ("/dev/stdout", Kind::StandardOutput),
-            ("/proc/self/fd/1", Kind::StandardOutput),
-            ("/dev/stderr", Kind::StandardError),
-            ("/dev/fd/2", Kind::StandardError),
-            ("/dev/stdin", Kind::Pipe),
-            ("/tmp", Kind::Folder),
-            ("/proc/version", Kind::File),
-            ("/no/such/folder/x", Kind::File),
-        ] {
-            assert_eq!(Kind::of(Path::new(path)), kind, "{path}");
-        }
-        let link = there.path().join("out.csv");
-        symlink("/dev/stdout", &link).unwrap();
-        assert_eq!(Kind::of(&link), Kind::StandardOutput);
     }
 }

@@ -1,7 +1,7 @@
 //! A file that a command may write: nothing that it reads, and nothing that it writes already.
 use crate::console;
 use crate::error::CliError;
-use crate::outputs::place::Kind;
+use servobench_files::Destination;
 use servobench_trace::{stream_durably, stream_whole};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -20,7 +20,7 @@ enum To {
     /// The same in a folder that may have to be made.
     FileAnywhere(PathBuf),
     /// By this name.
-    Stream(PathBuf, Kind),
+    Stream(PathBuf, Destination),
     /// Because nobody named a file, or by `-`.
     StandardOutput,
 }
@@ -28,11 +28,13 @@ enum To {
 impl Output {
     pub(super) const STANDARD_OUTPUT: Self = Self { to: To::StandardOutput };
 
-    pub(super) fn at(path: &Path, kind: Kind) -> Self {
+    pub(super) fn at(path: &Path, kind: Destination) -> Self {
         let path = path.to_owned();
         let to = match kind {
-            Kind::File | Kind::Folder => To::File(path),
-            Kind::Device | Kind::Pipe | Kind::StandardOutput | Kind::StandardError => To::Stream(path, kind),
+            Destination::File | Destination::Folder => To::File(path),
+            Destination::Device | Destination::Pipe | Destination::StandardOutput | Destination::StandardError => {
+                To::Stream(path, kind)
+            }
         };
         Self { to }
     }
@@ -124,7 +126,7 @@ impl Output {
                 self.whole(path, |file| write(file), is_durable)
             }
             To::Stream(path, kind) => {
-                let mut out = BufWriter::new(Read(opened(path, *kind).map_err(|error| self.failed(error))?));
+                let mut out = BufWriter::new(Read(kind.open(path).map_err(|error| self.failed(error))?));
                 write(&mut out)?;
                 out.flush().map_err(|error| self.failed(error))
             }
@@ -180,21 +182,4 @@ impl Write for Read {
     fn flush(&mut self) -> io::Result<()> {
         self.0.flush()
     }
-}
-
-/// What leads to a device, a pipe or a descriptor. A descriptor of ours is used itself, so that what is printed there otherwise
-/// follows it; what another process has opened as a file is written behind what it holds.
-fn opened(path: &Path, kind: Kind) -> io::Result<File> {
-    #[cfg(unix)]
-    {
-        use std::os::fd::AsFd;
-        match kind {
-            Kind::StandardOutput => return Ok(std::io::stdout().as_fd().try_clone_to_owned()?.into()),
-            Kind::StandardError => return Ok(std::io::stderr().as_fd().try_clone_to_owned()?.into()),
-            Kind::File | Kind::Folder | Kind::Device | Kind::Pipe => {}
-        }
-    }
-    #[cfg(not(unix))]
-    let _ = kind;
-    File::options().append(true).open(path)
 }

@@ -1,8 +1,9 @@
 //! Folders that FMUs are unpacked to: they go with who uses them, also where a signal ends the program before that. What a program
 //! left that was killed goes when the next one looks.
 //!
-//! A folder is locked (flock(2)) as long as the process is there that uses it, however that ends.
-use std::fs::{self, File, TryLockError};
+//! A folder is locked as long as the process is there that uses it, however that ends.
+use servobench_files::FolderLock;
+use std::fs::{self, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
@@ -22,7 +23,8 @@ pub(super) struct Own {
     path: PathBuf,
     /// Until it is dropped.
     folder: Option<TempDir>,
-    _lock: File,
+    /// `None` on a file system without locks.
+    _lock: Option<FolderLock>,
 }
 
 impl Own {
@@ -35,12 +37,10 @@ impl Own {
             let path = folder.path().to_owned();
             // Another program may take it for one that nobody uses any more before it is locked. A file system without locks has
             // none for that program either.
-            if let Ok(lock) = File::open(&path)
-                && !matches!(lock.try_lock(), Err(TryLockError::WouldBlock))
-                && path.is_dir()
-            {
+            let lock = FolderLock::of(&path);
+            if !matches!(lock, Err(TryLockError::WouldBlock)) && path.is_dir() {
                 there().push(path.clone());
-                return Ok(Self { path, folder: Some(folder), _lock: lock });
+                return Ok(Self { path, folder: Some(folder), _lock: lock.ok() });
             }
         }
     }
@@ -75,8 +75,7 @@ pub fn remove_abandoned() {
         // A link is none of ours.
         if is_one
             && entry.file_type().is_ok_and(|kind| kind.is_dir())
-            && let Ok(lock) = File::open(entry.path())
-            && lock.try_lock().is_ok()
+            && let Ok(_lock) = FolderLock::of(&entry.path())
         {
             // Those of other users stay.
             fs::remove_dir_all(entry.path()).ok();
@@ -111,8 +110,7 @@ mod tests {
     fn what_is_in_use_is_locked() {
         let parent = tempfile::tempdir().unwrap();
         let own = Own::new(parent.path()).unwrap();
-        let other = File::open(own.path()).unwrap();
-        assert!(matches!(other.try_lock(), Err(TryLockError::WouldBlock)));
+        assert!(matches!(FolderLock::of(own.path()), Err(TryLockError::WouldBlock)));
         let path = own.path().to_owned();
         drop(own);
         assert!(!path.exists());

@@ -3,8 +3,8 @@
 use super::calls::during;
 use crate::archive::Unpacked;
 use crate::error::{FmuError, LibraryProblem};
-use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-use std::path::PathBuf;
+use libloading::Library;
+use std::path::{Path, PathBuf};
 
 /// An open library. The functions found in it may be called as long as it lives.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ impl Open {
         let fmu = unpacked.path().to_owned();
         // SAFETY: the library's initialisers are foreign code. That nothing vouches for it is what the process of its own is
         // for, in which FMUs run unless the scenario trusts them.
-        let library = during("dlopen", || unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) });
+        let library = during("dlopen", || unsafe { library(&path) });
         let library = library.map_err(|error| {
             let why = chain(&error);
             // Libraries of Python FMUs leave its functions to the program that loads them.
@@ -49,12 +49,30 @@ impl Open {
     /// # Safety
     /// `F` is the type of a pointer to that function.
     pub(super) unsafe fn optional<F: Copy>(&self, symbol: &str) -> Option<F> {
-        // SAFETY: the caller's; a symbol whose address is NULL, which is no function, is none.
-        unsafe { self.library.get::<F>(symbol.as_bytes()) }
-            .ok()
-            .filter(|found| !found.clone().into_raw().is_null())
-            .map(|found| *found)
+        // SAFETY: the caller's; a symbol whose address is NULL, which is not a function, is `None`.
+        unsafe { self.library.get::<Option<F>>(symbol.as_bytes()) }.ok().and_then(|found| *found)
     }
+}
+
+/// Opens a library with all that it needs, and without making its functions known to others.
+///
+/// # Safety
+/// Its initialisers run.
+#[cfg(unix)]
+unsafe fn library(path: &Path) -> Result<Library, libloading::Error> {
+    use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+    // SAFETY: the caller's.
+    unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map(Into::into)
+}
+
+/// Opens a library.
+///
+/// # Safety
+/// Its initialisers run.
+#[cfg(not(unix))]
+unsafe fn library(path: &Path) -> Result<Library, libloading::Error> {
+    // SAFETY: the caller's.
+    unsafe { Library::new(path) }
 }
 
 /// An error and what caused it, in one line.

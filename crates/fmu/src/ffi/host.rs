@@ -9,7 +9,6 @@ use servobench_sim::Bench;
 use servobench_trace::Recording;
 use std::ffi::{CString, c_void};
 use std::fs;
-use std::os::unix::ffi::OsStrExt as _;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use tempfile::TempDir;
@@ -74,7 +73,7 @@ impl Room {
     }
 
     pub(super) fn path(&self) -> CString {
-        CString::new(self.folder().as_os_str().as_bytes()).unwrap()
+        CString::new(self.folder().as_os_str().as_encoded_bytes()).unwrap()
     }
 
     /// The value reference of an input or a parameter.

@@ -5,11 +5,11 @@ use super::{Log, Outcome, call, copy_bytes, free_state, give, keep, put, save, s
 use crate::error::Refusal;
 use crate::instance::{Asked, Experiment};
 use crate::interface::Kind;
+use servobench_files::path_of_bytes;
 use servobench_fmi::abi::v2::{
     self, Boolean, Component, FmuState, Integer, Real, Status, StatusKind, Text, ValueReference,
 };
-use std::ffi::{CStr, CString, OsString, c_char, c_void};
-use std::os::unix::ffi::OsStringExt as _;
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::PathBuf;
 
 const fn name_of(kind: Kind) -> &'static str {
@@ -56,7 +56,7 @@ impl Log for Logger {
 fn folder(uri: &CStr) -> Result<PathBuf, String> {
     let text = uri.to_bytes();
     let path = match text.strip_prefix(b"file:") {
-        None => return Ok(PathBuf::from(OsString::from_vec(text.to_vec()))),
+        None => return Ok(path_of_bytes(text.to_vec())),
         Some(rest) => match rest.strip_prefix(b"//") {
             None => rest,
             Some(rest) => rest.strip_prefix(b"localhost").unwrap_or(rest),
@@ -72,7 +72,7 @@ fn folder(uri: &CStr) -> Result<PathBuf, String> {
         bytes.push(byte.unwrap_or(*first));
         rest = if byte.is_some() { &after[2..] } else { after };
     }
-    Ok(PathBuf::from(OsString::from_vec(bytes)))
+    Ok(path_of_bytes(bytes))
 }
 
 #[unsafe(no_mangle)]

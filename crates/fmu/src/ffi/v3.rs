@@ -7,12 +7,11 @@ use super::{Log, Outcome, call, copy_bytes, free_state, give, keep, put, save, s
 use crate::error::Refusal;
 use crate::instance::{Asked, Experiment};
 use crate::interface::Kind;
+use servobench_files::path_of_bytes;
 use servobench_fmi::abi::v3::{
     self, Boolean, Byte, Float32, Float64, FmuState, Instance, InstanceEnvironment, Status, Text, ValueReference,
 };
-use std::ffi::{CStr, OsStr};
-use std::os::unix::ffi::OsStrExt as _;
-use std::path::PathBuf;
+use std::ffi::CStr;
 
 const fn name_of(kind: Kind) -> &'static str {
     match kind {
@@ -85,7 +84,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
         if n_intermediate > 0 {
             return Err("there is no intermediate update (providesIntermediateUpdate = false)".into());
         }
-        let folder = PathBuf::from(OsStr::from_bytes(told(resource_path, "resourcePath")?.to_bytes()));
+        let folder = path_of_bytes(told(resource_path, "resourcePath")?.to_bytes().to_vec());
         Ok((folder, told(token, "instantiationToken")?.to_string_lossy().into_owned()))
     };
     let log = Logger { function: log_message, environment };

@@ -2,8 +2,9 @@
 use crate::job::{Job, slow_to};
 use serde::{Deserialize, Serialize};
 use servobench_config::Choice as _;
+use servobench_files::{bytes_of_path, path_of_bytes};
 use servobench_scenario::{Document, LoadError, Override, Scenario};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// What a worker is to do with a scenario.
@@ -50,8 +51,8 @@ impl Order {
         let Scenario { name, path, root, overrides, .. } = &job.scenario;
         Self {
             name: name.clone(),
-            path: path.as_deref().map(bytes),
-            root: root.as_deref().map(bytes),
+            path: path.as_deref().map(bytes_of_path),
+            root: root.as_deref().map(bytes_of_path),
             text: job.text.clone(),
             overrides: overrides.iter().map(ToString::to_string).collect(),
             engine: job.engine.name().to_owned(),
@@ -62,7 +63,7 @@ impl Order {
 
     /// The scenario as the caller has it.
     pub(super) fn scenario(&self) -> Result<Scenario, LoadError> {
-        let (path, root) = (self.path.as_deref().map(path), self.root.as_deref().map(path));
+        let (path, root) = (self.path.clone().map(path_of_bytes), self.root.clone().map(path_of_bytes));
         let file = path.as_ref().map_or_else(|| format!("{}.toml", self.name), |path| path.display().to_string());
         let folder = path.as_deref().and_then(Path::parent);
         // The caller has read them.
@@ -74,24 +75,4 @@ impl Order {
         slow_to(&mut scenario, &self.durations);
         Ok(scenario)
     }
-}
-
-#[cfg(unix)]
-fn bytes(path: &Path) -> Vec<u8> {
-    std::os::unix::ffi::OsStrExt::as_bytes(path.as_os_str()).to_vec()
-}
-
-#[cfg(unix)]
-fn path(bytes: &[u8]) -> PathBuf {
-    PathBuf::from(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes))
-}
-
-#[cfg(not(unix))]
-fn bytes(path: &Path) -> Vec<u8> {
-    path.to_string_lossy().into_owned().into_bytes()
-}
-
-#[cfg(not(unix))]
-fn path(bytes: &[u8]) -> PathBuf {
-    PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
 }

@@ -71,8 +71,8 @@ const PLAN: [(&str, May); 40] = [
     (
         "fmu",
         May::On(&[
-            "base", "config", "cia402", "motion", "planner", "plcopen", "drive", "plant", "fmi", "signals", "scenario",
-            "sim",
+            "base", "config", "cia402", "motion", "planner", "plcopen", "drive", "plant", "files", "fmi", "signals",
+            "scenario", "sim",
         ]),
     ),
     (
@@ -101,6 +101,7 @@ const PLAN: [(&str, May); 40] = [
         May::On(&[
             "base",
             "config",
+            "files",
             "isolation",
             "planner",
             "plant",
