@@ -29,8 +29,7 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    resources::keep_freed();
-    resources::open_many();
+    resources::take();
     console::say_panics();
     let cli = args::parse();
     if let Err(error) = interrupt::refuse_large_files() {

@@ -1,15 +1,10 @@
 //! The FMU's side: a process that loads one and does what it is asked for.
-use crate::doorbell::Listener;
 use crate::error::HostError;
-use crate::leave::leave;
 use crate::page::Page;
 use crate::protocol::{Command, Message, Status, log_to_line};
 use serde::de::DeserializeOwned;
 use servobench_fmi::{LogLine, Slave, SlaveError, StepEnd};
-use servobench_isolation::{ContainError, contain};
-use std::fs::File;
-use std::io;
-use std::os::fd::AsFd;
+use servobench_isolation::{ContainError, Listener, MemoryFile, contain, leave_at_once};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
@@ -78,16 +73,14 @@ pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>,
             host.answer(Status::Done);
         }
     }
-    leave()
+    leave_at_once()
 }
 
 /// The memory that is shared, in place of which standard input gets nothing.
 fn page() -> Result<&'static Page, HostError> {
     let cannot = |action| move |source| HostError::System { action, source };
-    let file = io::stdin().as_fd().try_clone_to_owned().map_err(cannot("open standard input"))?;
+    let file = MemoryFile::of_standard_input().map_err(cannot("take standard input"))?;
     let page = Page::adopt(&file).map_err(cannot("map standard input"))?.ok_or(HostError::NoPage)?;
-    let nothing = File::open("/dev/null").map_err(cannot("open /dev/null"))?;
-    rustix::stdio::dup2_stdin(&nothing).map_err(io::Error::from).map_err(cannot("close standard input"))?;
     Ok(PAGE.get_or_init(|| Box::leak(Box::new(page))))
 }
 

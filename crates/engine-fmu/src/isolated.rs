@@ -1,11 +1,10 @@
 //! The simulation's side of an FMU in a process of its own.
-use crate::doorbell::Listener;
 use crate::error::IsolationError;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
 use serde::Serialize;
 use servobench_fmi::{Bounds, Capabilities, Feedthrough, LogLine, Severity, Slave, SlaveError, StepEnd, Unpacked};
-use servobench_isolation::{Contained, Ending, Limits, Program as HostCommand, Stopwatch, Stream, in_words};
+use servobench_isolation::{Contained, Ending, Limits, Listener, Program as HostCommand, Stopwatch, Stream, in_words};
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -95,8 +94,9 @@ impl Isolated {
         let for_its_end = Arc::clone(&page);
         let limits = Limits { memory: bounds.memory, is_foreign: true };
         // Who waits for an answer is woken.
-        let process = Contained::start(command, file, None, limits, move || for_its_end.header().answer.give_up())
-            .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
+        let process =
+            Contained::start(command, file.into(), None, limits, move || for_its_end.header().answer.give_up())
+                .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
         let mut isolated = Self {
             process,
             page,

@@ -21,16 +21,14 @@
 //! It ends with the simulation, however that ends, and what it has started ends with it; what contains it, and what does not, is the
 //! crate `servobench-isolation`. Nothing is left in the file system: the memory is an anonymous file.
 //!
-//! Linux only: futexes, memfd and pidfd (5.3 or later).
+//! A process of its own needs Linux. Elsewhere an FMU runs in this process ([`Place::Here`]), or not at all.
 
 mod described;
-mod doorbell;
 mod engine;
 mod error;
 mod host;
 mod in_si;
 mod isolated;
-mod leave;
 mod like;
 mod load;
 mod mechanics;

@@ -1,4 +1,4 @@
-#![expect(unsafe_code, reason = "memory that is shared with another process is mapped, and seen as atomics")]
+#![expect(unsafe_code, reason = "memory that is shared with another process is seen as atomics")]
 //! The memory that both processes see.
 //!
 //! ```text
@@ -10,17 +10,13 @@
 //! setup        bytes of what the host is to load
 //! ```
 //! Everything in it is an atomic: whatever the FMU does to it, it is only wrong numbers. Lengths are the parent's own; those
-//! that come from the other side are cut to what there is. The file is sealed, so that it cannot shrink under the parent.
-use crate::doorbell::Doorbell;
-use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, fcntl_get_seals, fstat, ftruncate, memfd_create};
-use rustix::mm::{Advice, MapFlags, ProtFlags, madvise, mmap, munmap};
-use std::os::fd::OwnedFd;
-use std::ptr::NonNull;
+//! that come from the other side are cut to what there is.
+use servobench_isolation::{Doorbell, MemoryFile, SharedMemory};
 use std::sync::atomic::{
     AtomicU8, AtomicU32, AtomicU64,
     Ordering::{AcqRel, Acquire, Relaxed},
 };
-use std::{io, ptr, slice};
+use std::{io, slice};
 
 /// Says that a page is one, of this layout.
 const MAGIC: u64 = u64::from_le_bytes(*b"servofm2");
@@ -134,28 +130,22 @@ impl Layout {
     }
 }
 
-/// A mapped page.
+/// Shared memory of this layout.
 #[derive(Debug)]
 pub(crate) struct Page {
-    base: NonNull<Header>,
+    /// As long as the layout says.
+    memory: SharedMemory,
     layout: Layout,
 }
 
-// SAFETY: what it points to lives as long as it does, and is seen as atomics only.
-unsafe impl Send for Page {}
-// SAFETY: as above.
-unsafe impl Sync for Page {}
-
 impl Page {
     /// A page of the parent, and the file that the host finds it in.
-    pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8]) -> io::Result<(Self, OwnedFd)> {
+    pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8]) -> io::Result<(Self, MemoryFile)> {
         let layout = Layout { inputs, outputs, setup: setup.len() };
         let as_u32 = |count: usize| u32::try_from(count).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge));
         let (inputs, outputs, setup_bytes) = (as_u32(inputs)?, as_u32(outputs)?, as_u32(setup.len())?);
-        let file = memfd_create(c"servobench-fmu", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
-        ftruncate(&file, layout.total() as u64)?;
-        fcntl_add_seals(&file, SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
-        let page = Self::map(&file, layout)?;
+        let (file, memory) = MemoryFile::new(c"servobench-fmu", layout.total())?;
+        let page = Self { memory, layout };
         let told = &page.header().told;
         told.inputs.store(inputs, Relaxed);
         told.outputs.store(outputs, Relaxed);
@@ -168,50 +158,40 @@ impl Page {
     /// The page in a file that the parent has made; `None` if it is another kind of file.
     ///
     /// Processes that the FMU forks do not have it: only one answers.
-    pub(crate) fn adopt(file: &OwnedFd) -> io::Result<Option<Self>> {
-        let sealed = fcntl_get_seals(file).is_ok_and(|seals| seals.contains(SealFlags::SHRINK));
-        let total = usize::try_from(fstat(file)?.st_size).unwrap_or(0);
+    pub(crate) fn adopt(file: &MemoryFile) -> io::Result<Option<Self>> {
         let empty = Layout { inputs: 0, outputs: 0, setup: 0 };
-        if !sealed || total < empty.total() {
-            return Ok(None);
-        }
-        let first = Self::map(file, empty)?;
-        let told = &first.header().told;
+        let Some(memory) = file.adopt(empty.total())? else { return Ok(None) };
+        let mut page = Self { memory, layout: empty };
+        let told = &page.header().told;
         let count = |word: &AtomicU32| word.load(Relaxed) as usize;
         let layout = Layout { inputs: count(&told.inputs), outputs: count(&told.outputs), setup: count(&told.setup) };
-        if told.magic.load(Relaxed) != MAGIC || layout.total() != total {
+        if told.magic.load(Relaxed) != MAGIC || layout.total() != page.memory.length() {
             return Ok(None);
         }
-        let page = Self::map(file, layout)?;
-        // SAFETY: the range is the mapping; forked processes that touch it fault, which ends them only.
-        unsafe { madvise(page.base.as_ptr().cast(), layout.total(), Advice::LinuxDontFork)? };
+        page.layout = layout;
         Ok(Some(page))
     }
 
-    fn map(file: &OwnedFd, layout: Layout) -> io::Result<Self> {
-        let access = ProtFlags::READ | ProtFlags::WRITE;
-        // SAFETY: a mapping at an address that the kernel chooses aliases nothing; the file is at least that long and
-        // cannot shrink.
-        let base = unsafe { mmap(ptr::null_mut(), layout.total(), access, MapFlags::SHARED, file, 0)? };
-        let base = NonNull::new(base.cast()).ok_or(io::ErrorKind::AddrNotAvailable)?;
-        Ok(Self { base, layout })
+    #[inline]
+    fn base(&self) -> *const Header {
+        self.memory.start().as_ptr().cast_const().cast()
     }
 
     pub(crate) fn header(&self) -> &Header {
         // SAFETY: the mapping is at least a header long, aligned to memory pages, lives as long as `self`, and every bit
         // pattern is a header of atomics.
-        unsafe { self.base.as_ref() }
+        unsafe { &*self.base() }
     }
 
     fn numbers(&self) -> &[AtomicU64] {
         // SAFETY: they follow the header, whose size is a multiple of their alignment; as in `header`.
-        unsafe { slice::from_raw_parts(self.base.as_ptr().add(1).cast(), self.layout.numbers()) }
+        unsafe { slice::from_raw_parts(self.base().add(1).cast(), self.layout.numbers()) }
     }
 
     fn bytes(&self, first: usize, count: usize) -> &[AtomicU8] {
         // SAFETY: they follow the numbers; as in `header`.
         let all: &[AtomicU8] = unsafe {
-            let numbers: *const AtomicU64 = self.base.as_ptr().add(1).cast();
+            let numbers: *const AtomicU64 = self.base().add(1).cast();
             slice::from_raw_parts(numbers.add(self.layout.numbers()).cast(), self.layout.bytes())
         };
         &all[first..first + count]
@@ -284,14 +264,6 @@ impl Page {
             }
         }
         Vec::new()
-    }
-}
-
-impl Drop for Page {
-    fn drop(&mut self) {
-        // SAFETY: the range is the mapping, and nothing borrows from it any more.
-        let unmapped = unsafe { munmap(self.base.as_ptr().cast(), self.layout.total()) };
-        debug_assert!(unmapped.is_ok(), "the range is what was mapped");
     }
 }
 
@@ -369,18 +341,8 @@ mod tests {
     }
 
     #[test]
-    fn the_file_cannot_shrink_under_the_parent() {
-        let (_page, file) = Page::new(1, 1, b"").unwrap();
-        assert_eq!(ftruncate(&file, 0), Err(rustix::io::Errno::PERM));
-    }
-
-    #[test]
-    fn another_file_is_no_page() {
-        let null = std::fs::File::open("/dev/null").unwrap().into();
-        assert!(Page::adopt(&null).unwrap().is_none());
-        let other = memfd_create(c"other", MemfdFlags::ALLOW_SEALING).unwrap();
-        ftruncate(&other, 1 << 20).unwrap();
-        fcntl_add_seals(&other, SealFlags::SHRINK).unwrap();
-        assert!(Page::adopt(&other).unwrap().is_none());
+    fn other_memory_is_not_a_page() {
+        let (file, _memory) = MemoryFile::new(c"other", 1 << 20).unwrap();
+        assert!(Page::adopt(&file).unwrap().is_none());
     }
 }

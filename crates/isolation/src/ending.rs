@@ -1,6 +1,6 @@
 //! How a process ended, in words.
 use crate::memory::in_words;
-use std::os::unix::process::ExitStatusExt;
+use crate::sys;
 use std::process::ExitStatus;
 
 /// What libraries say when they get no memory: Rust's allocator, C++'s `new`, Python, and the system's own words (ENOMEM).
@@ -89,7 +89,7 @@ impl Ending {
 }
 
 fn status_in_words(status: ExitStatus) -> String {
-    match (status.code(), status.signal()) {
+    match (status.code(), sys::signal_of(status)) {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(number)) => match name(number) {
             Some(name) => format!("signal {number} ({name})"),
@@ -120,9 +120,10 @@ fn name(number: i32) -> Option<&'static str> {
     })
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use std::os::unix::process::ExitStatusExt as _;
 
     fn ending(raw: i32, held: u64, last_words: &str) -> Ending {
         Ending {

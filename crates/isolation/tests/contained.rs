@@ -5,9 +5,7 @@
 //! The contained process is this test program, which does what a variable says. Each test is done with and without a PID namespace, where
 //! the system gives one.
 use servobench_isolation::{Contained, Ending, Limits, Program, Stopwatch, contain};
-use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
-use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -85,8 +83,7 @@ fn start(does: &str, limits: Limits) -> Contained {
     let args = ["--exact", "contained", "--ignored", "--nocapture"].map(Into::into).to_vec();
     let env = vec![(DOES.into(), does.into())];
     let program = Program { program: std::env::current_exe().unwrap(), args, env };
-    let nothing: OwnedFd = File::open("/dev/null").unwrap().into();
-    Contained::start(&program, nothing, None, limits, || ()).unwrap()
+    Contained::start(&program, Stdio::null(), None, limits, || ()).unwrap()
 }
 
 /// With and without a namespace.
@@ -266,6 +263,5 @@ fn watches() {
 #[test]
 fn a_program_that_is_not_there_is_an_error() {
     let program = Program { program: Path::new("/no/such/program").into(), args: vec![], env: vec![] };
-    let nothing: OwnedFd = File::open("/dev/null").unwrap().into();
-    assert!(Contained::start(&program, nothing, None, both()[0], || ()).is_err());
+    assert!(Contained::start(&program, Stdio::null(), None, both()[0], || ()).is_err());
 }

@@ -17,16 +17,13 @@
 //! way, or has kept much memory, does not.
 mod message;
 mod order;
-#[cfg(unix)]
 mod process;
 mod recording;
-#[cfg(unix)]
 mod serve;
 mod workers;
 
 pub use message::End;
 pub use order::{Order, Task};
-#[cfg(unix)]
 pub use serve::{answer, serve};
 pub use workers::{RunLimits, WorkerCommand, Workers};
 

@@ -4,12 +4,10 @@ use super::message::{End, Message};
 use super::order::Order;
 use super::recording;
 use super::workers::{Broken, WorkerCommand};
-use servobench_isolation::{Contained, Limits, Program, Stopwatch};
+use servobench_isolation::{Channel, Contained, Limits, Program, Stopwatch};
 use servobench_trace::Recording;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::Shutdown;
-use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -27,7 +25,7 @@ const CHUNK: usize = 1 << 14;
 #[derive(Debug)]
 pub(super) struct Worker {
     process: Contained,
-    socket: UnixStream,
+    channel: Channel,
     /// What has come and is no line yet.
     heard: Vec<u8>,
     /// Where it leaves recordings.
@@ -45,9 +43,8 @@ impl Worker {
             let program = command.program.clone();
             move |source| WorkerError::Process { action, program, source }
         };
-        let (socket, theirs) = UnixStream::pair().map_err(cannot("make a socket to"))?;
-        socket.set_read_timeout(Some(GLANCE)).map_err(cannot("wait for"))?;
-        socket.set_write_timeout(Some(GLANCE)).map_err(cannot("wait for"))?;
+        let (channel, theirs) = Channel::pair().map_err(cannot("start"))?;
+        channel.set_timeout(GLANCE).map_err(cannot("wait for"))?;
         let recording = tempfile::tempfile_in(&command.folder).map_err(cannot("make a file for"))?;
         let for_recording = recording.try_clone().map_err(cannot("make a file for"))?;
         let program = Program { program: command.program.clone(), args: vec!["worker".into()], env: Vec::new() };
@@ -55,7 +52,7 @@ impl Worker {
         let process = Contained::start(&program, theirs.into(), Some(for_recording.into()), limits, || ())
             .map_err(cannot("start"))?;
         let (program, timeout) = (command.program.clone(), command.timeout);
-        Ok(Self { process, socket, heard: Vec::new(), recording, program, timeout, holds: 0, orders: 0 })
+        Ok(Self { process, channel, heard: Vec::new(), recording, program, timeout, holds: 0, orders: 0 })
     }
 
     /// Whether it has had an order before the last one.
@@ -113,7 +110,7 @@ impl Worker {
     /// Tells it that there are no more orders.
     pub(super) fn dismiss(&self) {
         // One that has ended is as good.
-        self.socket.shutdown(Shutdown::Both).ok();
+        self.channel.close().ok();
     }
 
     /// Waits for the end of one that was dismissed: what it had left behind, in words.
@@ -134,7 +131,7 @@ impl Worker {
         let line = [line, b"\n".to_vec()].concat();
         let mut rest = &line[..];
         while !rest.is_empty() {
-            match self.socket.write(rest) {
+            match self.channel.write(rest) {
                 Ok(count) => rest = &rest[count..],
                 // One that ends before it has read everything may have said why.
                 Err(error) if error.kind() == ErrorKind::BrokenPipe && self.orders == 1 => return Ok(()),
@@ -154,7 +151,7 @@ impl Worker {
                 return Ok(Some(std::mem::replace(&mut self.heard, rest)));
             }
             let mut chunk = [0; CHUNK];
-            match self.socket.read(&mut chunk) {
+            match self.channel.read(&mut chunk) {
                 Ok(0) => return Ok(None),
                 Ok(count) => self.heard.extend_from_slice(&chunk[..count]),
                 // It ended without having read everything that it was told.

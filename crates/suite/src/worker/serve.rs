@@ -16,7 +16,6 @@ use servobench_scenario::Scenario;
 use servobench_sim::{Reason, mechanics_at_rest};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
-use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
 /// How often progress is told, at most.
@@ -29,8 +28,7 @@ const BETWEEN: Duration = Duration::from_millis(50);
 /// # Errors
 /// Those of the system.
 pub fn serve(running: &Engines, checking: &Engines) -> io::Result<()> {
-    let (orders, recording) = claim_standard_streams()?;
-    let (orders, mut recording) = (UnixStream::from(orders), File::from(recording));
+    let (orders, mut recording) = claim_standard_streams()?;
     let mut out = orders.try_clone()?;
     let mut lines = BufReader::new(orders);
     let mut line = String::new();

@@ -2,7 +2,6 @@
 use super::WorkerError;
 use super::message::{End, Message};
 use super::order::{Order, Task};
-#[cfg(unix)]
 use super::process::Worker;
 use crate::error::RunError;
 use crate::execute::{Interruption, Recorded};
@@ -47,7 +46,6 @@ pub struct RunLimits {
 pub struct Workers {
     command: WorkerCommand,
     /// Those that have nothing to do.
-    #[cfg(unix)]
     idle: Mutex<Vec<Worker>>,
 }
 
@@ -55,11 +53,7 @@ impl Workers {
     /// None yet.
     #[must_use]
     pub const fn new(command: WorkerCommand) -> Self {
-        Self {
-            command,
-            #[cfg(unix)]
-            idle: Mutex::new(Vec::new()),
-        }
+        Self { command, idle: Mutex::new(Vec::new()) }
     }
 
     /// None, and no limits: an engine that needs a worker cannot be asked.
@@ -77,16 +71,11 @@ impl Workers {
     /// Ends the workers, which have nothing to do any more: what they had started and left behind, in words. It was ended too.
     #[must_use]
     pub fn dismiss(&self) -> Vec<String> {
-        #[cfg(not(unix))]
-        return Vec::new();
-        #[cfg(unix)]
-        {
-            let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
-            for worker in &idle {
-                worker.dismiss();
-            }
-            idle.iter().filter_map(Worker::left_behind).collect()
+        let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
+        for worker in &idle {
+            worker.dismiss();
         }
+        idle.iter().filter_map(Worker::left_behind).collect()
     }
 
     /// When a run of `job` is slow, by the clock: after a minute, or at half of its limit of time.
@@ -176,7 +165,6 @@ impl Workers {
 
     /// Has `order` carried out; `on_message` gets what is said but the last word, and from time to time nothing. A recording that is
     /// there, or why it cannot be read, goes to `recording`.
-    #[cfg(unix)]
     fn converse(
         &self,
         order: &Order,
@@ -202,22 +190,9 @@ impl Workers {
         Ok(end)
     }
 
-    #[cfg(unix)]
     fn worker(&self) -> Result<Worker, WorkerError> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.map_or_else(|| Worker::start(&self.command), Ok)
-    }
-
-    #[cfg(not(unix))]
-    fn converse(
-        &self,
-        _: &Order,
-        _: Option<Duration>,
-        _: &mut Option<std::io::Result<servobench_trace::Recording>>,
-        _: &mut dyn FnMut(Option<Message>),
-    ) -> Result<End, Broken> {
-        let (program, source) = (self.command.program.clone(), std::io::ErrorKind::Unsupported.into());
-        Err(WorkerError::Process { action: "start", program, source }.into())
     }
 }
 

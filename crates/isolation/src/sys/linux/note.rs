@@ -2,7 +2,7 @@
     unsafe_code,
     reason = "memory that the keeper and the contained process share is mapped, and seen as atomics"
 )]
-//! What the contained process notes where its keeper finds it, also after a crash.
+//! Notes of the contained process where its keeper finds them, also after a crash.
 use rustix::mm::{MapFlags, ProtFlags, mmap_anonymous};
 use std::io;
 use std::ptr;

@@ -1,11 +1,12 @@
 #![expect(unsafe_code, reason = "the keeper and the contained process are one program that forks")]
 //! From a program that was started to be contained to two processes.
+use super::crash;
+use super::keeper::{Kept, keep};
+use super::namespace;
+use super::note::{Note, note};
+use super::settings::{Settings, VARIABLE};
 use crate::error::ContainError;
-use crate::keeper::{Kept, keep};
-use crate::namespace;
-use crate::note::{Note, note};
-use crate::settings::{Settings, VARIABLE};
-use crate::{crash, program::Limits};
+use crate::program::Limits;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{Errno, FdFlags, fcntl_setfd};
 use rustix::process::{
@@ -94,7 +95,7 @@ fn wait_as_first(child: Pid, for_status: &OwnedFd) -> ! {
     }
 }
 
-/// Whether nobody listens at the other end of a pipe any more.
+/// `true` when nobody listens at the other end of a pipe any more.
 fn is_closed(pipe: &OwnedFd) -> bool {
     let mut pipes = [PollFd::new(pipe, PollFlags::empty())];
     let now = Timespec { tv_sec: 0, tv_nsec: 0 };

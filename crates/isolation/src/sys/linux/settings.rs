@@ -1,11 +1,11 @@
-//! What the keeper is told, in a variable of its environment.
+//! Settings of the keeper, in a variable of its environment.
 use crate::program::Limits;
 use std::os::fd::RawFd;
 
 /// The variable.
 pub(crate) const VARIABLE: &str = "SERVOBENCH_CONTAINED";
 
-/// What the keeper is told.
+/// Settings of the keeper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Settings {
     /// Its end of the control socket.
@@ -18,7 +18,7 @@ impl Settings {
         format!("{} {} {}", self.control, self.limits.memory, u8::from(self.limits.is_foreign))
     }
 
-    /// What `text` says; `None` when nobody of us has written it.
+    /// Settings in `text`; `None` when this program has not written it.
     pub(crate) fn of_text(text: &str) -> Option<Self> {
         let words: Vec<&str> = text.split(' ').collect();
         let [control, memory, is_foreign @ ("0" | "1")] = words[..] else { return None };

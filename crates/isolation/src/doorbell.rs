@@ -1,11 +1,10 @@
-//! How one process tells another that it is its turn.
+//! Doorbells: one process tells another that it is its turn.
 //!
 //! Whoever waits looks at the word for a moment, then sleeps in the kernel (a futex that both processes see) until the other
 //! side rings. Looking pays only while the other side runs on another core: for as long as a sleep and a waking cost, so that
 //! it never costs more than twice what would have been best, and not for a while after it was in vain. On two cores that both
 //! have other work, processes that only look get milliseconds in each other's way.
-use rustix::thread::futex;
-use rustix::thread::futex::Timespec;
+use crate::sys;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
 use std::time::{Duration, Instant};
@@ -20,7 +19,7 @@ const PAUSE: u32 = 256;
 /// A word in memory that both see.
 #[repr(C, align(64))]
 #[derive(Debug, Default)]
-pub(crate) struct Doorbell {
+pub struct Doorbell {
     number: AtomicU32,
     /// Not zero: somebody sleeps until it rings.
     asleep: AtomicU32,
@@ -28,7 +27,8 @@ pub(crate) struct Doorbell {
 
 impl Doorbell {
     /// Rings with `number`. What was written before is seen by who hears it.
-    pub(crate) fn ring(&self, number: u32) {
+    #[inline]
+    pub fn ring(&self, number: u32) {
         self.number.store(number, SeqCst);
         // Either the sleeper's note is seen here, or the sleeper sees the new number before it sleeps.
         if self.asleep.load(SeqCst) != 0 {
@@ -37,38 +37,31 @@ impl Doorbell {
     }
 
     /// Wakes who waits, with a number that is no order's: the other side will not ring any more.
-    pub(crate) fn give_up(&self) {
+    #[inline]
+    pub fn give_up(&self) {
         self.number.fetch_xor(1 << 31, SeqCst);
         self.wake();
     }
 
     fn wake(&self) {
-        // It fails for a wrong address only, and then nobody can sleep there.
-        futex::wake(&self.number, futex::Flags::empty(), 1).ok();
+        sys::wake(&self.number);
     }
 
-    /// Whether it has rung with `number`, also where the other side has given up after that.
-    pub(crate) fn has_rung(&self, number: u32) -> bool {
+    /// `true` when it has rung with `number`, also where the other side has given up after that.
+    #[must_use]
+    #[inline]
+    pub fn has_rung(&self, number: u32) -> bool {
         self.number.load(SeqCst) & (u32::MAX >> 1) == number
     }
 
     fn rings(&self, number: u32) -> bool {
         self.number.load(SeqCst) == number
     }
-
-    /// Sleeps while the number is `present`, at most for `limit`; may also return earlier.
-    fn sleep(&self, present: u32, limit: Duration) {
-        // A duration that is too long for the kernel's clock is as good as any: the caller comes back.
-        if let Ok(limit) = Timespec::try_from(limit) {
-            // The number has changed, the time is over or a signal came: the caller looks.
-            futex::wait(&self.number, futex::Flags::empty(), present, Some(&limit)).ok();
-        }
-    }
 }
 
 /// One that waits for a doorbell, and learns whether looking pays.
 #[derive(Debug, Default)]
-pub(crate) struct Listener {
+pub struct Listener {
     /// Turns until it looks again.
     pause: u32,
 }
@@ -76,7 +69,8 @@ pub(crate) struct Listener {
 impl Listener {
     /// Waits until `doorbell` rings with `number`. Meanwhile `go_on` is asked at least every `glance`, and before each sleep;
     /// `false` when it said so first.
-    pub(crate) fn wait(
+    #[inline]
+    pub fn wait(
         &mut self,
         doorbell: &Doorbell,
         number: u32,
@@ -96,7 +90,7 @@ impl Listener {
             if !go_on() {
                 break false;
             }
-            doorbell.sleep(present, glance);
+            sys::sleep_while(&doorbell.number, present, glance);
         };
         doorbell.asleep.store(0, SeqCst);
         rung

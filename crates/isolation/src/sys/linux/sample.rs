@@ -1,9 +1,9 @@
-//! How much memory processes take together.
+//! Memory that several processes take together.
 //!
 //! `RLIMIT_DATA` bounds private memory, of one process. What is shared (mappings, memfd, files in `/dev/shm`) has no bound of its own,
 //! and neither has what several processes take together. Both are looked at from outside, now and then: what can be had between two
 //! looks is bounded by the speed of the memory.
-use crate::descendants::descendants;
+use super::descendants::descendants;
 use rustix::process::Pid;
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +21,7 @@ const BLOCK: u64 = 512;
 /// Looks at the memory of processes.
 #[derive(Debug)]
 pub(crate) struct Sampler {
-    /// What has started them.
+    /// Parent of all of them.
     keeper: Pid,
     processes: Vec<i32>,
     /// Memory files that they have open (B).
@@ -36,7 +36,7 @@ impl Sampler {
         Self { keeper, processes: Vec::new(), files: 0, due: Instant::now() + PAUSE }
     }
 
-    /// What they hold together (B): private memory and shared one; `first` is one of them.
+    /// Memory that they hold together (B), private and shared; `first` is one of them.
     pub(crate) fn held(&mut self, first: i32) -> u64 {
         let now = Instant::now();
         if now >= self.due {

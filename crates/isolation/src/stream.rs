@@ -1,7 +1,5 @@
-//! What a contained process writes on standard output and standard error.
-use rustix::io::ioctl_fionbio;
-use std::io::{self, Read};
-use std::os::fd::AsFd;
+//! Standard output and standard error of a contained process.
+use std::io::{self, PipeReader, Read};
 
 /// Bytes of each stream that are kept: the last ones.
 const KEPT: usize = 4_000;
@@ -10,6 +8,15 @@ const CHUNK: usize = 1 << 16;
 /// Chunks that are read in one visit: as much as a pipe holds at most by default (`/proc/sys/fs/pipe-max-size`), so that
 /// nothing that was written before the visit is left, and one that goes on writing holds nobody up.
 const CHUNKS: usize = 16;
+
+/// Text that comes out of a contained process.
+#[derive(Debug)]
+pub struct Output {
+    /// Its standard output, unless that goes elsewhere.
+    pub stdout: Option<Stream<PipeReader>>,
+    /// Its standard error.
+    pub stderr: Stream<PipeReader>,
+}
 
 /// One stream of the process: it is always read, so that the writer never waits, and of a flood only the end is kept.
 #[derive(Debug)]
@@ -22,14 +29,10 @@ pub struct Stream<S> {
     chunk: Vec<u8>,
 }
 
-impl<S: Read + AsFd> Stream<S> {
-    /// Listens to `source`, which from now on does not wait.
-    ///
-    /// # Errors
-    /// Those of the system.
-    pub fn new(source: S) -> io::Result<Self> {
-        ioctl_fionbio(&source, true)?;
-        Ok(Self { source: Some(source), kept: Vec::new(), count: 0, chunk: vec![0; CHUNK] })
+impl<S: Read> Stream<S> {
+    /// Listens to `source`, which must not wait: where nothing has come it says [`io::ErrorKind::WouldBlock`].
+    pub fn new(source: S) -> Self {
+        Self { source: Some(source), kept: Vec::new(), count: 0, chunk: vec![0; CHUNK] }
     }
 
     /// Where to listen, before its end.
@@ -59,7 +62,7 @@ impl<S: Read + AsFd> Stream<S> {
         }
     }
 
-    /// What has come since the last time, and how many bytes before that were dropped.
+    /// Text that has come since the last time, and the number of bytes before it that were dropped.
     pub fn take(&mut self) -> Option<(String, u64)> {
         let kept = &self.kept[self.kept.len().saturating_sub(KEPT)..];
         let dropped = self.count - kept.len() as u64;
@@ -81,27 +84,41 @@ impl<S: Read + AsFd> Stream<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
+
+    /// A pipe: the bytes that are in it, and whether somebody may still write.
+    struct Pipe(Vec<u8>, bool);
+
+    impl Read for Pipe {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            let count = bytes.len().min(self.0.len());
+            if count == 0 && self.1 {
+                return Err(io::ErrorKind::WouldBlock.into());
+            }
+            bytes[..count].copy_from_slice(&self.0[..count]);
+            self.0.drain(..count);
+            Ok(count)
+        }
+    }
+
+    fn write(stream: &mut Stream<Pipe>, bytes: &[u8]) {
+        stream.source.as_mut().unwrap().0.extend(bytes);
+        stream.drain();
+    }
 
     #[test]
     fn of_a_flood_the_end_is_kept_and_the_rest_counted() {
-        let (reader, mut writer) = io::pipe().unwrap();
-        let mut stream = Stream::new(reader).unwrap();
-        let flood = vec![b'x'; 50_000];
+        let mut stream = Stream::new(Pipe(Vec::new(), true));
         for _ in 0..20 {
-            writer.write_all(&flood).unwrap();
-            stream.drain();
+            write(&mut stream, &vec![b'x'; 50_000]);
         }
-        writer.write_all(b"the reason\n").unwrap();
-        stream.drain();
+        write(&mut stream, b"the reason\n");
         assert!(stream.last_words().ends_with("xthe reason"));
         let (text, dropped) = stream.take().unwrap();
         assert_eq!((text.len() as u64 + 1 + dropped, text.ends_with("xthe reason")), (1_000_011, true));
         assert_eq!(stream.take(), None);
-        writer.write_all(b"more").unwrap();
-        stream.drain();
+        write(&mut stream, b"more");
         assert_eq!(stream.take(), Some(("more".into(), 0)));
-        drop(writer);
+        stream.source.as_mut().unwrap().1 = false;
         stream.drain();
         assert!(stream.source().is_none());
     }
@@ -109,7 +126,7 @@ mod tests {
     /// One that writes as fast as it is read: a visit ends all the same.
     #[test]
     fn a_visit_ends_however_much_comes() {
-        let mut stream = Stream::new(std::fs::File::open("/dev/zero").unwrap()).unwrap();
+        let mut stream = Stream::new(io::repeat(0));
         stream.drain();
         assert_eq!(stream.take().unwrap().1, (CHUNK * CHUNKS - KEPT) as u64);
     }

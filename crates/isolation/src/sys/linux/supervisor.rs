@@ -1,11 +1,11 @@
 //! Starts a contained process, listens to it and sees to its end.
+use super::keeper::Report;
+use super::settings::{Settings, VARIABLE};
 use crate::ending::Ending;
-use crate::keeper::Report;
-use crate::output::Stream;
 use crate::program::{Limits, Program};
-use crate::settings::{Settings, VARIABLE};
+use crate::stream::{Output, Stream};
 use rustix::event::{EventfdFlags, PollFd, PollFlags, Timespec, eventfd, poll};
-use rustix::io::{FdFlags, fcntl_setfd};
+use rustix::io::{FdFlags, fcntl_setfd, ioctl_fionbio};
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 use std::io::{self, PipeReader, Read};
 use std::net::Shutdown;
@@ -18,7 +18,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How long a keeper may take to end what it keeps, before it is ended itself: it may have been stopped, or be slow on a machine that has
+/// Longest time for a keeper to end what it keeps, before it is ended itself: it may have been stopped, or be slow on a machine that has
 /// much to do.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -27,29 +27,26 @@ static STARTING: Mutex<()> = Mutex::new(());
 /// Those that are there; `None` when there are to be no more.
 static THERE: Mutex<Option<Vec<Weak<Shared>>>> = Mutex::new(Some(Vec::new()));
 
-/// What comes out of a contained process.
-#[derive(Debug)]
-pub struct Output {
-    /// Its standard output, unless that goes elsewhere.
-    pub stdout: Option<Stream<PipeReader>>,
-    /// Its standard error.
-    pub stderr: Stream<PipeReader>,
-}
-
 impl Output {
     fn drain(&mut self) {
         self.stdout.iter_mut().for_each(Stream::drain);
         self.stderr.drain();
     }
 
-    /// Whether standard output and standard error are still open.
+    /// State of standard output and standard error: `true` while open.
     fn open(&self) -> [bool; 2] {
         let stdout = self.stdout.as_ref().is_some_and(|stream| stream.source().is_some());
         [stdout, self.stderr.source().is_some()]
     }
 }
 
-/// What the caller and the thread that listens see.
+/// `source`, which from now on does not wait, as a stream.
+fn listened_to(source: PipeReader) -> io::Result<Stream<PipeReader>> {
+    ioctl_fionbio(&source, true)?;
+    Ok(Stream::new(source))
+}
+
+/// State that the caller and the listening thread share.
 struct Shared {
     output: Mutex<Output>,
     ending: OnceLock<Ending>,
@@ -82,14 +79,14 @@ impl Contained {
     /// Those of the system, which may have no process, thread or descriptor to give.
     pub fn start(
         program: &Program,
-        stdin: OwnedFd,
-        stdout: Option<OwnedFd>,
+        stdin: Stdio,
+        stdout: Option<Stdio>,
         limits: Limits,
         on_end: impl Fn() + Send + Sync + 'static,
     ) -> io::Result<Self> {
         let (stderr, for_stderr) = io::pipe()?;
         let (stdout, for_stdout) = if let Some(file) = stdout {
-            (None, Stdio::from(file))
+            (None, file)
         } else {
             let (reader, writer) = io::pipe()?;
             (Some(reader), Stdio::from(writer))
@@ -98,7 +95,7 @@ impl Contained {
         for stream in stdout.iter().chain([&stderr]) {
             watched.push(stream.as_fd().try_clone_to_owned()?);
         }
-        let output = Output { stdout: stdout.map(Stream::new).transpose()?, stderr: Stream::new(stderr)? };
+        let output = Output { stdout: stdout.map(listened_to).transpose()?, stderr: listened_to(stderr)? };
         let stop = eventfd(0, EventfdFlags::CLOEXEC)?;
         let shared = Arc::new(Shared {
             output: Mutex::new(output),
@@ -112,7 +109,7 @@ impl Contained {
         let mut process = Command::new(&program.program);
         // A group of its own: Ctrl-C and other signals to the group of this process are not for it.
         process.args(&program.args).envs(program.env.iter().map(|(name, value)| (name, value))).process_group(0);
-        process.stdin(Stdio::from(stdin)).stdout(for_stdout).stderr(for_stderr);
+        process.stdin(stdin).stdout(for_stdout).stderr(for_stderr);
         // The thread comes first: when there is none to be had, nothing has been started yet.
         let (hand_over, handed_over) = channel();
         let for_thread = Arc::clone(&shared);
@@ -126,7 +123,7 @@ impl Contained {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// How the process ended, if it did.
+    /// Ending of the process, if it has ended.
     #[must_use]
     pub fn ending(&self) -> Option<&Ending> {
         self.shared.ending.get()
@@ -139,7 +136,7 @@ impl Contained {
         drop(self.shared.ended.wait_timeout_while(told, time, has_not_ended).unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// What has come out of the process up to now.
+    /// Text that has come out of the process up to now.
     pub fn output(&self) -> MutexGuard<'_, Output> {
         self.shared.drained()
     }
@@ -280,7 +277,7 @@ fn wait(keeper: &OwnedFd, watched: &[OwnedFd], shared: &Shared, is_stopped: bool
     (ended, stop)
 }
 
-/// What the keeper has said before it ended.
+/// Report of the keeper from before it ended.
 fn report(control: &mut UnixStream) -> Option<Report> {
     // Whoever has inherited its end does not hold anybody up.
     control.set_nonblocking(true).ok()?;

@@ -9,7 +9,7 @@ pub(crate) struct Process {
     /// The name of its program, 15 bytes of it.
     pub(crate) name: String,
     parent: i32,
-    /// It has ended, and nobody has asked yet how.
+    /// Has ended, and its parent has not collected its status yet.
     has_ended: bool,
 }
 

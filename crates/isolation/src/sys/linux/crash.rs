@@ -1,21 +1,21 @@
 #![expect(unsafe_code, reason = "what to do at a crash is told to the system through C")]
-//! What a contained process notes when it crashes.
+//! Notes of a contained process about its crash.
 //!
 //! The memory of a process is gone when its keeper hears of its end, so the process notes how much it had. Only what is safe
 //! in a signal handler is done there (signal-safety(7)): system calls and atomics. Then all goes its usual way: the action
 //! that was there before is put back, and the instruction that failed fails again.
-use crate::memory;
-use crate::note::Note;
+use super::memory;
+use super::note::Note;
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// What ends a process that has done something wrong.
+/// Signals that end a process that has done something wrong.
 const SIGNALS: [c_int; 5] = [libc::SIGSEGV, libc::SIGABRT, libc::SIGBUS, libc::SIGILL, libc::SIGFPE];
 
-/// What there is to know in the handler.
+/// Data of the signal handler.
 struct Known {
     note: &'static Note,
     before: [libc::sigaction; SIGNALS.len()],

@@ -1,10 +1,10 @@
 //! The keeper: watches the contained process, ends what is to end, and says how it ended.
-use crate::contain::leave;
-use crate::descendants::descendants;
-use crate::memory::held_by;
-use crate::note::Note;
+use super::contain::leave;
+use super::descendants::descendants;
+use super::memory::held_by;
+use super::note::Note;
+use super::sample::Sampler;
 use crate::program::Limits;
-use crate::sample::Sampler;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{read, write};
 use rustix::process::{Pid, PidfdFlags, Signal, WaitOptions, getpid, kill_process, pidfd_open, wait, waitpid};
@@ -17,12 +17,12 @@ use std::time::{Duration, Instant};
 
 /// Between two looks at the memory.
 const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 20_000_000 };
-/// How long it takes to end what was left behind, at most: one that starts others faster than they are ended is left to the system.
+/// Longest time to end the processes left behind: one that starts others faster than they are ended is left to the system.
 const MOST: Duration = Duration::from_secs(2);
 /// Names in the report; the others are counted.
 const NAMES: usize = 8;
 
-/// What is kept.
+/// The process that is kept.
 #[derive(Debug)]
 pub(crate) enum Kept {
     /// The contained process.
@@ -36,7 +36,7 @@ pub(crate) enum Kept {
     },
 }
 
-/// How the contained process ended.
+/// Ending of the contained process.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Report {
     /// Its process id; 0 if that is not known.
@@ -45,21 +45,21 @@ pub(crate) struct Report {
     pub(crate) status: Option<i32>,
     /// Memory that it held when it crashed or was ended (B); 0 if that is not known.
     pub(crate) held: u64,
-    /// It was ended for its memory.
+    /// `true` when it was ended for its memory.
     pub(crate) exceeded: bool,
-    /// How many processes it has left behind.
+    /// Number of processes it has left behind.
     pub(crate) left: usize,
     /// Names of the first of them.
     pub(crate) names: Vec<String>,
 }
 
-/// What has happened.
+/// Event that ends the watch.
 enum Event {
     /// The contained process has ended.
     Ended,
-    /// It is to end.
+    /// The program asks for its end.
     Stop,
-    /// It takes this much memory (B), more than it may.
+    /// More memory than it may have: this much (B).
     Exceeded(u64),
 }
 
@@ -117,7 +117,7 @@ fn ended(child: Pid) -> Option<i32> {
     }
 }
 
-/// What the first process of a namespace says of the contained one.
+/// Status of the contained process, from the first process of its namespace.
 fn status_from(pipe: &OwnedFd) -> Option<i32> {
     let mut bytes = [0; 4];
     let count = read(pipe, &mut bytes).ok()?;
@@ -144,7 +144,7 @@ fn end_left() -> Vec<String> {
     names.unwrap_or_default()
 }
 
-/// Whether the keeper has a child that has not ended. What has ended is put away.
+/// `true` when the keeper has a child that has not ended. Those that have ended are reaped.
 fn has_children() -> bool {
     loop {
         match wait(WaitOptions::NOHANG) {
