@@ -1,7 +1,9 @@
-//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, keys of scenario
-//! files in crates that know nothing of them, concepts that have two types, and the number of packages of the program.
+//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, keys of scenario files in
+//! crates that know nothing of them, concepts that have two types, the number of packages of the program, and calls of the operating
+//! system outside of its doors.
 
 mod arrows;
+mod doors;
 mod keys;
 mod licences;
 mod metadata;
@@ -36,6 +38,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         // What is not UTF-8 (pictures, recordings) has no text to check; a deleted file has none either.
         if let Ok(text) = std::fs::read_to_string(workspace.root.join(path)) {
             findings.extend(text::findings(path, &text));
+            findings.extend(doors::findings(path, &text));
             types.extend(representations::declared(path, &text));
             if keyless.iter().any(|source| path.starts_with(source)) {
                 findings.extend(keys::findings(path, &text, &key_paths));
