@@ -1,10 +1,10 @@
 //! Which command the arguments ask for.
 use crate::failure::Failure;
 use crate::workspace::Workspace;
-use crate::{bench, checks, demo, dist, drill, peers, test, wheel};
+use crate::{bench, checks, demo, dist, drill, peers, systems, test, wheel};
 
 /// Every command: arguments and what it does.
-const COMMANDS: [(&str, &str); 17] = [
+const COMMANDS: [(&str, &str); 18] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "build, run the demo, set up, build the rest and compare its two moves"),
     ("test [--without-mujoco]", "set up, then run every check and test that CI runs"),
@@ -13,6 +13,7 @@ const COMMANDS: [(&str, &str); 17] = [
     ("bench peers [--json]", "simulate one loop here and in simulators for Python, and compare the speeds"),
     ("drill faults", "end and starve 200 suites at random, and compare what --resume makes of them"),
     ("checks", "check dependency arrows, licences, text and the size of the program"),
+    ("systems", "check that the program compiles for Windows and macOS"),
     ("viewer", "fetch the Rerun viewer that `servobench view` opens, once"),
     ("drill inputs", "hold the program against mutated files of every kind (SERVOBENCH_SWEEP: how many)"),
     ("drill many", "run suites of up to 20 000 runs (SERVOBENCH_SWEEP: how many), and say what each costs"),
@@ -55,6 +56,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         ["bench", "peers"] => peers::run(&Workspace::find()?, false),
         ["bench", "peers", "--json"] => peers::run(&Workspace::find()?, true),
         ["drill", "faults"] => drill::faults(&Workspace::find()?),
+        ["systems"] => systems::check(&Workspace::find()?),
         ["checks"] => checks::run(&Workspace::find()?),
         ["viewer"] => {
             let viewer = wheel::RERUN.ensure(&Workspace::find()?)?;

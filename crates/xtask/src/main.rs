@@ -13,7 +13,9 @@ mod outside;
 mod peers;
 mod program;
 mod python;
+mod systems;
 mod test;
+mod toolchain;
 mod wheel;
 mod workspace;
 

@@ -3,6 +3,7 @@ use crate::bare_metal::BareMetal;
 use crate::drill::verdicts;
 use crate::failure::Failure;
 use crate::outside::Outside;
+use crate::systems::Systems;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command, shown};
 use std::collections::BTreeSet;
@@ -64,13 +65,16 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     if engines == Engines::All {
         wheel::MUJOCO.ensure(workspace)?;
     }
-    let (bare_metal, outside) = (BareMetal::prepare(), Outside::prepare(workspace));
+    let (bare_metal, systems, outside) =
+        (BareMetal::prepare(), Systems::prepare(workspace), Outside::prepare(workspace));
     let mut steps = steps(workspace, engines)?;
     steps.extend(bare_metal.command(workspace).map(|command| Step::new("bare metal", command)));
+    steps.extend(systems.commands(workspace)?.into_iter().map(|(name, command)| Step::new(name, command)));
     steps.extend(twins(&outside, workspace, engines));
     steps.extend(outside_clients(&outside, workspace));
     let report = || {
         bare_metal.report();
+        systems.report();
         outside.report();
     };
     report();

@@ -4,6 +4,7 @@ use sha2::{Digest as _, Sha256};
 use std::fs::{File, FileType, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 
 /// Name of the file that stands for the lock of its folder.
 const LOCK: &str = ".servobench.lock";
@@ -51,7 +52,8 @@ pub(crate) fn lock_folder(folder: &Path) -> Result<File, TryLockError> {
 
 /// The path that these bytes are in UTF-8.
 pub(crate) fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
-    String::from_utf8_lossy(&bytes).into_owned().into()
+    let lossy = |error: FromUtf8Error| String::from_utf8_lossy(error.as_bytes()).into_owned();
+    String::from_utf8(bytes).unwrap_or_else(lossy).into()
 }
 
 /// Standard output has no name, so that nobody asks for it.
