@@ -1,4 +1,4 @@
-//! An advice in words: what to set, what it costs, how sure it is.
+//! Advice in words: the set-point, its cost and its certainty.
 mod vendors;
 
 use crate::style::{Ink, Style};
@@ -9,7 +9,7 @@ use servobench_base::Coordinate;
 use servobench_metrics::{Limit, Quantity, digits};
 use servobench_results::{printable, printable_lines};
 
-/// What an advice is about.
+/// Context of an advice.
 #[derive(Debug, Clone)]
 pub struct AdviceOptions<'a> {
     /// The scenario.
@@ -18,33 +18,33 @@ pub struct AdviceOptions<'a> {
     pub engine: &'a str,
     /// The limits, in the order in which the advice counts them.
     pub limits: &'a [Limit],
-    /// Whether the axis moves along a line or turns.
+    /// Linear or rotary motion of the axis.
     pub motion: Coordinate,
     /// The command that runs the scenario as it is.
     pub command: &'a str,
     /// The set-point as on the command line: `setpoint.jerk=50 m/s3`.
     pub settings: Vec<String>,
-    /// Whether the box was assumed and not given.
+    /// True if the tolerances were assumed instead of given.
     pub is_assumed: bool,
-    /// Whether settling counts.
+    /// True if settling counts.
     pub has_window: bool,
-    /// Natural frequency that shapers are made for (Hz).
+    /// Natural frequency that shapers are designed for (Hz).
     pub shaper_frequency: Option<f64>,
 }
 
-/// Confidence of what is promised.
+/// Confidence of the bounds given.
 const CONFIDENCE: f64 = 0.95;
-/// Significant digits of what is not a metric.
+/// Significant digits of values other than metrics.
 const DIGITS: usize = 4;
 /// Width of a first column.
 const FIRST: usize = 8;
-/// A difference of times that nobody pays for (s).
+/// Difference of times that counts as none (s).
 const NOTHING: f64 = 0.5e-4;
-/// Other kinds of set-points that are told.
+/// Number of other kinds of set-points listed.
 const OTHERS: usize = 5;
 
-/// The advice in at most [`Style::width`] columns: a sentence with its price and its certainty, what limits it, other kinds of set-points, and
-/// the same in the words of those who sell drives.
+/// The advice in at most [`Style::width`] columns: a sentence with its price and its certainty, the limits used, other kinds of
+/// set-points, and the same in vendors' terms.
 #[must_use]
 pub fn advice_text(question: &Question, advice: &Advice, options: &AdviceOptions<'_>, style: Style) -> String {
     let text = Text { question, advice, options, style };
@@ -113,7 +113,7 @@ struct Text<'a> {
 }
 
 impl Text<'_> {
-    /// The command that makes a run of the set-point on the machine of the scenario.
+    /// The command that runs the set-point on the machine of the scenario.
     fn command(&self) -> String {
         let AdviceOptions { command, settings, .. } = self.options;
         let set = |all: String, one: &String| format!("{all} \\\n  --set '{one}'");
@@ -159,14 +159,14 @@ impl Text<'_> {
              95 % certain){price}.",
             self.point(&advice.point),
             printable(options.scenario),
-            // Never more than what was shown.
+            // Rounded down: never more than was shown.
             (share * 10.0).floor() / 10.0,
             draws.hits(),
             draws.trials(),
         ))
     }
 
-    /// What less vibration, more of it, and more time would cost and save.
+    /// Cost or saving of less vibration, of more, and of more time.
     fn price(&self) -> Option<String> {
         let metric = self.options.limits.get(self.question.priced?)?.metric;
         let (own, prices) = (self.advice.worst.time, &self.advice.prices);
@@ -188,7 +188,7 @@ impl Text<'_> {
         Some(less + &more + &slower)
     }
 
-    /// How much of each limit is used, and where.
+    /// Usage of each limit, and the machine where it is highest.
     fn used(&self) -> String {
         let mut rows: Vec<(f64, String)> = Vec::new();
         for (limit, (usage, machine)) in self.options.limits.iter().zip(&self.advice.worst.usage) {
@@ -202,7 +202,7 @@ impl Text<'_> {
         self.heading("What limits it: how much of each limit is used, at most") + &rows
     }
 
-    /// `text` in as many lines as it takes, to the right of `first`.
+    /// `text` wrapped to the right of `first`.
     fn beside(&self, first: &str, text: &str) -> String {
         let lines = wrapped(text, self.style.width.saturating_sub(FIRST + 2).max(20));
         let line = |(k, line): (usize, String)| format!("{:>FIRST$}  {line}\n", if k == 0 { first } else { "" });

@@ -4,7 +4,7 @@ use servobench_metrics::Quantity;
 use servobench_results::RunResult;
 use servobench_trace::Event;
 
-/// One line for each limit that bound, unless a reason of the verdict or what is lifted says it: `voltage limit bound for 636 ms`.
+/// One line for each limit that bound and is not named in a reason or a lifted requirement: `voltage limit bound for 636 ms`.
 pub(crate) fn bound_limits(run: &RunResult) -> Vec<String> {
     let lifted = lifted(run);
     let is_said = |words: &String| run.reasons.iter().chain(&lifted).any(|said| said.contains(words.as_str()));
@@ -66,7 +66,7 @@ mod tests {
         assert_eq!(words(&cut), ["effort limit bound more than 1 times, for more than 500 ms in all"]);
     }
 
-    /// A requirement says it, broken or lifted.
+    /// A broken or lifted requirement names it already.
     #[test]
     fn what_is_said_already_is_not_said_again() {
         let why = || vec!["the load ended 50.0 mm short of 200 mm; effort limit bound for 400 ms".to_owned()];

@@ -1,8 +1,8 @@
-//! Runs side by side: a table, and what it says in words.
+//! Runs side by side: a table, and the same in words.
 //!
-//! Differences that are of no concern, cannot be seen, or come by chance are none (`terms`). A run that failed takes no part in the
-//! conclusion (`standing`). A ratio of vibrations never stands alone: at which frequency and damping it holds, what the set-points make of the
-//! frequencies beside that one, and what it costs in time and torque.
+//! Differences that do not matter, cannot be seen, or come by chance count as none (`terms`). A run that failed takes no part in the
+//! conclusion (`standing`). A ratio of vibrations never stands alone: with it come the frequency and damping at which it holds, the
+//! effect of the set-points on neighbouring frequencies, and its cost in time and torque.
 mod arrival;
 mod by_run;
 mod many;
@@ -22,26 +22,26 @@ use servobench_results::printable;
 use servobench_trace::Move;
 use standing::Standing;
 
-/// A run under the name that it has in the comparison.
+/// A run and its name in the comparison.
 #[derive(Debug, Clone, Copy)]
 pub struct Compared<'a> {
     /// `jerk`, `snap`.
     pub label: &'a str,
-    /// Its results.
+    /// Results of the run.
     pub result: &'a RunResult,
-    /// The moves of its set-point.
+    /// Moves of its set-point.
     pub moves: &'a [Move],
-    /// Its random numbers.
+    /// Random numbers of the run.
     pub noise: Noise<'a>,
 }
 
-/// Random numbers of a run: noise of sensors, jitter of a bus or a task.
+/// Random numbers of a run: sensor noise, jitter of a bus or a task.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Noise<'a> {
     /// None: the run is the same with any seed.
     #[default]
     None,
-    /// Some; the results with other seeds.
+    /// Some, with the results for other seeds.
     Seeds(&'a [RunResult]),
 }
 
@@ -49,55 +49,54 @@ pub enum Noise<'a> {
 #[derive(Debug, Clone)]
 pub struct Comparison<'a> {
     runs: Vec<Compared<'a>>,
-    /// Whether only their set-points differ.
+    /// True if only the set-points differ.
     is_of_set_points: bool,
-    /// Lengths that are equal differ by this much at most (axis unit).
+    /// Largest difference of lengths that count as equal (axis unit).
     length: f64,
-    /// The metric in which they were made equal.
+    /// The metric in which the runs were made equal.
     equal: Option<Name>,
 }
 
-/// Sizes below this (SI) are rounding: positions of the order of 1 m are known to 1e-16 m, and a picometre is nothing that
-/// a machine shows.
+/// Sizes below this (SI) are rounding: positions of the order of 1 m are known to 1e-16 m, and no machine shows a picometre.
 const ROUNDING: f64 = 1e-12;
 
 /// Value (SI) and unit.
 type Value<'a> = (f64, &'a str);
 
 impl<'a> Comparison<'a> {
-    /// Compares `runs`, of which only the set-points differ; the first is the one that the others are held against.
+    /// Compares `runs`, of which only the set-points differ; the first is the reference.
     #[must_use]
     pub const fn new(runs: Vec<Compared<'a>>) -> Self {
         Self { runs, is_of_set_points: true, length: 0.0, equal: None }
     }
 
-    /// The same with lengths (axis unit) that are equal when they differ by no more than `length`: a part of the window, or one increment of
+    /// Counts lengths (axis unit) as equal when they differ by no more than `length`: a part of the window, or one increment of
     /// the encoder.
     #[must_use]
     pub fn with_equal_lengths(self, length: f64) -> Self {
         Self { length, ..self }
     }
 
-    /// The same of runs that were made equal in `metric`, which is then the one that is told.
+    /// Marks the runs as made equal in `metric`, which is then the one reported.
     #[must_use]
     pub fn made_equal(self, metric: Option<Name>) -> Self {
         Self { equal: metric, ..self }
     }
 
-    /// The same of runs that differ in more than their set-points: nothing is said of what those would make alone.
+    /// Marks the runs as differing in more than their set-points: no conclusion about the set-points alone.
     #[must_use]
     pub fn of_more_than_set_points(self) -> Self {
         Self { is_of_set_points: false, ..self }
     }
 
-    /// Whether two of the runs have a quantity in common that is compared.
+    /// True if at least two of the runs share a quantity that is compared.
     #[must_use]
     pub fn has_something_to_compare(&self) -> bool {
         let in_two = |name: Name| self.runs.iter().filter(|run| run.metric(name).is_some()).count() > 1;
         table::compared().any(in_two)
     }
 
-    /// Which runs do not win and why, in lines that fit `width`; empty where all may.
+    /// Runs that do not win, with the reasons, in lines that fit `width`; empty if all may win.
     #[must_use]
     pub fn out(&self, width: usize) -> String {
         let lines = self.runs.iter().flat_map(|run| {
@@ -107,7 +106,7 @@ impl<'a> Comparison<'a> {
         lines.map(|line| line + "\n").collect()
     }
 
-    /// Requirements that are lifted and limits of the drive that bound, by run, in lines that fit `width`; empty without any.
+    /// Lifted requirements and limits of the drive that bound, by run, in lines that fit `width`; empty without any.
     #[must_use]
     pub fn notes(&self, width: usize) -> String {
         let bound = self.runs.iter().flat_map(|run| {
@@ -126,13 +125,13 @@ impl<'a> Comparison<'a> {
         self.runs.iter().filter(|run| run.standing() < Standing::Broken).copied().collect()
     }
 
-    /// True of a run that may win.
+    /// True for a run that may win.
     fn is_in(run: &Compared<'_>) -> bool {
         run.standing() == Standing::In
     }
 
-    /// By which metric vibrations are compared: the one that was made equal; the amplitude of the mode when all ring in the same one;
-    /// otherwise peak-to-peak, which has the settling of the drive in it.
+    /// The metric by which vibrations are compared: the one that was made equal; the amplitude of the mode when all ring in the same one;
+    /// otherwise peak-to-peak, which includes the settling of the drive.
     fn vibration(&self, runs: &[Compared<'_>]) -> Name {
         match self.equal {
             Some(metric @ (Name::ResidualVibrationAmplitude | Name::ResidualVibrationPp)) => metric,
@@ -142,7 +141,7 @@ impl<'a> Comparison<'a> {
 }
 
 impl<'a> Compared<'a> {
-    /// Value (SI) and unit of a metric; what is within the rounding of the simulation is zero.
+    /// Value (SI) and unit of a metric; values within the rounding of the simulation are zero.
     fn metric(&self, name: Name) -> Option<Value<'a>> {
         let (value, unit) = self.result.metric(name)?;
         Some((if value.abs() < ROUNDING { 0.0 } else { value }, unit))
@@ -169,12 +168,12 @@ fn vibration_of(runs: &[Compared<'_>]) -> Name {
     }
 }
 
-/// What that metric is, in words.
+/// Name of that metric in words.
 fn in_words(vibration: Name) -> &'static str {
     if vibration == Name::ResidualVibrationPp { "peak-to-peak" } else { "amplitude of the mode" }
 }
 
-/// What an effort in `unit` is called.
+/// Name of an effort in `unit`.
 fn force_or_torque(unit: &str) -> &'static str {
     if unit == "N" { "force" } else { "torque" }
 }

@@ -16,19 +16,19 @@ servobench_config::choices! {
     }
 }
 
-/// Runs that are named of each kind; the others are counted.
+/// Most runs named of each kind; the others are counted.
 const MOST: usize = 5;
-/// Characters of what is said of one of them.
+/// Most characters of detail for each run.
 const LONGEST: usize = 160;
 
 impl Denied {
-    /// True for a run that has it. A run that came to no end has another exit code anyway.
+    /// True for a run with this property. A run without an end has another exit code anyway.
     const fn concerns(self, head: &RunHead<'_>) -> bool {
         head.verdict.is_whole()
             && match self {
                 Self::Unjudged => matches!(head.verdict, Outcome::Unjudged),
                 Self::Lifted => head.lifts,
-                // Where nobody checked nobody knows.
+                // Without a check, warnings cannot be ruled out.
                 Self::Warnings => !matches!(head.warns, Some(false)),
             }
     }
@@ -45,7 +45,7 @@ impl Denied {
         }
     }
 
-    /// Details of this run; empty where its name says it all.
+    /// Details of this run; empty where its name is enough.
     fn of_run(self, run: &RunResult) -> String {
         let all: Vec<String> = match self {
             Self::Unjudged => return String::new(),
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(denials(&results, &[]).unwrap(), [""; 0]);
     }
 
-    /// Each kind alone, in a run that has nothing else.
+    /// Each kind alone, in a run with no other.
     #[test]
     fn each_kind_is_denied_by_itself() {
         let plain = || {
@@ -130,7 +130,7 @@ mod tests {
         assert!(of(unchecked)[0].ends_with("(not checked: run it again)"));
         let unjudged = RunResult { verdict: Outcome::Unjudged, ..plain() };
         assert!(of(unjudged)[0].starts_with("unjudged: 1 of 1 run has no limits"));
-        // What came to no end has another exit code anyway.
+        // Runs without an end have another exit code anyway.
         for verdict in [Outcome::Error, Outcome::Invalid] {
             assert_eq!(of(RunResult { verdict, check_warnings: None, ..plain() }), [""; 0]);
         }

@@ -1,4 +1,4 @@
-//! What drawings have in common: scales, round numbers along them, text in XML and how wide it is, colours.
+//! Common parts of drawings: scales, round numbers along them, text in XML and its width, colours.
 mod axis;
 mod markup;
 mod text_width;

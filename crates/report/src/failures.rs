@@ -1,4 +1,4 @@
-//! What made a run fail, part by part: which limit is missed by how much, what requirement is broken, which fault is missing.
+//! Reasons why a run failed: each missed limit and by how much, broken requirements, missing faults.
 use indexmap::IndexMap;
 use servobench_metrics::{Name, Quantity, Standing};
 use servobench_results::{MetricResult, RunResult};
@@ -6,22 +6,22 @@ use servobench_results::{MetricResult, RunResult};
 /// A limit that is missed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MissedLimit<'a> {
-    /// Index and label of the move that missed it; `None` for the run as a whole.
+    /// Index and label of the move that missed the limit; `None` for the run as a whole.
     pub(crate) of_move: Option<(usize, &'a str)>,
     /// Name of the metric.
     pub(crate) name: &'a str,
-    /// Its value, when it was measured.
+    /// Value of the metric, if it was measured.
     pub(crate) value: Option<String>,
-    /// The limit and by how much it is missed, or why there is no value.
+    /// The limit and the excess over it, or the reason for a missing value.
     pub(crate) words: String,
     /// Line of the scenario file.
     pub(crate) line: Option<usize>,
 }
 
-/// Reasons that are told of one requirement: the others are counted.
+/// Most reasons listed for one requirement; the others are counted.
 const MOST: usize = 5;
 
-/// Every limit that is missed, those of the run before those of its moves.
+/// All missed limits, those of the run before those of its moves.
 pub(crate) fn missed_limits(run: &RunResult) -> Vec<MissedLimit<'_>> {
     let all = run.moves.iter().enumerate().map(|(k, made)| (Some((k, made.label.as_str())), &made.metrics));
     let all = std::iter::once((None, &run.metrics)).chain(all);
@@ -48,7 +48,7 @@ fn missed_limit<'a>(
     MissedLimit { of_move, name, value, words, line: metric.line }
 }
 
-/// What failed beside limits: broken requirements and expected faults that did not come.
+/// Failures besides limits: broken requirements and expected faults that did not occur.
 pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
     let broken = run.requirements_that_are(Standing::Broken).flat_map(|(name, reasons)| {
         let more = reasons.len().saturating_sub(MOST);
@@ -59,8 +59,8 @@ pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
     broken.chain(missing.map(|expected| format!("expected, but did not come: {}", expected.words()))).collect()
 }
 
-/// Everything that is lifted: in one sentence requirements that would hold, each that would not with the reason, then calls with `optional` and
-/// expected faults without an end of their time.
+/// Everything that is lifted: in one sentence the requirements that would hold, each that would not with its reason, then calls with
+/// `optional` and expected faults without an end of their time.
 pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
     let all = || run.requirements_that_are(Standing::Lifted);
     let kept: Vec<&str> = all().filter(|(_, reasons)| reasons.is_empty()).map(|(name, _)| name).collect();
@@ -82,7 +82,7 @@ pub(crate) fn lifted(run: &RunResult) -> Vec<String> {
 }
 
 impl MissedLimit<'_> {
-    /// In one line: `settling_time 35.2 ms, limit 20.0 ms, 76 % over`.
+    /// The limit in one line: `settling_time 35.2 ms, limit 20.0 ms, 76 % over`.
     pub(crate) fn sentence(&self) -> String {
         let Self { of_move, name, value, words, .. } = self;
         let of_move = of_move.map(|(index, _)| format!("move {}: ", index + 1)).unwrap_or_default();
@@ -108,13 +108,13 @@ fn bound(name: &str, metric: &MetricResult, value: f64) -> String {
     match share {
         _ if limit <= 0.0 || !share.is_finite() => words,
         share if below.is_some() => format!("{words}, {} under", percent(-share)),
-        // Several times over is easier to grasp than a thousand per cent.
+        // A multiple is easier to grasp than a thousand per cent.
         share if share >= 200.0 => format!("{words}, {:.2} times as much", Quantity::new(size / limit, "")),
         share => format!("{words}, {} over", percent(share)),
     }
 }
 
-/// Two digits, and no miss looks like none.
+/// A percentage in two digits; a miss never rounds to none.
 fn percent(share: f64) -> String {
     if share < 0.1 { "less than 0.1 %".into() } else { format!("{:.2} %", Quantity::new(share, "")) }
 }

@@ -1,6 +1,6 @@
-//! What is inside an FMU, as a table.
+//! Contents of an FMU, as a table.
 //!
-//! Every text of it is somebody else's: characters that would steer the terminal are taken out.
+//! All its texts are foreign: characters that would control the terminal are removed.
 mod head;
 mod value;
 mod variables;
@@ -10,12 +10,12 @@ use crate::text::wrapped;
 use servobench_fmi::{Enumeration, ModelDescription};
 use servobench_results::printable;
 
-/// Of a list, so many at most are shown; the others are counted.
+/// Most items shown of a list; the others are counted.
 const MOST: usize = 40;
 
-/// What `description` says of an FMU with these `files`: what it is and can do, its variables by causality, its enumerations,
-/// and where it departs from the standard. Of long lists the first are shown and the others counted. Names of variables are
-/// complete. No line is wider than the terminal if that has 80 columns or more.
+/// Table of `description` of an FMU with these `files`: kind and capabilities, variables by causality, enumerations,
+/// and departures from the standard. Long lists are cut and the rest counted. Names of variables are
+/// complete. No line is wider than a terminal of 80 columns or more.
 #[must_use]
 pub fn fmu_table(description: &ModelDescription, files: &[String], style: Style) -> String {
     let mut table = head::head(description, files, style);
@@ -44,7 +44,7 @@ fn enumerations(all: &[Enumeration], style: Style) -> String {
     text + &others(all.len(), style)
 }
 
-/// Where the file departs from the standard.
+/// Departures of the file from the standard.
 fn remarks(all: &[String], style: Style) -> String {
     if all.is_empty() {
         return String::new();
@@ -56,7 +56,7 @@ fn remarks(all: &[String], style: Style) -> String {
     text + &others(all.len(), style)
 }
 
-/// How many are not shown, and where they are.
+/// Number of items not shown, and the command that shows them.
 fn others(count: usize, style: Style) -> String {
     if count <= MOST {
         return String::new();
@@ -90,7 +90,7 @@ fn fitted(text: &str, width: usize) -> Vec<String> {
     wrapped(text, width).into_iter().flat_map(broken).collect()
 }
 
-/// `text` without what steers a terminal or turns the direction of writing.
+/// `text` without characters that control a terminal or turn the direction of writing.
 fn plain(text: &str) -> String {
     printable(text.trim())
 }
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn words_longer_than_a_line_are_broken() {
         assert_eq!(fitted("ab cdefgh i", 3), ["ab", "cde", "fgh", "i"]);
-        // Numbers in a row hold together, whatever the width.
+        // Numbers in a row stay together at any width.
         assert_eq!(fitted("1 2 3 4", 3), ["1 2", "3", "4"]);
         assert!(fitted("", 3).is_empty());
     }

@@ -9,14 +9,14 @@ use servobench_results::{Outcome, RunResult, Runs, Unfinished, printable, printa
 use std::iter::once;
 use std::time::Duration;
 
-/// One test case for each scenario and engine, with the time by the clock that the run took, where it is known. The parts are those of
+/// One test case for each scenario and engine, with the wall-clock time of the run where it is known. The parts add up to
 /// one text.
 ///
-/// A run that did not end is an error, so that a suite that was ended before its time is never taken for one that passed.
-/// A run without limits is skipped: nobody looked at what it gave. What failed is a failure: its message says which limit is missed by how much or which requirement is broken, its text
-/// says all of that with file and line, and the case has the attributes `file` and `line` of the first limit. What is invalid
-/// or could not be carried out is an error. The verdict is a property; metrics, lifted requirements and warnings are the
-/// case's output, what FMUs said at last its error output.
+/// A run that did not end is an error, so that an interrupted suite is never taken for one that passed.
+/// A run without limits is skipped: its results were not judged. A run that failed is a failure: its message names each missed limit with
+/// its excess, or the broken requirement; its text lists all of that with file and line, and the case has the attributes `file` and `line`
+/// of the first limit. A run that is invalid or could not be executed is an error. The verdict is a property; metrics, lifted requirements
+/// and warnings are the case's output, the last log lines of FMUs its error output.
 ///
 /// # Errors
 /// [`ReportError::Junit`]; [`ReportError::Run`] in place of a run that cannot be read.
@@ -46,34 +46,34 @@ const NAME: &str = "servobench";
 
 /// A report with one case, in parts.
 struct Written {
-    /// Before the case.
+    /// Text before the case.
     start: String,
     case: String,
-    /// After it.
+    /// Text after the case.
     end: String,
 }
 
 /// A report with the numbers of `suite` and `case` in it. The library writes whole reports only, and one of many runs is larger than
-/// memory: so each case is written in a report of its own, and what is around it once.
+/// memory: so each case is written in a separate report, and the surrounding text once.
 fn written(mut suite: TestSuite, case: TestCase) -> Result<Written, ReportError> {
     let mut report = Report::new(NAME);
     report.time = suite.time;
     suite.test_cases.push(case);
     report.add_test_suite(suite);
     let text = report.to_string()?;
-    // Before it there are names and numbers of ours alone, behind it nothing but the ends of what is around it.
+    // Only our own names and numbers precede the case, and only closing tags follow it.
     let start = text.find(CASE).unwrap_or_default();
     let end = text.rfind(END).unwrap_or(text.len());
     Ok(Written { start: text[..start].to_owned(), case: text[start..end].to_owned(), end: text[end..].to_owned() })
 }
 
-/// The beginning of a case, and the end of a suite.
+/// Markup that begins a case, and markup that ends a suite.
 const CASE: &str = "        <testcase ";
 const END: &str = "    </testsuite>";
 
 fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     let engine = if run.engine.is_empty() { String::new() } else { format!(" [{}]", run.engine) };
-    // The same scenario under other numbers is another case.
+    // The same scenario with other numbers is another case.
     let overrides = run.overrides.join(", ");
     let with = if overrides.is_empty() { String::new() } else { format!(" with {}", printable(&overrides)) };
     let mut case = TestCase::new(format!("{}{engine}{with}", printable(&run.name).trim()), status(run));
@@ -104,12 +104,12 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     case
 }
 
-/// The file of a scenario.
+/// Class name of a case: the file of the scenario.
 fn class_name(file: Option<&str>) -> String {
     file.map_or_else(|| "servobench".to_owned(), printable)
 }
 
-/// A run that has no result.
+/// The case of a run without a result.
 fn unfinished_case(run: &Unfinished) -> TestCase {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_type("unfinished").set_message("the suite was ended before this run");
@@ -118,7 +118,7 @@ fn unfinished_case(run: &Unfinished) -> TestCase {
     case
 }
 
-/// What is lifted, what warns, and every metric.
+/// Lifted requirements, warnings and all metrics.
 fn output(run: &RunResult) -> String {
     let mut lines = lifted(run);
     lines.extend(run.warnings.iter().map(|warning| format!("warning: {warning}")));
@@ -129,7 +129,7 @@ fn output(run: &RunResult) -> String {
     lines.join("\n")
 }
 
-/// What kind of trouble an outcome is, if it is one.
+/// JUnit kind of an outcome; `None` for a success.
 const fn kind_of(outcome: Outcome) -> Option<NonSuccessKind> {
     match outcome {
         Outcome::Passed | Outcome::Unjudged => None,
@@ -157,7 +157,7 @@ fn status(run: &RunResult) -> TestCaseStatus {
     status
 }
 
-/// What kind of failure it is, and every part of it in words, limits with their place in the file.
+/// Kind of failure, and all its parts in words, limits with their place in the file.
 fn failures(run: &RunResult) -> (&'static str, Vec<String>) {
     let missed = missed_limits(run);
     let others = other_failures(run);
@@ -186,7 +186,7 @@ mod tests {
         Report::deserialize_from_str(&text_of(runs)).unwrap()
     }
 
-    /// The same runs, and how long they took (ms).
+    /// These runs, with their durations (ms).
     fn timed(results: Results, times: [u32; 7]) -> Kept {
         let unfinished =
             |run: &RunResult| Unfinished { name: run.name.clone(), file: None, engine: run.engine.clone() };
@@ -276,7 +276,7 @@ mod tests {
         assert_eq!(read(&samples::results()).test_suites[0].test_cases[1].time, None);
     }
 
-    /// Put together from its parts it is what the library writes in one piece.
+    /// The parts put together equal the text that the library writes in one piece.
     #[test]
     fn the_parts_are_one_report() {
         let mut results = samples::results();

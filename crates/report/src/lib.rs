@@ -1,8 +1,8 @@
-//! What a person or a machine reads of a run: tables, comparison in words, JUnit, the drawing of a plan,
-//! the timing diagram of a run, what a sweep gave, the object dictionary of a drive, what is inside an FMU.
+//! Reports of runs for people and programs: tables, comparison in words, JUnit, the drawing of a plan,
+//! the timing diagram of a run, the results of a sweep, the object dictionary of a drive, the contents of an FMU.
 //!
-//! What is said of runs is made from [`Results`](servobench_results::Results), which hold nothing that differs between two runs of the same scenario:
-//! no wall-clock time, no host. So every text here is the same to the byte, too.
+//! Reports of runs are made from [`Results`](servobench_results::Results), which contain nothing that differs between two runs of the same
+//! scenario: no wall-clock time, no host. So every text here is the same to the byte, too.
 
 mod advice;
 mod bound_limits;

@@ -7,8 +7,8 @@ use servobench_results::{MetricResult, RunResult, printable};
 const VALUE: usize = 11;
 const USED: usize = 6;
 
-/// All metrics of a run with their limits and how much of these is used, then those of single moves that have limits of
-/// their own, then what could not be measured and why.
+/// All metrics of a run with their limits and the share used, then those of single moves with separate limits,
+/// then those that could not be measured, with the reasons.
 pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
     let name = widest(run.metrics.keys().map(String::as_str)).max("METRIC".len());
     let heading = format!("{:name$}  {:>VALUE$}  {:>VALUE$}  {:>USED$}", "METRIC", "VALUE", "LIMIT", "USED");
@@ -39,7 +39,7 @@ pub(crate) fn metric_table(run: &RunResult, style: Style) -> String {
     table
 }
 
-/// A metric with its limit, unless it could not be measured.
+/// A row for a metric and its limit; none if it could not be measured.
 fn row(table: &mut String, name: &str, metric: &MetricResult, style: Style) {
     let Some(value) = metric.value else { return };
     let missed = metric.pass == Some(false);
@@ -52,7 +52,7 @@ fn row(table: &mut String, name: &str, metric: &MetricResult, style: Style) {
     table.push_str(if missed { "  missed\n" } else { "\n" });
 }
 
-/// What could not be measured: each reason once, with the metrics that it keeps from being measured.
+/// Metrics that could not be measured, grouped by reason.
 fn by_reason(run: &RunResult) -> Vec<(&str, Vec<&str>)> {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for (name, why) in &run.absent {
@@ -64,7 +64,7 @@ fn by_reason(run: &RunResult) -> Vec<(&str, Vec<&str>)> {
     reasons
 }
 
-/// Bound and share of it that is used.
+/// Limit, and the share of it that is used.
 fn limit(metric: &MetricResult, value: f64, digits: usize) -> String {
     let bound = |bound: f64| format!("{:.digits$}", Quantity::new(bound, &metric.unit));
     match (metric.limit_min, metric.limit) {

@@ -4,25 +4,25 @@ use crate::text::wrapped;
 use servobench_cia402::objects::{Admitted, Contents, Dictionary, Entry, OBJECTS};
 use servobench_cia402::units::Object;
 
-/// `60E3h:32`, the longest.
+/// Width of `60E3h:32`, the longest index.
 const INDEX: usize = 8;
-/// `UINT32`.
+/// Width of `UINT32`.
 const TYPE: usize = 6;
-/// `const`.
+/// Width of `const`.
 const ACCESS: usize = 5;
-/// `-2147483648`, and a mark before it.
+/// Width of `-2147483648` and a mark before it.
 const VALUE: usize = 12;
-/// `position unit`; longer ones are wrapped.
+/// Width of `position unit`; longer ones are wrapped.
 const UNIT: usize = 13;
-/// `1 and more`; longer ones are wrapped.
+/// Width of `1 and more`; longer ones are wrapped.
 const RANGE: usize = 10;
-/// All columns but the name, and what separates them.
+/// Width of all columns but the name, and their separators.
 const FIXED: usize = INDEX + TYPE + ACCESS + VALUE + UNIT + RANGE + 5;
-/// The table becomes wider than the terminal rather than the name narrower.
+/// Narrowest column of names: rather than narrow it further, the table becomes wider than the terminal.
 const NARROWEST_NAME: usize = 16;
 
-/// Every value of `dictionary` with what the object dictionary says of it, an object with several under its name. Long
-/// texts go on below. What differs from the value after power-on is marked.
+/// All values of `dictionary` with their entries in the object dictionary; an object with several values is under its name. Long
+/// texts continue below. Values that differ from those after power-on are marked.
 #[must_use]
 pub fn object_table(dictionary: &Dictionary, style: Style) -> String {
     let name = style.width.saturating_sub(FIXED).max(NARROWEST_NAME);
@@ -73,16 +73,16 @@ pub fn object_table(dictionary: &Dictionary, style: Style) -> String {
 
 /// One value.
 struct Row<'a> {
-    /// Where it is: `6065h`, `607Dh:2`.
+    /// Index of the object: `6065h`, `607Dh:2`.
     index: String,
     entry: &'a Entry,
     value: String,
-    /// Whether it is another one than after power-on.
+    /// True if the value differs from that after power-on.
     is_marked: bool,
 }
 
 impl Row<'_> {
-    /// As many lines as its longest text needs.
+    /// The row in as many lines as its longest text needs.
     fn lines(&self, name: usize, style: Style) -> String {
         let Entry { data_type, access, disabled_only, governs, unit, .. } = *self.entry;
         let names = wrapped(self.entry.name, name);
@@ -114,7 +114,7 @@ impl Row<'_> {
     }
 }
 
-/// Which values the entry takes; nothing for every one of its type.
+/// Values that the entry takes; empty if it takes all of its type.
 fn range(entry: &Entry) -> String {
     match entry.admitted {
         Admitted::Any => String::new(),
@@ -128,7 +128,7 @@ fn range(entry: &Entry) -> String {
     }
 }
 
-/// Numbers in ascending order; three and more in a row by the first and the last.
+/// Numbers in ascending order; three or more in a row as a range.
 fn list(numbers: &[i64]) -> String {
     let runs = numbers.chunk_by(|one, next| one + 1 == *next).map(|run| match run {
         [first, .., last] if run.len() > 2 => format!("{first} to {last}"),
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    /// The columns of `line` after index and name, without what is wrapped.
+    /// The columns of `line` after index and name, without wrapped text.
     fn columns(table: &str, index: &str) -> Vec<String> {
         let line = table.lines().find(|line| line.split(' ').next() == Some(index)).unwrap();
         line.chars().skip(31).collect::<String>().split_whitespace().map(str::to_owned).collect()
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(columns(&table, "607Dh:1"), ["INT32", "rw", "-2147483648", "position", "unit"]);
         assert_eq!(columns(&table, "6066h"), ["UINT16", "rw", "0", "ms"]);
         assert_eq!(columns(&table, "605Ah"), ["INT16", "rw", "2", "0", "to", "8"]);
-        // What is only written has no value to be shown.
+        // A write-only object has no value to show.
         assert_eq!(columns(&table, "2010h"), ["UINT64", "wo", "–"]);
         assert!(!table.contains('*'), "all values are those after power-on");
     }

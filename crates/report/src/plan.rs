@@ -1,4 +1,4 @@
-//! A move on paper, whatever planned it: for a person, as JSON, as a table of samples, as a drawing.
+//! A move without an axis, by any planner: for a person, as JSON, as a table of samples, as a drawing.
 mod csv;
 mod curve;
 mod drawing;
@@ -25,17 +25,17 @@ use servobench_planner::{Plan, PlanDetails, Request};
 
 /// Names of position and its derivatives.
 const NAMES: [&str; 5] = ["position", "velocity", "acceleration", "jerk", "snap"];
-/// Equal steps in which a plan is shown that has no samples of its own.
+/// Equal steps in which a plan without samples is shown.
 const STEPS: u32 = 1000;
 
-/// A planned move and what was asked for.
+/// A planned move and its request.
 #[derive(Debug, Clone)]
 pub struct PlannedMove {
     request: Request,
     plan: Plan,
-    /// Units of position and its derivatives as whoever asked wrote them.
+    /// Units of position and its derivatives as written in the request.
     units: DisplayUnits,
-    /// The move as points, where that was asked for.
+    /// The move as points, if requested.
     points: Option<Points>,
 }
 
@@ -49,32 +49,32 @@ impl PlannedMove {
         Ok(Self { request, plan, units: DisplayUnits::new(unit), points: None })
     }
 
-    /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
-    /// (SI). A text of no unit, and a value of zero, which does not say how large the unit is, change nothing.
+    /// Shows derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
+    /// (SI). A text without a unit, or a value of zero, which does not determine the size of the unit, changes nothing.
     #[must_use]
     pub fn as_given(mut self, k: usize, text: &str, value: f64) -> Self {
         self.units = self.units.as_given(k, text, value);
         self
     }
 
-    /// Unit in which derivative `k` is drawn: the same, as it is printed.
+    /// Unit in which derivative `k` is drawn: the one in which it is printed.
     fn drawn_unit(&self, k: usize) -> DisplayUnit {
         self.units.unit(k).pretty()
     }
 
-    /// Derivative `k` of position (SI) in words.
+    /// Derivative `k` of position (SI) as text.
     fn show(&self, k: usize, value: f64) -> String {
         self.units.unit(k).text(value)
     }
 
-    /// From where to where (m or rad); zero where nothing but rounding is between.
+    /// Distance of the move (m or rad); zero if it is only rounding.
     fn distance(&self) -> f64 {
         let (from, to) = (self.plan.start().x, self.plan.end().x);
         let way = self.plan.largest()[0] * self.plan.duration();
         without_dust(to - from, from.abs().max(to.abs()).max(way))
     }
 
-    /// The profile from rest to rest as it was planned, where nothing filters it.
+    /// The planned profile from rest to rest, if it is not filtered.
     fn profile(&self) -> Option<&Profile> {
         match self.plan.details() {
             PlanDetails::Profile(profile) if self.plan.filter_length() == 0.0 => Some(profile),
@@ -82,7 +82,7 @@ impl PlannedMove {
         }
     }
 
-    /// The sampled move of the fewest samples, where that is what was planned and nothing filters it.
+    /// The sampled move of the fewest samples, if that was planned and is not filtered.
     fn shortest(&self) -> Option<&Shortest> {
         match self.plan.details() {
             PlanDetails::Shortest(shortest) if self.plan.filter_length() == 0.0 => Some(shortest),
@@ -90,7 +90,7 @@ impl PlannedMove {
         }
     }
 
-    /// How long each derivative stays at its peak within one pulse of it: name in the literature, meaning, time (s).
+    /// Duration of each derivative at its peak within one pulse of it: name in the literature, meaning, time (s).
     fn dwells(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
         let times = self.profile().and_then(Profile::times);
         [
@@ -116,14 +116,14 @@ impl PlannedMove {
         Some((time, (self.plan.duration() / time - 1e-6).ceil() as u64))
     }
 
-    /// Duration of the published profile (s), filters included, and what this one is shorter by, as a part of it.
+    /// Duration of the published profile (s), filters included, and the relative gain over it.
     fn gain(&self) -> Option<(f64, f64)> {
         let published = self.plan.published_duration()? + self.plan.filter_length();
         (published > 0.0).then(|| (published, 1.0 - self.plan.duration() / published))
     }
 }
 
-/// `value`, or zero where it is nothing but rounding beside values up to `largest`.
+/// `value`, or zero if it is only rounding beside values up to `largest`.
 fn without_dust(value: f64, largest: f64) -> f64 {
     if value.abs() <= 1e-12 * largest { 0.0 } else { value }
 }
@@ -155,7 +155,7 @@ mod moves {
         published(order, 1.0, LAMBRECHTS)
     }
 
-    /// The same with samples of `time` (s).
+    /// Lambrechts' move with samples of `time` (s).
     pub(super) fn sampled(time: f64) -> PlannedMove {
         executed(time, Execution::ExactHold)
     }

@@ -1,4 +1,4 @@
-//! What stands below the row of a run: what failed, what is lifted, and a handful of warnings and events.
+//! Notes below the row of a run: failures, lifted requirements, and a few warnings and events.
 use crate::bound_limits::bound_limits;
 use crate::failures::{lifted, missed_limits, other_failures};
 use crate::said::{last_words, warnings};
@@ -8,12 +8,12 @@ use servobench_results::printable;
 use servobench_results::{Outcome, RunResult};
 use servobench_trace::Event;
 
-/// Warnings and events that are shown of a run, and reasons of one that was not carried out; the others are counted.
+/// Most warnings and events listed for a run, and most reasons of one that was not executed; the others are counted.
 const MOST: usize = 5;
-/// `-814 µrad` fits.
+/// Width of `-814 µrad`.
 const NUMBER: usize = 9;
 
-/// The lines below a row, each `indent` to the right.
+/// The lines below a row, each indented by `indent`.
 pub(crate) fn row_notes(run: &RunResult, indent: usize, style: Style) -> String {
     let mut notes = Notes { text: String::new(), indent, style };
     if run.verdict == Outcome::Failed {
@@ -36,14 +36,14 @@ pub(crate) fn row_notes(run: &RunResult, indent: usize, style: Style) -> String 
     notes.text
 }
 
-/// Warnings of the verdict, those of `check`, then what happened, then which limits bound.
+/// Warnings of the verdict, those of `check`, then events, then limits that bound.
 fn remarkable(run: &RunResult) -> Vec<String> {
     let mut all = run.warnings.clone();
     all.extend(run.check_warnings.iter().flatten().map(|warning| format!("check: {warning}")));
     if run.verdict.is_whole() {
         all.extend(warnings(run));
     }
-    // A reason or a warning may be of what an event tells.
+    // A reason or a warning may already describe the event.
     let is_told = |event: &Event| run.reasons.iter().chain(&run.warnings).any(|one| one.contains(&event.message));
     all.extend(run.events.iter().filter(|event| event.limit.is_none() && !is_told(event)).map(happened));
     all.extend(bound_limits(run));
@@ -63,7 +63,7 @@ struct Notes {
 }
 
 impl Notes {
-    /// As many of `all` as one reads, and how many more there are.
+    /// The first few of `all`, and the number of the others.
     fn a_handful(&mut self, mut all: Vec<String>, ink: Option<Ink>) {
         let more = all.len().saturating_sub(MOST);
         if more > 0 {
@@ -103,7 +103,7 @@ impl Notes {
         }
     }
 
-    /// What does not fit in one line is indented further.
+    /// Text in wrapped lines; continuation lines are indented further.
     fn wrapped(&mut self, text: &str, ink: Option<Ink>) {
         let room = self.style.width.saturating_sub(self.indent + 2);
         for (k, part) in wrapped(&printable(text), room).iter().enumerate() {
@@ -136,7 +136,7 @@ mod tests {
             .collect();
         let notes = row_notes(&run, 3, Style::default());
         let lines: Vec<_> = notes.lines().map(str::trim).collect();
-        // One is told by the warning already.
+        // The warning covers one event already.
         assert_eq!(lines[..2], ["lifted: bounded", "`jog` was refused: the axis is not homed"]);
         assert!(lines.contains(&"at 1.0000 s jog: refused 1"), "{notes}");
         assert_eq!(lines.last(), Some(&"and 5 more: see `results.json`"), "{notes}");

@@ -1,21 +1,21 @@
-//! What FMUs said, below the row of their run: all at the end of a run that broke off, how much of it warns of any other.
+//! Messages of FMUs, below the row of their run: the last ones of a run that broke off, for any other a count of the warnings.
 use crate::text::{elided, wrapped};
 use servobench_base::Severity;
 use servobench_results::RunResult;
 use servobench_trace::LogEntry;
 
-/// Lines of one source that are shown of a run that broke off: the last ones.
+/// Most lines of one source shown for a run that broke off: the last ones.
 const SHOWN: usize = 8;
-/// Characters of a line that are shown.
+/// Most characters of a line that are shown.
 const LONGEST: usize = 300;
 
-/// What one source said, equal lines together.
+/// Messages of one source, equal lines together.
 struct Voice<'a> {
     source: &'a str,
     lines: Vec<Line<'a>>,
 }
 
-/// A line and when it was said.
+/// A message, with its first and last time.
 struct Line<'a> {
     severity: Severity,
     text: &'a str,
@@ -24,11 +24,11 @@ struct Line<'a> {
     times: u64,
 }
 
-/// The last that each source said, in lines of at most `width` characters; empty if nobody said anything.
+/// Last messages of each source, in lines of at most `width` characters; empty without any.
 pub(crate) fn last_words(run: &RunResult, width: usize) -> Vec<String> {
     let mut all = Vec::new();
     for mut voice in voices(&run.log) {
-        // Of those that were said at the same time, as they were said.
+        // Messages of the same time keep their order.
         voice.lines.sort_by(|one, two| one.end.total_cmp(&two.end));
         let before = voice.lines.len().saturating_sub(SHOWN);
         let source = printable(voice.source);
@@ -52,12 +52,12 @@ pub(crate) fn last_words(run: &RunResult, width: usize) -> Vec<String> {
     all
 }
 
-/// One sentence for each source that has warned: how often, and the last warning.
+/// One sentence for each source with warnings: their number, and the last one.
 pub(crate) fn warnings(run: &RunResult) -> Vec<String> {
     voices(&run.log).iter().filter_map(Voice::warnings).collect()
 }
 
-/// By source in the order in which they spoke first.
+/// Messages by source, in the order of their first messages.
 fn voices(log: &[LogEntry]) -> Vec<Voice<'_>> {
     let mut voices: Vec<Voice<'_>> = Vec::new();
     for entry in log {
@@ -114,7 +114,7 @@ impl Line<'_> {
     }
 }
 
-/// What a terminal may get of somebody else's line.
+/// A foreign line made safe for a terminal.
 fn printable(text: &str) -> String {
     elided(&servobench_results::printable(text), LONGEST)
 }

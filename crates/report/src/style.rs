@@ -1,12 +1,12 @@
-//! How text is shown: its width, whether it may have colours, and the gate through which it goes to a terminal or a log.
+//! Output of text: its width, its colours, and the filter through which it reaches a terminal or a log.
 use servobench_results::printable;
 
-/// How text is shown. Whether a terminal takes colours is the caller's to know.
+/// Style of text. The caller knows if the terminal takes colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// Columns of the terminal.
     pub width: usize,
-    /// Whether colours may be used.
+    /// True if colours may be used.
     pub colour: bool,
 }
 
@@ -28,7 +28,7 @@ pub(crate) enum Ink {
 }
 
 impl Style {
-    /// `text` in colour, when there are colours: between marks, which [`shown`] turns into what a terminal knows.
+    /// `text` in colour, if colours are on: between marks, which [`shown`] turns into escape sequences.
     pub(crate) fn paint(self, ink: Ink, text: &str) -> String {
         let code = match ink {
             Ink::Heading => "1",
@@ -48,14 +48,14 @@ impl Style {
 
 /// Ends all colours.
 const PLAIN: &str = "0";
-/// Every colour and style that anything here is painted in, as a terminal knows it (ECMA-48, SGR).
+/// All colours and styles in use, as escape codes (ECMA-48, SGR).
 const CODES: [&str; 20] = [
     PLAIN, "1", "2", "3", "4", "31", "32", "33", "34", "35", "36", "1;31", "31;1", "32;1", "33;1", "34;1", "35;1",
     "36;1", "36;4;1", "36;1;4",
 ];
-/// The mark of the first of them. It and those that follow are no characters of Unicode but left to each program for itself, and
-/// [`printable`] lets none of them through: the marks in a text are those that were painted. Should a text of somebody else come
-/// here past it, the worst that it can be is coloured.
+/// The first mark. The marks are noncharacters of Unicode, reserved for internal use by programs, and
+/// [`printable`] lets none of them through: all marks in a text were painted here. If a foreign text
+/// gets here past it, it can at worst be coloured.
 const FIRST: char = '\u{fdd0}';
 
 /// The mark that stands for `code`.
@@ -64,14 +64,14 @@ fn mark(code: &str) -> Option<char> {
     char::from_u32(u32::from(FIRST) + index)
 }
 
-/// What the mark stands for.
+/// The code that `mark` stands for.
 fn code(mark: char) -> Option<&'static str> {
     let index = u32::from(mark).checked_sub(u32::from(FIRST))?;
     CODES.get(usize::try_from(index).ok()?).copied()
 }
 
-/// What a terminal or a log gets of `text`, which may hold anything: each line as [`printable`] has it, and what was painted in its
-/// colours if there are some. Nothing else steers the terminal.
+/// `text`, which may hold anything, made safe for a terminal or a log: each line filtered by [`printable`], painted parts in
+/// their colours if `colour` is set. No other control sequence reaches the terminal.
 #[must_use]
 pub fn shown(text: &str, colour: bool) -> String {
     let mut out = String::with_capacity(text.len());
@@ -84,7 +84,7 @@ pub fn shown(text: &str, colour: bool) -> String {
     out
 }
 
-/// One line: its marks are taken out, since what is between them is one text, and put in again where they were.
+/// One line: its marks are taken out, so that [`printable`] sees one text, and put back at their places.
 fn shown_line(out: &mut String, line: &str, colour: bool) {
     let marks: Vec<(usize, &str)> = line
         .chars()
@@ -98,7 +98,7 @@ fn shown_line(out: &mut String, line: &str, colour: bool) {
         .collect();
     let bare: String = line.chars().filter(|c| code(*c).is_none()).collect();
     let clean = printable(&bare);
-    // What begins a command was parted: it is no longer as it was painted.
+    // A command was broken up: the places of the marks no longer hold.
     if !colour || marks.is_empty() || clean.chars().count() != bare.chars().count() {
         out.push_str(&clean);
         return;
@@ -120,8 +120,8 @@ fn shown_line(out: &mut String, line: &str, colour: bool) {
     paint(out, count);
 }
 
-/// A text that another renderer of ours painted for a terminal, with marks in place of its escape sequences. It is for texts whose
-/// only escape sequences are those of the renderer; what it does not know stays as it is, and [`shown`] takes it out.
+/// Converts a text painted by another renderer of ours, replacing its escape sequences by marks. For texts whose
+/// only escape sequences are those of the renderer; unknown ones stay as they are, and [`shown`] removes them.
 #[must_use]
 pub fn painted(text: &str) -> String {
     let mut parts = text.split("\x1b[");
@@ -153,7 +153,7 @@ mod tests {
         assert_eq!(shown("\x1b[31mred\x1b[0m\n::error::x", true), "\u{fffd}[31mred\u{fffd}[0m\n: :error::x");
     }
 
-    /// Somebody else's marks are as good as his escape sequences.
+    /// Foreign marks are as good as foreign escape sequences.
     #[test]
     fn a_foreign_text_paints_nothing() {
         let foreign = "\u{fdd1}a\u{fdef}\x1b[2J";
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(shown(&printable(foreign), true), "\u{fffd}a\u{fffd}\u{fffd}[2J");
     }
 
-    /// Colours before it do not hide a command from whoever takes them out.
+    /// Colours before it do not hide a command from the filter.
     #[test]
     fn a_painted_command_is_none() {
         let text = COLOURED.paint(Ink::Warning, "  ::error::x");

@@ -1,4 +1,4 @@
-//! What a sweep gave: tables, and drawings over what varied.
+//! Results of a sweep: tables, and drawings over the dimensions that varied.
 //!
 //! ```text
 //! Table of runs → Survey: dimensions (what varies), spread of each metric in each group
@@ -26,26 +26,26 @@ use servobench_sweep::{Sweep, Table};
 use std::borrow::Cow;
 use survey::Survey;
 
-/// What a reader of a sweep looks at.
+/// Options of the report of a sweep.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepOptions<'a> {
-    /// What the sweep is called: headline of drawings.
+    /// Name of the sweep: headline of drawings.
     pub title: &'a str,
-    /// What the numbers are, below the headline: `each at its worst over axis.load.frequency`.
+    /// Meaning of the numbers, below the headline: `each at its worst over axis.load.frequency`.
     pub note: &'a str,
-    /// The metric that is time; `None`: `move_and_settling_time`, else `move_time`.
+    /// The metric used as time; `None`: `move_and_settling_time`, else `move_time`.
     pub time: Option<&'a str>,
-    /// The metric that is vibration; `None`: `residual_vibration_amplitude`, else `residual_vibration_pp`.
+    /// The metric used as vibration; `None`: `residual_vibration_amplitude`, else `residual_vibration_pp`.
     pub vibration: Option<&'a str>,
-    /// Whether runs are judged by limits. If they are not, nothing is said of how many keep them.
+    /// True if runs are judged by limits. Otherwise the number that keeps them is not reported.
     pub judged: bool,
     /// Vibrations that differ by no more are equal (axis unit).
     pub equal_length: f64,
-    /// Key of a seed of random numbers of which too few values were run to tell a difference from chance; empty without one.
+    /// Key of the seed of random numbers, if too few of its values were run to distinguish a difference from chance; else empty.
     pub seed: &'a str,
 }
 
-/// Combinations to choose from: the keys of the machine and the engines are given there.
+/// Combinations to choose from: the keys of the machine and the engines are given, not chosen.
 struct Choice<'a> {
     sweep: Option<Sweep>,
     /// Keys that are given: `axis.load.frequency`.
@@ -61,7 +61,7 @@ impl<'a> Choice<'a> {
         Self { sweep: chosen, given }
     }
 
-    /// The table of what is chosen; `None` where nothing is.
+    /// The table of the combinations to choose from; `None` if there are none.
     fn table<'t>(&'t self, table: &'t Table<'a>) -> Option<Cow<'t, Table<'t>>>
     where
         'a: 't,
@@ -72,18 +72,18 @@ impl<'a> Choice<'a> {
         }
     }
 
-    /// At its worst over what each combination stands.
+    /// Note on the keys over which each combination is at its worst.
     fn words(&self) -> String {
         if self.given.is_empty() { String::new() } else { format!("each at its worst over {}", self.given.join(", ")) }
     }
 }
 
-/// What a sweep gave, in words of at most [`Style::width`] columns: a row for each combination of the keys and each engine, what draws
-/// scatter by, which key costs how much, and the combinations that no other one beats in time and vibration.
+/// Results of a sweep, in at most [`Style::width`] columns: a row for each combination of the keys and each engine, the scatter of
+/// draws, the cost of each key, and the combinations that no other one beats in time and vibration.
 ///
-/// Of draws a row has the median and the value that 95 % of them are within, and the share that keeps all limits with the bound that it is
-/// above with 95 % confidence (Clopper and Pearson). A run without a verdict does not keep them, and what it measured is not counted; one that
-/// broke a requirement never arrives. Combinations are chosen at their worst over the keys of the machine and the engines.
+/// With draws a row has the median, the bound that 95 % of them keep, and the share that keeps all limits with its lower bound at
+/// 95 % confidence (Clopper and Pearson). A run without a verdict counts as not keeping them, and its measurements are left out; one
+/// that broke a requirement never arrives. Combinations are compared at their worst over the keys of the machine and the engines.
 #[must_use]
 pub fn sweep_table(table: &Table<'_>, style: Style, options: &SweepOptions<'_>) -> String {
     let survey = Survey::of(table, options);
@@ -105,8 +105,8 @@ pub fn sweep_table(table: &Table<'_>, style: Style, options: &SweepOptions<'_>) 
     parts.join("\n")
 }
 
-/// The metrics of a sweep over what varied, as SVG: over two dimensions colours, over one dimension lines, over draws alone their
-/// distribution. Further dimensions are small drawings side by side. `None` where nothing varied or nothing was measured.
+/// The metrics of a sweep over the dimensions that varied, as SVG: colours over two, lines over one, distributions over draws
+/// alone. Further dimensions are small drawings side by side. `None` if nothing varied or nothing was measured.
 #[must_use]
 pub fn sweep_map(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String> {
     let survey = Survey::of(table, options);
@@ -118,8 +118,8 @@ pub fn sweep_map(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String
     }
 }
 
-/// Vibration against time of all combinations that are chosen, as SVG, with those that no other one beats in both. Of draws it is the medians.
-/// `None` where nothing is chosen, or not both were measured.
+/// Vibration against time of all combinations to choose from, as SVG, with those that no other one beats in both. For draws the medians.
+/// `None` if there is nothing to choose, or if one of the two was not measured.
 #[must_use]
 pub fn sweep_front(table: &Table<'_>, options: &SweepOptions<'_>) -> Option<String> {
     let choice = Choice::of(table);

@@ -1,6 +1,6 @@
 //! Text in columns.
 
-/// `text` in at most `width` characters, the middle left out when it is longer: both ends of a name tell runs apart.
+/// `text` in at most `width` characters, with the middle left out when it is longer: names of runs differ at both ends.
 #[must_use]
 pub fn elided(text: &str, width: usize) -> String {
     let count = text.chars().count();

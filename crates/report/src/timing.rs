@@ -1,5 +1,5 @@
-//! A run as a timing diagram, as PLCopen's standard draws what its blocks do: velocity and position over the outputs of
-//! the blocks and the states of axis and drive, on one axis of time. docs/timing.md says how to read it.
+//! A run as a timing diagram in the style of PLCopen's standard for its blocks: velocity and position over the outputs of
+//! the blocks and the states of axis and drive, on one time axis. docs/timing.md explains how to read it.
 mod curves;
 mod group;
 mod guides;
@@ -15,36 +15,36 @@ use servobench_trace::Recording;
 use sheet::Sheet;
 use window::Window;
 
-/// Widths that are drawn (pixels).
+/// Smallest and largest width (pixels).
 const LEAST: u32 = 480;
 const MOST: u32 = 4000;
 
-/// What a timing diagram shows.
+/// Options of a timing diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimingOptions {
-    /// Beginning (s); `None` for that of the recording.
+    /// Start (s); `None` for that of the recording.
     pub from: Option<f64>,
     /// End (s); `None` for that of the recording.
     pub to: Option<f64>,
     /// Width (pixels), from 480 to 4000.
     pub width: u32,
-    /// Whose signals are shown, in the order of the recording; all where there is none.
+    /// Sources whose signals are shown, in the order of the recording; all if empty.
     pub sources: Vec<String>,
-    /// Whether signals are shown in which nothing happens: they stay FALSE, 0 or none. They are where there is nothing else.
+    /// True to show idle signals, which stay FALSE, 0 or none. They are shown anyway if there are no others.
     pub with_idle: bool,
 }
 
 impl Default for TimingOptions {
-    /// The whole recording, 860 pixels wide; all sources, without signals in which nothing happens.
+    /// The whole recording, 860 pixels wide; all sources, without idle signals.
     fn default() -> Self {
         Self { from: None, to: None, width: 860, sources: vec![], with_idle: false }
     }
 }
 
-/// `recording` as a timing diagram in SVG, complete in itself and the same to the byte each time.
+/// `recording` as a timing diagram in SVG, self-contained and the same to the byte each time.
 ///
-/// Its size is bounded by its width and the number of signals, however long the recording is: of a curve the lowest and the
-/// highest value in each column of pixels are drawn, and where a signal changes too often to be seen, a grey block.
+/// Its size is bounded by its width and the number of signals, however long the recording is: curves are drawn as the lowest and the
+/// highest value in each column of pixels, and a signal that changes too often to be seen as a grey block.
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`], [`ReportError::UnknownSource`], [`ReportError::NoSuchTime`], [`ReportError::Width`].
@@ -67,7 +67,7 @@ pub fn timing_diagram(recording: &Recording, options: &TimingOptions) -> Result<
     Ok(Sheet { about: &recording.about, window, width: f64::from(options.width), curves, groups, idle }.to_svg())
 }
 
-/// Whose signals there are, and the calls.
+/// Sources of signals, and the calls.
 fn sources(recording: &Recording) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     let all = recording.signals.iter().map(|signal| &signal.source);
@@ -79,7 +79,7 @@ fn sources(recording: &Recording) -> Vec<&str> {
     names
 }
 
-/// The same in words.
+/// The sources in words.
 fn sources_in_words(recording: &Recording) -> String {
     let names = sources(recording);
     if names.is_empty() { "none at all".to_owned() } else { format!("those of `{}`", names.join("`, `")) }

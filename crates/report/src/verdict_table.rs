@@ -1,4 +1,4 @@
-//! The table at the end of a run: what failed last, directly above the count, with the reasons below its row.
+//! The table at the end of a run: failures last, directly above the count, with the reasons below each row.
 use crate::metric_table::metric_table;
 use crate::row_notes::row_notes;
 use crate::style::{Ink, Style};
@@ -15,14 +15,14 @@ const COLUMNS: [(&str, Name); 4] = [
     ("PEAK ERR", Name::FollowingErrorPeakLoad),
     ("VIBR P-P", Name::ResidualVibrationPp),
 ];
-/// `-814 µrad` fits.
+/// Width of `-814 µrad`.
 const NUMBER: usize = 9;
 const VERDICT: usize = 9;
 const INDENT: usize = VERDICT + 2;
-/// Longer names than the terminal has room for in a row stand in a line of their own; the column is never narrower.
+/// Narrowest column of names: names too long for a row of the terminal are on a separate line.
 const SHORTEST_NAME: usize = 12;
 
-/// Outcomes in the order of tables and counts: what needs somebody to act is at the end, where the screen is.
+/// Outcomes in the order of tables and counts: those that need action come last, where the eye is.
 pub(crate) const ORDER: [Outcome; 5] =
     [Outcome::Passed, Outcome::Unjudged, Outcome::Failed, Outcome::Error, Outcome::Invalid];
 
@@ -37,14 +37,14 @@ const fn shown(outcome: Outcome) -> (&'static str, Ink) {
     }
 }
 
-/// Runs with their verdicts and main numbers: what passed, what failed with the reasons, then overrides and the count. Below a row
-/// stands too what is lifted, and a handful of warnings and events. A single run, and with `all_metrics` every run, shows
+/// Runs with their verdicts and main numbers: those that passed, those that failed with the reasons, then overrides and the count. Below
+/// a row are also lifted requirements, and a few warnings and events. A single run, and with `all_metrics` every run, shows
 /// all its metrics. Names are complete.
 ///
 /// MOVE is the set-point's duration, SETTLING the time after it until the load stays in its window, PEAK ERR the peak
 /// following error of the load, VIBR P-P its residual vibration, peak-to-peak.
 ///
-/// The parts are those of one text, whole lines each.
+/// The parts add up to one text, whole lines each.
 ///
 /// # Errors
 /// [`JournalError`] in place of a run that cannot be read.
@@ -80,29 +80,29 @@ pub fn verdict_table(runs: &dyn Runs, style: Style, all_metrics: bool) -> impl I
     once(start).chain(rows).chain(once(Ok(end)))
 }
 
-/// A part of a text about runs, or why there is none.
+/// A part of a text about runs, or the reason why it is missing.
 type Part = Result<String, JournalError>;
 
-/// Places in `heads`, in the order of [`ORDER`].
+/// Indices into `heads`, in the order of [`ORDER`].
 fn in_order(heads: &[RunHead<'_>]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..heads.len()).collect();
     places.sort_by_key(|k| ORDER.iter().position(|outcome| *outcome == heads[*k].verdict));
     places
 }
 
-/// All metrics of a run that has some, and an empty line.
+/// All metrics of a run that has any, and an empty line.
 fn metrics_of(run: &RunResult, style: Style) -> String {
     let has_metrics = run.verdict.is_whole() && !run.metrics.is_empty();
     if has_metrics { metric_table(run, style) + "\n" } else { String::new() }
 }
 
-/// Which keys had another value than the files give them; empty where none had.
+/// Keys whose values were overridden; empty without any.
 fn overridden(runs: &dyn Runs) -> String {
     let all = runs.overrides();
     if all.is_empty() { String::new() } else { printable(&format!("overrides: {}", all.join(", "))) }
 }
 
-/// One line for each run that did not pass, the overrides and the count. The parts are those of one text.
+/// One line for each run that did not pass, the overrides and the count. The parts add up to one text.
 ///
 /// # Errors
 /// [`JournalError`] in place of a run that cannot be read.
@@ -128,7 +128,7 @@ pub fn brief(runs: &dyn Runs) -> impl Iterator<Item = Part> {
     rows.chain(once(Ok(end)))
 }
 
-/// Names of runs: of two files with the same name, the files.
+/// Names of runs; the files where two of them have the same name.
 fn told_apart(heads: &[RunHead<'_>]) -> Vec<String> {
     let mut first = HashMap::new();
     let mut shared = HashSet::new();
@@ -145,7 +145,7 @@ fn told_apart(heads: &[RunHead<'_>]) -> Vec<String> {
     heads.iter().map(name).collect()
 }
 
-/// How wide names and engines are.
+/// Widths of names and engines.
 struct Columns {
     name: usize,
     engine: usize,
@@ -166,7 +166,7 @@ impl Columns {
         format!("{:VERDICT$}  {:name$}  {:engine$} {titles}", "VERDICT", "SCENARIO", "ENGINE")
     }
 
-    /// The row of `run`, whose name is `full`; if that does not fit it stands above the numbers.
+    /// The row of `run`, whose name is `full`; if that does not fit it goes above the numbers.
     fn row(&self, run: &RunResult, full: &str, style: Style) -> String {
         let (word, ink) = shown(run.verdict);
         let verdict = style.paint(ink, &format!("{word:VERDICT$}"));
@@ -190,7 +190,7 @@ impl Columns {
     fn numbers(&self, run: &RunResult, style: Style) -> String {
         let mut text = format!("{:engine$} ", run.engine, engine = self.engine);
         for (_, metric) in COLUMNS {
-            // What a run that broke off has measured says nothing.
+            // Measurements of a run that broke off mean nothing.
             let value = run.metric(metric).filter(|_| run.verdict.is_whole());
             let cell = value.map_or("–".into(), |(value, unit)| Quantity::new(value, unit).to_string());
             let missed = run.metrics.get(metric.as_str()).is_some_and(|metric| metric.pass == Some(false));
@@ -202,7 +202,7 @@ impl Columns {
     }
 }
 
-/// Counts of runs by their outcome, and of those that lift something or have warnings, in a line: `31 runs: 30 passed, 1 failed; 2 with
+/// Counts of runs by outcome, and of those with lifted requirements or warnings, in a line: `31 runs: 30 passed, 1 failed; 2 with
 /// something lifted, 1 with warnings`.
 #[must_use]
 pub fn run_count(runs: &dyn Runs, style: Style) -> String {
@@ -210,7 +210,7 @@ pub fn run_count(runs: &dyn Runs, style: Style) -> String {
     if doubtful.is_empty() { outcomes } else { format!("{outcomes}; {doubtful}") }
 }
 
-/// Counts of runs by their outcome: `31 runs: 30 passed, 1 failed`.
+/// Counts of runs by outcome: `31 runs: 30 passed, 1 failed`.
 fn outcome_count(runs: &dyn Runs, style: Style) -> String {
     let parts = ORDER.into_iter().map(|outcome| (outcome, runs.count_of(outcome))).filter(|(_, count)| *count > 0);
     let mut parts: Vec<_> =
@@ -223,7 +223,7 @@ fn outcome_count(runs: &dyn Runs, style: Style) -> String {
     format!("{count} run{}: {}", if count == 1 { "" } else { "s" }, parts.join(", "))
 }
 
-/// Counts of runs that came to an end and lift something or have warnings; empty where none does.
+/// Counts of finished runs with lifted requirements or warnings; empty without any.
 fn doubtful_count(runs: &dyn Runs, style: Style) -> String {
     let count =
         |is_so: fn(&RunHead<'_>) -> bool| runs.heads().filter(|head| head.verdict.is_whole() && is_so(head)).count();
@@ -313,7 +313,7 @@ mod tests {
         assert!(table.lines().any(|line| line.contains(name) && line.contains("45.1 µm")), "one row: {table}");
     }
 
-    /// What somebody calls a scenario is no command to the terminal, nor to a runner that reads it.
+    /// A foreign scenario name is not a command to the terminal, nor to a CI runner that reads the output.
     #[test]
     fn names_are_no_commands() {
         let mut run = samples::short();

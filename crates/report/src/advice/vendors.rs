@@ -1,4 +1,4 @@
-//! A set-point in the words of those who sell drives.
+//! A set-point in the terms of drive vendors.
 use super::{AdviceOptions, DIGITS};
 use crate::style::{Ink, Style};
 use crate::text::wrapped;
@@ -6,7 +6,7 @@ use servobench_advise::{Advice, Question};
 use servobench_base::Coordinate;
 use servobench_metrics::digits;
 
-/// The words: CiA 402 objects, PLCopen inputs, Rockwell's percent of time, a smoothing time.
+/// The terms: CiA 402 objects, PLCopen inputs, Rockwell's percent of time, a smoothing time.
 pub(super) fn words(question: &Question, advice: &Advice, options: &AdviceOptions<'_>, style: Style) -> String {
     let family = &question.families[advice.point.family];
     let [velocity, acceleration, jerk, snap] = advice.point.limits;

@@ -1,4 +1,4 @@
-//! When a run has done its program: from t = 0 to the last target that is reached for good.
+//! Program time of a run: from t = 0 to the instant at which the last target is reached for good.
 use super::{Compared, Value};
 use servobench_metrics::Name;
 use servobench_results::RunResult;
@@ -8,8 +8,8 @@ const PROGRAM_TIME: &str = "program_time";
 /// Words of [`servobench_metrics::Absence::NotSettled`] in results.
 const NOT_SETTLED: &str = "has not settled";
 
-/// When the last target of `run` is reached for good (s); infinite where a load does not settle although a window asks for it. Results of
-/// before the metric have the ends of their moves and the settling times. `None` where nothing moves from rest to rest.
+/// Time at which `run` reaches its last target for good (s); infinite if a load does not settle although a window requires it. Results
+/// older than the metric have the ends of their moves and the settling times. `None` if nothing moves from rest to rest.
 pub(super) fn of(run: &RunResult) -> Option<f64> {
     let never = is_unsettled(run).then_some(f64::INFINITY);
     if let Some(time) = run.metrics.get(PROGRAM_TIME).and_then(|metric| metric.value) {
@@ -25,7 +25,7 @@ pub(super) fn of(run: &RunResult) -> Option<f64> {
     last.map(|last| never.unwrap_or(last))
 }
 
-/// True of a run that moves, has a window, and does not settle.
+/// True for a run that moves, has a window, and does not settle.
 fn is_unsettled(run: &RunResult) -> bool {
     let is_missing = run.metric(Name::SettlingTime).is_none() && run.metric(Name::MoveTime).is_some();
     let why = run.absent.get(Name::SettlingTime.as_str());
@@ -33,12 +33,12 @@ fn is_unsettled(run: &RunResult) -> bool {
 }
 
 impl<'a> Compared<'a> {
-    /// When its last target is reached for good.
+    /// Time at which the run reaches its last target for good.
     pub(super) fn arrival(&self) -> Option<Value<'a>> {
         of(self.result).map(|time| (time, "s"))
     }
 
-    /// True of a program that begins with a move and ends with it.
+    /// True for a program of at most one move that starts at t = 0.
     pub(super) fn is_one_move(&self) -> bool {
         match self.result.moves.as_slice() {
             [] => true,

@@ -8,12 +8,12 @@ use servobench_metrics::{Name, Quantity};
 
 /// Widest name of a run (characters).
 const LONGEST: usize = 22;
-/// Between two columns.
+/// Gap between two columns.
 const GAP: usize = 2;
 
 /// A quantity of all runs.
 struct Column {
-    /// Two lines of what it is, and the unit.
+    /// Name in two lines, and the unit.
     head: [String; 3],
     cells: Vec<String>,
 }
@@ -25,7 +25,7 @@ impl Column {
 }
 
 impl Comparison<'_> {
-    /// A row for each run, and an asterisk at the smallest of a column. Limits and properties of the axis are there where they differ.
+    /// A row for each run, an asterisk at the smallest value of a column. Limits and properties of the axis are listed if they differ.
     pub(super) fn table_by_run(&self, style: Style) -> String {
         let labels: Vec<String> = self.runs.iter().map(|run| elided(run.label, LONGEST)).collect();
         let name = widest(labels.iter().map(String::as_str));
@@ -87,7 +87,7 @@ impl Comparison<'_> {
     }
 }
 
-/// What a metric is, in two short lines.
+/// Name of a metric, in two short lines.
 const fn in_two_lines(metric: Name) -> &'static str {
     match metric {
         Name::MoveTime => "move",
@@ -107,7 +107,7 @@ const fn in_two_lines(metric: Name) -> &'static str {
     }
 }
 
-/// The column of `values`, unless no run has one, or it says nothing of the runs: limits and properties that are the same.
+/// The column of `values`; `None` if no run has one, or if they are limits or properties that are the same for all runs.
 fn column(words: &str, (kind, smallest): (Kind, Option<usize>), values: &[Option<Value<'_>>]) -> Option<Column> {
     let (first, unit) = values.iter().flatten().next().copied()?;
     let is_same = |value: &Option<Value<'_>>| match (value, kind) {
@@ -118,7 +118,7 @@ fn column(words: &str, (kind, smallest): (Kind, Option<usize>), values: &[Option
     if matches!(kind, Kind::Limit | Kind::Property) && values.iter().all(is_same) {
         return None;
     }
-    // A single line stands next to the unit.
+    // A single line goes next to the unit.
     let parted = if kind == Kind::Limit { words.rsplit_once(' ') } else { words.split_once('\n') };
     let (one, two) = parted.unwrap_or(("", words));
     let (symbol, scale) = Quantity::axis_unit(largest(values), unit);

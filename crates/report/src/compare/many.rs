@@ -1,4 +1,4 @@
-//! What a table of more than two runs says, in words.
+//! Conclusions from a table of more than two runs, in words.
 use super::relation::Relation;
 use super::table::MOST_COLUMNS;
 use super::terms::SEEDS;
@@ -6,7 +6,7 @@ use super::words::mode;
 use super::{Compared, Comparison, Value, force_or_torque, in_words};
 use servobench_metrics::{Name, Quantity};
 
-/// Each quantity of the runs that did what was requested, from the best to the worst; then which of those that may win are worth a choice.
+/// Each quantity of the sound runs, ranked from best to worst; then the runs that may win and are worth choosing.
 pub(super) fn sentences<'a>(comparison: &Comparison<'a>, runs: &[Compared<'a>]) -> Vec<String> {
     let unit = runs.iter().find_map(|run| run.metric(Name::TorqueRms)).map_or("", |(_, unit)| unit);
     let vibration = comparison.vibration(runs);
@@ -21,7 +21,7 @@ pub(super) fn sentences<'a>(comparison: &Comparison<'a>, runs: &[Compared<'a>]) 
         let all: Vec<_> = runs.iter().filter_map(|run| Some((run.label, run.metric(name)?))).collect();
         ranking(&words, all, runs.len())
     });
-    // Of programs of more than one move the longest move does not say when they are done.
+    // For programs of several moves the longest move does not give the time at which they are done.
     let program = runs.iter().any(|run| !run.is_one_move()).then(|| {
         let all = runs.iter().filter_map(|run| Some((run.label, run.arrival()?)));
         ranking("Program done after", all.filter(|(_, (time, _))| time.is_finite()).collect(), runs.len())
@@ -30,7 +30,7 @@ pub(super) fn sentences<'a>(comparison: &Comparison<'a>, runs: &[Compared<'a>]) 
     ranked.chain(unsettled(runs)).chain(ringing(runs)).chain(choice(comparison)).collect()
 }
 
-/// The runs from the best to the worst, with what was measured of them; of many the first three and the last.
+/// The runs from best to worst with their values; of many runs the first three and the last.
 fn ranking(words: &str, mut ranked: Vec<(&str, Value<'_>)>, runs: usize) -> Option<String> {
     ranked.sort_by(|one, two| one.1.0.abs().total_cmp(&two.1.0.abs()));
     let (_, best) = *ranked.first()?;
@@ -49,7 +49,7 @@ fn ranking(words: &str, mut ranked: Vec<(&str, Value<'_>)>, runs: usize) -> Opti
     })
 }
 
-/// Runs that do not settle, which are in none of the rankings of times with settling.
+/// Runs that do not settle, which are missing from all rankings of times with settling.
 fn unsettled(runs: &[Compared<'_>]) -> Option<String> {
     let never = runs.iter().filter(|run| run.arrival().is_some_and(|(time, _)| time.is_infinite()));
     let names: Vec<&str> = never.map(|run| run.label).collect();
@@ -70,7 +70,7 @@ fn against(best: f64, (value, unit): Value<'_>) -> String {
     }
 }
 
-/// In which mode they ring, where it is one.
+/// The mode in which the runs ring, if it is the same for all.
 fn ringing(runs: &[Compared<'_>]) -> Option<String> {
     if runs.len() <= MOST_COLUMNS {
         return None;
@@ -83,7 +83,7 @@ fn ringing(runs: &[Compared<'_>]) -> Option<String> {
     })
 }
 
-/// Which runs of those that may win are not beaten in vibration and time together by one of the others.
+/// The runs that may win and are not beaten in both vibration and time by another one.
 fn choice(comparison: &Comparison<'_>) -> Option<String> {
     let runs: Vec<Compared<'_>> = comparison.runs.iter().filter(|run| Comparison::is_in(run)).copied().collect();
     match runs.as_slice() {
@@ -139,7 +139,7 @@ fn choice(comparison: &Comparison<'_>) -> Option<String> {
     }
 }
 
-/// The conclusion of runs with random numbers that were not run with enough seeds.
+/// Conclusion for runs with random numbers that were run with too few seeds.
 pub(super) fn within_noise(runs: &[Compared<'_>]) -> String {
     let names: Vec<&str> = runs.iter().filter(|run| run.has_unknown_noise()).map(|run| run.label).collect();
     let have = if names.len() == 1 { "has" } else { "have" };
@@ -186,7 +186,7 @@ mod tests {
         "#);
     }
 
-    /// Time, vibration, and what is said of them.
+    /// The conclusion for runs of these times and vibrations.
     fn conclusion(numbers: &[(&str, f64, f64)]) -> String {
         let all: Vec<_> = numbers
             .iter()

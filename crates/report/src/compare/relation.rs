@@ -1,8 +1,8 @@
-//! One size against another.
+//! One size relative to another.
 use servobench_metrics::Quantity;
 use std::fmt;
 
-/// Differences below this share are none.
+/// Relative differences below this count as none.
 pub(super) const SAME: f64 = 0.01;
 
 /// Size of the change from `one` to `two`, in per cent of `one`.
@@ -10,7 +10,7 @@ pub(super) fn percent(one: f64, two: f64) -> Quantity<'static> {
     Quantity::new(100.0 * ((two - one) / one).abs(), "")
 }
 
-/// A size against another.
+/// A size relative to a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Relation {
     /// Within 1 %.
@@ -19,15 +19,15 @@ pub(super) enum Relation {
     Less(f64),
     /// Larger: size over reference.
     More(f64),
-    /// Another one, and not told from chance: the runs have random numbers.
+    /// Different, but by chance as far as can be shown: the runs have random numbers.
     Chance,
 }
 
 impl Relation {
-    /// How `size` stands to `reference`, by magnitude.
+    /// Relation of `size` to `reference`, by magnitude.
     pub(super) fn of(reference: f64, size: f64) -> Self {
         let (reference, size) = (reference.abs(), size.abs());
-        // What is never reached is as late as what is never reached, and later than all else.
+        // Never reached is as late as never reached, and later than all else.
         if size.is_infinite() && reference.is_infinite() {
             return Self::Same;
         }
@@ -44,7 +44,7 @@ impl Relation {
         matches!(self, Self::More(_))
     }
 
-    /// True where neither is known to be larger.
+    /// True if neither is known to be larger.
     pub(super) const fn is_equal(self) -> bool {
         matches!(self, Self::Same | Self::Chance)
     }

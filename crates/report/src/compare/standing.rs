@@ -1,7 +1,7 @@
 //! Standings of runs in a comparison: may win, missed a limit, did not do what was requested.
 //!
-//! A run that broke a requirement has numbers that are not those of the task: an axis that never moves does not vibrate. It takes no part.
-//! One that missed a limit did the task, so that its numbers are told beside the others, and it does not win.
+//! The numbers of a run that broke a requirement are not those of the task: an axis that never moves does not vibrate. It takes no part.
+//! A run that missed a limit did the task: its numbers are listed beside the others, and it does not win.
 use super::{Compared, Noise};
 use servobench_metrics::Standing as Met;
 use servobench_results::{Outcome, RunResult};
@@ -30,7 +30,7 @@ impl Standing {
 }
 
 impl Compared<'_> {
-    /// The worst that it stands with any of its seeds.
+    /// The worst standing over all its seeds.
     pub(super) fn standing(&self) -> Standing {
         self.seeds().map(Standing::of).max().unwrap_or(Standing::Broken)
     }
@@ -44,7 +44,7 @@ impl Compared<'_> {
         std::iter::once(self.result).chain(others)
     }
 
-    /// Why it does not win; empty where it may.
+    /// Reasons why the run does not win; empty if it may.
     pub(super) fn why_out(&self) -> Vec<String> {
         let own = reasons(self.result);
         if !own.is_empty() {
@@ -58,7 +58,7 @@ impl Compared<'_> {
     }
 }
 
-/// Why a run does not win, a sentence each.
+/// Reasons why a run does not win, a sentence each.
 fn reasons(run: &RunResult) -> Vec<String> {
     let mut all = run.reasons.clone();
     let lifted = run.not_met().filter(|(_, requirement)| requirement.standing == Met::Lifted);

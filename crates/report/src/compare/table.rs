@@ -1,4 +1,4 @@
-//! The table.
+//! The table of compared runs.
 use super::relation::{Relation, percent};
 use super::{Compared, Comparison, Standing, Value, force_or_torque};
 use crate::style::{Ink, Style};
@@ -6,16 +6,16 @@ use crate::text::{elided, widest};
 use servobench_metrics::{Name, Quantity};
 use servobench_results::Outcome;
 
-/// How the last column of a row reads.
+/// Kind of quantity in a row, which decides its last column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A duration: difference and per cent.
     Time,
     /// A size: ratio.
     Size,
-    /// A property of the axis: no better or worse.
+    /// A property of the axis: neither better nor worse.
     Property,
-    /// A limit that a set-point was planned with: said when they differ.
+    /// A limit that a set-point was planned with: listed when the runs differ in it.
     Limit,
 }
 
@@ -39,21 +39,21 @@ pub(super) const ROWS: [(&str, Name, Kind); 13] = [
     ("copper loss", Name::CopperLoss, Kind::Size),
 ];
 
-/// Runs that are columns; more of them are rows, so that the table stays within 80 columns.
+/// Most runs that are shown as columns; with more, runs are rows, so that the table stays within 80 columns.
 pub(super) const MOST_COLUMNS: usize = 4;
 
-/// Every quantity that is compared.
+/// All quantities that are compared.
 pub(super) fn compared() -> impl Iterator<Item = Name> {
     ROWS.into_iter().map(|(_, name, _)| name)
 }
 
 const CELL: usize = 11;
-/// `  +50.0 ms, +3.8 %` fits.
+/// Width of `  +50.0 ms, +3.8 %`.
 const CHANGE: usize = 18;
 
 impl<'a> Comparison<'a> {
-    /// One row for each quantity that any run has; with two runs a column says how the second stands to the first,
-    /// with more an asterisk marks the smallest. Of more than four runs each is a row.
+    /// One row for each quantity that any run has; with two runs a column compares the second with the first,
+    /// with more an asterisk marks the smallest. With more than four runs each run is a row.
     #[must_use]
     pub fn table(&self, style: Style) -> String {
         if self.runs.len() > MOST_COLUMNS {
@@ -90,12 +90,12 @@ impl<'a> Comparison<'a> {
         table
     }
 
-    /// True where a run is out.
+    /// True if a run is out.
     pub(super) fn has_out(&self) -> bool {
         self.runs.iter().any(|run| !Self::is_in(run))
     }
 
-    /// When each program is done and how the runs stand in that, where one of them is more than a move.
+    /// Time at which each program is done, and the ranks in it; `None` if every program is a single move.
     pub(super) fn program(&self) -> Option<(Vec<Option<Value<'a>>>, Ranks)> {
         if self.runs.iter().all(Compared::is_one_move) {
             return None;
@@ -104,7 +104,7 @@ impl<'a> Comparison<'a> {
         Some((values, self.ranks_by(Compared::arrival, |one, other| self.arrival(one, other), self.runs.len() > 2)))
     }
 
-    /// The runs against each other in `metric`. Runs that are out have no rank; two of which one is broken are not compared.
+    /// Ranks of the runs in `metric`. Runs that are out have no rank; two runs of which one is broken are not compared.
     pub(super) fn ranks(&self, metric: Name, kind: Kind) -> Ranks {
         let is_ranked = self.runs.len() > 2 && matches!(kind, Kind::Time | Kind::Size);
         self.ranks_by(|run| run.metric(metric), |one, other| self.relation(metric, one, other), is_ranked)
@@ -130,23 +130,23 @@ impl<'a> Comparison<'a> {
         Ranks { smallest, change }
     }
 
-    /// Unit of the axis, as the residual vibration has it.
+    /// Unit of the axis, taken from the residual vibration.
     pub(super) fn axis_unit(&self) -> &str {
         let unit = self.runs.iter().find_map(|run| run.metric(Name::ResidualVibrationPp));
         unit.map_or("m", |(_, unit)| unit)
     }
 }
 
-/// Runs against each other in one quantity.
+/// Ranks of the runs in one quantity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ranks {
-    /// The run that has less than each of the others.
+    /// The run with a smaller value than each of the others.
     pub(super) smallest: Option<usize>,
-    /// The second of two against the first.
+    /// Relation of the second of two runs to the first.
     change: Option<Relation>,
 }
 
-/// When the last target is reached for good.
+/// Label of the time at which the last target is reached for good.
 pub(super) const PROGRAM: &str = "program done";
 
 /// Meaning of an asterisk.
@@ -161,13 +161,13 @@ pub(super) fn verdict(run: &Compared<'_>) -> &'static str {
     }
 }
 
-/// The largest of what is measured and reached.
+/// Largest finite magnitude.
 pub(super) fn largest(values: &[Option<Value<'_>>]) -> f64 {
     let sizes = values.iter().flatten().map(|(value, _)| value.abs()).filter(|size| size.is_finite());
     sizes.fold(0.0, f64::max)
 }
 
-/// One quantity of all runs, unless none has it: all with one prefix, with two runs how they stand to each other.
+/// A row of one quantity, if any run has it: all values with one prefix, with two runs their relation.
 fn row(table: &mut String, label: &str, cell: usize, (kind, ranks): (Kind, &Ranks), values: &[Option<Value<'_>>]) {
     if values.iter().all(Option::is_none) {
         return;
@@ -186,7 +186,7 @@ fn row(table: &mut String, label: &str, cell: usize, (kind, ranks): (Kind, &Rank
     table.push('\n');
 }
 
-/// Properties of the axis with more digits: they tell modes apart.
+/// Value with enough digits; properties of the axis have more, because they distinguish modes.
 fn shown(kind: Kind, quantity: Quantity<'_>, largest: f64) -> String {
     if quantity.value.is_infinite() {
         return "never".to_owned();
@@ -194,7 +194,7 @@ fn shown(kind: Kind, quantity: Quantity<'_>, largest: f64) -> String {
     if kind == Kind::Property { format!("{quantity:.4}") } else { quantity.beside(largest) }
 }
 
-/// "effort" is a force or a torque, as the unit says.
+/// `label` with "effort" replaced by force or torque, according to the unit.
 pub(super) fn effort_word(label: &str, values: &[Option<Value<'_>>]) -> String {
     let unit = values.iter().flatten().map(|(_, unit)| *unit).next().unwrap_or_default();
     label.replace("effort", force_or_torque(unit))

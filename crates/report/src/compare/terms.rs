@@ -1,11 +1,11 @@
-//! When two runs differ: by more than what is of concern, what can be seen, and what chance makes.
+//! Criteria for a difference between two runs: more than matters, more than can be seen, and more than chance.
 //!
 //! ```text
 //! equal    |a − b| ≤ max(1 % of the larger; 1 % of the smallest limit; for lengths 1 % of the window or one increment)
 //! chance   |ā − b̄| ≤ 3·√(s_a² + s_b²)   of at least five seeds each, mean ā and standard deviation s_a
 //! ```
 //! √(s_a² + s_b²) is the standard deviation of the difference of two single runs. That of means of five is √5 times smaller: between two
-//! sets of seeds of one machine a difference is found by chance where Student's t with 8 degrees of freedom exceeds 6.7, once in 6 000 times.
+//! sets of seeds of one machine, chance makes a difference where Student's t with 8 degrees of freedom exceeds 6.7, once in 6 000 times.
 use super::relation::{Relation, SAME};
 use super::{Compared, Comparison, Noise, Value};
 use servobench_metrics::Name;
@@ -17,13 +17,13 @@ pub(super) const SEEDS: usize = 5;
 const BY_CHANCE: f64 = 3.0;
 
 impl Compared<'_> {
-    /// True of random numbers with too few seeds to know their effect.
+    /// True if the run has random numbers and too few seeds to know their effect.
     pub(super) fn has_unknown_noise(&self) -> bool {
         matches!(self.noise, Noise::Seeds(others) if others.len() + 1 < SEEDS)
     }
 
-    /// Mean and standard deviation of a metric over the seeds; `None` without random numbers, with too few seeds, or where it is missing in
-    /// one of them.
+    /// Mean and standard deviation of a metric over the seeds; `None` without random numbers, with too few seeds, or where a seed
+    /// lacks the metric.
     fn spread(&self, of: impl Fn(&RunResult) -> Option<f64>) -> Option<(f64, f64)> {
         let values = self.seeds().map(of).collect::<Option<Vec<f64>>>()?;
         let n = values.len() as f64;
@@ -37,7 +37,7 @@ impl Compared<'_> {
 }
 
 impl<'a> Comparison<'a> {
-    /// A metric of `this` against that of `other`; `None` where one has none.
+    /// Relation of a metric of `this` to that of `other`; `None` where one lacks it.
     pub(super) fn relation(&self, name: Name, this: &Compared<'a>, other: &Compared<'a>) -> Option<Relation> {
         let both = [this.metric(name)?, other.metric(name)?];
         let limits = self.runs.iter().filter_map(|run| run.result.metrics.get(name.as_str())?.limit);
@@ -46,7 +46,7 @@ impl<'a> Comparison<'a> {
         Some(self.stands(both, if limit.is_finite() { limit } else { 0.0 }, [this, other], of))
     }
 
-    /// The time at which `this` has reached its last target against that of `other`. A run that never does is later than all others.
+    /// Relation of the program times of `this` and `other`. A run that never reaches its target is later than all others.
     pub(super) fn arrival(&self, this: &Compared<'a>, other: &Compared<'a>) -> Option<Relation> {
         let both = [this.arrival()?, other.arrival()?];
         Some(self.stands(both, 0.0, [this, other], super::arrival::of))

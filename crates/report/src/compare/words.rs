@@ -1,4 +1,4 @@
-//! What the table says, in words.
+//! Conclusions from the comparison of two runs, in words.
 use super::relation::{Relation, percent};
 use super::standing::Standing;
 use super::terms::SEEDS;
@@ -7,7 +7,7 @@ use crate::text::wrapped;
 use servobench_metrics::{Name, Quantity, ResidualRatios};
 
 impl Comparison<'_> {
-    /// What the table says, in sentences of lines that fit `width`.
+    /// Conclusions from the table, in sentences of lines that fit `width`.
     #[must_use]
     pub fn words(&self, width: usize) -> String {
         let sentences = match (self.runs.as_slice(), self.sound().as_slice()) {
@@ -19,7 +19,7 @@ impl Comparison<'_> {
         wrapped(&sentences.join(" "), width).join("\n") + "\n"
     }
 
-    /// The conclusion where all runs but one are out.
+    /// Conclusion if all runs but one are out.
     pub(super) fn only_one_in(&self) -> Option<String> {
         let mut all = self.runs.iter().filter(|run| Self::is_in(run));
         let (one, None) = (all.next()?, all.next()) else { return None };
@@ -32,25 +32,25 @@ impl Comparison<'_> {
     }
 }
 
-/// Frequencies on either side of a mode that are looked at, relative.
+/// Relative range of frequencies on either side of a mode that is examined.
 const AROUND: f64 = 0.1;
-/// A damping ratio that is so many times another one is another damping: fits of one decay agree more closely than that.
+/// Ratio from which two damping ratios count as different: fits of one decay agree more closely than that.
 const OTHER_DAMPING: f64 = 1.05;
 
 /// Names of the derivatives that have limits, and their powers of the second.
 const DERIVATIVES: [(&str, &str); 4] = [("velocity", ""), ("acceleration", "²"), ("jerk", "³"), ("snap", "⁴")];
 
-/// Two runs: the one of which the sentences speak, and the other.
+/// Two runs: the subject of the sentences, and the other.
 struct Pair<'c, 'a> {
     comparison: &'c Comparison<'a>,
     this: Compared<'a>,
     other: Compared<'a>,
-    /// By which metric their vibrations are compared.
+    /// The metric by which their vibrations are compared.
     vibration: Name,
 }
 
 impl<'c, 'a> Pair<'c, 'a> {
-    /// Speaks of the run that leaves less vibration; of the second when that does not decide.
+    /// Makes the run with less vibration the subject; the second if that does not decide.
     fn of(comparison: &'c Comparison<'a>, one: Compared<'a>, two: Compared<'a>) -> Self {
         let vibration = comparison.vibration(&[one, two]);
         let is_second_more = comparison.relation(vibration, &two, &one).is_some_and(Relation::is_more);
@@ -63,7 +63,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         Some((self.this.metric(name)?, self.other.metric(name)?))
     }
 
-    /// How this run stands to the other.
+    /// Relation of this run to the other.
     fn relation(&self, name: Name) -> Option<Relation> {
         self.comparison.relation(name, &self.this, &self.other)
     }
@@ -83,7 +83,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         sentences.into_iter().flatten().collect()
     }
 
-    /// The metric in which they were made equal; a vibration has a sentence anyway.
+    /// The metric in which the runs were made equal; a vibration has its own sentence.
     fn equal(&self) -> Option<String> {
         let name = self.comparison.equal.filter(|name| *name != self.vibration)?;
         let ((this, unit), (other, _)) = self.both(name)?;
@@ -120,7 +120,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         })
     }
 
-    /// At which frequency and damping the ratio holds, and how they are damped where that differs.
+    /// Frequency and damping at which the ratio holds, and the dampings if they differ.
     fn mode(&self) -> Option<String> {
         let (this, other) = (mode(self.this), mode(self.other));
         let differs = !self.relation(self.vibration)?.is_equal();
@@ -149,7 +149,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         })
     }
 
-    /// What the set-points alone make of modes that lie beside the one measured: a ratio near a zero of a spectrum changes
+    /// Effect of the set-points alone on modes beside the one measured: near a zero of a spectrum the ratio changes
     /// several times over within a per cent.
     fn beside_the_mode(&self) -> Option<String> {
         if !self.comparison.is_of_set_points
@@ -169,7 +169,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         ))
     }
 
-    /// Limits that differ: then it is not the order of the profile that makes the difference.
+    /// Limits that differ: the difference is then not due to the order of the profile.
     fn limits(&self) -> Option<String> {
         let axis = self.this.metric(Name::ResidualVibrationPp).map_or("m", |(_, unit)| unit);
         let differences: Vec<_> = DERIVATIVES
@@ -208,7 +208,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         self.this.is_one_move() && self.other.is_one_move()
     }
 
-    /// When the program is done, with settling where a window asks for it.
+    /// Program time, with settling if a window requires it.
     fn settling(&self) -> Option<String> {
         let ((this, unit), (other, _)) = (self.this.arrival()?, self.other.arrival()?);
         let has_window = [self.this, self.other].iter().any(|run| run.metric(Name::SettlingTime).is_some());
@@ -251,7 +251,7 @@ impl<'c, 'a> Pair<'c, 'a> {
         (!parts.is_empty()).then(|| format!("Its {}.", parts.join(", ")))
     }
 
-    /// Who wins, if anyone does.
+    /// The winner, if there is one.
     fn conclusion(&self) -> Option<String> {
         let (this, other) = (self.this.label, self.other.label);
         match [self.this, self.other].map(|run| run.standing()) {
@@ -296,12 +296,12 @@ impl<'c, 'a> Pair<'c, 'a> {
     }
 }
 
-/// Which of two times it is.
+/// `later` or `sooner`.
 const fn sooner(is_more: bool) -> &'static str {
     if is_more { "later" } else { "sooner" }
 }
 
-/// True of two different dampings.
+/// True for two different dampings.
 fn is_other_damping(one: f64, other: f64) -> bool {
     let (less, more) = (one.abs().min(other.abs()), one.abs().max(other.abs()));
     more > OTHER_DAMPING * less
@@ -313,7 +313,7 @@ pub(super) fn mode(run: Compared<'_>) -> Option<(f64, f64)> {
     Some((frequency, run.metric(Name::ResidualVibrationDamping)?.0))
 }
 
-/// How a size stands to a reference that is `ratio` times as large.
+/// A size in words, relative to a reference that is `ratio` times as large.
 fn size(ratio: f64) -> String {
     match Relation::of(1.0, 1.0 / ratio) {
         Relation::Same => "as much".into(),
@@ -377,7 +377,7 @@ mod tests {
         "#);
     }
 
-    /// The order in which runs are given does not decide who wins.
+    /// The order in which runs are given does not decide which one wins.
     #[test]
     fn the_quieter_run_is_the_subject_whichever_comes_first() {
         let (jerk, snap) = (jerk(), snap());

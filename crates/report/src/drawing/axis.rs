@@ -1,4 +1,4 @@
-//! From values to pixels, and the unit at an axis.
+//! Mapping from values to pixels, and the unit at an axis.
 use servobench_metrics::Quantity;
 
 /// A linear scale from values to pixels.
@@ -13,7 +13,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// An upright scale of that `height` from `top` down, with a room of 8 % beyond `low` and `high`, of 2 % where that is zero.
+    /// A vertical scale of `height` from `top` down, with a margin of 8 % beyond `low` and `high`, of 2 % beyond a bound of zero.
     pub(crate) fn upright((low, high): (f64, f64), top: f64, height: f64) -> Self {
         let span = match high - low {
             span if span > 0.0 => span,
@@ -30,17 +30,17 @@ impl Axis {
     }
 }
 
-/// The range from `low` to `high`, and zero too unless it is far away.
+/// The range from `low` to `high`, extended to zero unless that is far away.
 pub(crate) fn with_zero((low, high): (f64, f64)) -> (f64, f64) {
     let is_near = low.max(-high) <= high - low;
     if is_near { (low.min(0.0), high.max(0.0)) } else { (low, high) }
 }
 
-/// Numbers at an axis from here on are written with a power of ten at its unit.
+/// Numbers at an axis from here on are written with a power of ten in its unit.
 const LONG: f64 = 1e4;
 
-/// The unit of an axis up to `largest`, with a power of ten where no prefix makes its numbers short, and how much of the plain
-/// unit it is: `×10⁶ m/s⁴` and 1e6. Only a unit of the SI takes a prefix.
+/// The unit of an axis up to `largest`, with a power of ten where no prefix makes its numbers short, and its size in plain
+/// units: `×10⁶ m/s⁴` and 1e6. Only an SI unit takes a prefix.
 pub(crate) fn unit_at(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
     let (symbol, scale) = if takes_prefix { Quantity::axis_unit(largest, unit) } else { (unit.to_owned(), 1.0) };
     let shown = largest / scale;

@@ -1,16 +1,16 @@
 //! Text and style of an SVG.
 use servobench_results::printable;
 
-/// One colour for position and each of its derivatives, distinguishable without colour vision by their panels anyway.
+/// One colour each for position and its derivatives; without colour vision their panels distinguish them.
 pub(crate) const COLOURS: [&str; 5] = ["#1f5fa8", "#0f7f72", "#9a5b00", "#8a2f78", "#4a4fb0"];
 
-/// Title, subtitle, name, label, time of an instant; grid and zero. Fonts that one system or the other has, dark on white.
+/// Title, subtitle, name, label, time of an instant; grid and zero. Fonts that are common on some system, dark on white.
 pub(crate) const STYLE: &str = "text{font-family:'DejaVu Sans','Segoe UI',Helvetica,Arial,sans-serif;fill:#1c2330}\
 .t{font-size:17px;font-weight:600}.s{font-size:12.5px;fill:#5b6472}.n{font-size:13px;font-weight:600}\
 .k{font-size:11px;fill:#5b6472}.e{font-size:11px;font-weight:600}.g{stroke:#e4e8ee;stroke-width:1}\
 .z{stroke:#9aa3b0;stroke-width:1}";
 
-/// `text` fit for XML, and for whoever reads the file in a terminal.
+/// `text` escaped for XML, and printable for anyone who reads the file in a terminal.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in printable(text).chars() {

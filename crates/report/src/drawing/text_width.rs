@@ -1,7 +1,6 @@
-//! How wide a text is, where nobody can measure it.
+//! Estimated width of a text, without a renderer to measure it.
 
-/// Width of `text` (pixels) in letters of `size` pixels: that of DejaVu Sans, the widest of the fonts that are asked for, or
-/// more.
+/// Width of `text` (pixels) in letters of `size` pixels: at least that of DejaVu Sans, the widest of the requested fonts.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     size * text.chars().map(advance).sum::<f64>()
 }
@@ -22,7 +21,7 @@ pub(crate) fn fitted(text: &str, room: f64, size: f64) -> Option<String> {
     (kept.chars().count() >= 2).then(|| format!("{kept}…"))
 }
 
-/// Advance of a letter, as a part of the size.
+/// Advance of a letter, relative to the size.
 fn advance(c: char) -> f64 {
     match c {
         'i' | 'j' | 'l' => 0.28,

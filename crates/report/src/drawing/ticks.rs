@@ -10,7 +10,7 @@ pub(crate) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
     let mut k = first;
     while k <= last && ticks.len() < 100 {
         let value = k * step;
-        // A minus sign before zero reads as a mistake.
+        // A minus sign before zero looks like a mistake.
         let value = if k == 0.0 { 0.0 } else { value };
         ticks.push((value, format!("{value:.decimals$}")));
         k += 1.0;
@@ -18,7 +18,7 @@ pub(crate) fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
     ticks
 }
 
-/// About four ticks from `low` to `high`. Where their round step leaves a single one, a finer step leaves three at least.
+/// About four ticks from `low` to `high`. Where their round step leaves a single one, a finer step leaves at least three.
 pub(crate) fn about_four(low: f64, high: f64) -> Vec<(f64, String)> {
     let span = high - low;
     let few = ticks(low, high, round_above(span / 4.0));

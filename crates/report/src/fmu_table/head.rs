@@ -1,11 +1,11 @@
-//! What an FMU is and what it can do.
+//! Kind and capabilities of an FMU.
 use super::value::number;
 use super::{fitted, heading_lines, plain};
 use crate::style::{Ink, Style};
 use servobench_fmi::{DefaultExperiment, ModelDescription, Version};
 use std::collections::BTreeSet;
 
-/// `description`, and what separates it.
+/// Width of `description` and its separator.
 const LABEL: usize = 13;
 
 /// Folders of `binaries/` as FMI 2.0 and FMI 3.0 name them.
@@ -24,7 +24,7 @@ const PLATFORMS: [(&str, &str); 12] = [
     ("aarch64-darwin", "macOS ARM64"),
 ];
 
-/// The lines before the variables.
+/// The lines above the variables.
 pub(super) fn head(description: &ModelDescription, files: &[String], style: Style) -> String {
     let name = format!("{}, FMI {}", plain(&description.model_name), plain(&description.fmi_version));
     let mut head = heading_lines(&name, style);
@@ -57,7 +57,7 @@ pub(super) fn head(description: &ModelDescription, files: &[String], style: Styl
     head
 }
 
-/// Folders of `binaries/` with a file in them.
+/// Folders of `binaries/` that contain a file.
 fn folders(files: &[String]) -> BTreeSet<&str> {
     let within = files.iter().filter_map(|file| file.strip_prefix("binaries/")?.split_once('/'));
     within.map(|(folder, _)| folder).collect()
@@ -75,7 +75,7 @@ fn platforms(files: &[String]) -> String {
     if all.is_empty() { "none".into() } else { all.join(", ") }
 }
 
-/// Why it does not run on Linux x86-64, if so. Tools mix up the folders of the two versions, so either does.
+/// Reason why the FMU does not run on Linux x86-64, if it does not. Tools mix up the folders of the two versions, so either one counts.
 fn missing_library(description: &ModelDescription, files: &[String]) -> Option<String> {
     let library = |folder: &str| format!("binaries/{folder}/{}.so", description.co_simulation.model_identifier);
     let folders = ["linux64", "x86_64-linux"];
@@ -109,7 +109,7 @@ fn can(description: &ModelDescription) -> Vec<String> {
     all
 }
 
-/// What a coupling would like to have and is missing.
+/// Missing capabilities that a coupling would use.
 fn cannot(description: &ModelDescription) -> Vec<&'static str> {
     let own = &description.co_simulation;
     let wanted = [

@@ -3,12 +3,12 @@ use super::plain;
 use crate::text::elided;
 use servobench_fmi::{ModelDescription, Values, Variable};
 
-/// Values of an array that are shown.
+/// Most values shown of an array.
 const MOST_VALUES: usize = 3;
-/// A text as start value.
+/// Most characters of a text as start value.
 const TEXT: usize = 16;
 
-/// `value` in as few digits as are read as the same number; with an exponent where that is shorter and the number is not of
+/// `value` in the fewest digits that are read back as the same number; with an exponent where that is shorter and the number is not of
 /// everyday size.
 pub(super) fn number(value: f64) -> String {
     let (plain, exponential) = (value.to_string(), format!("{value:e}"));
@@ -16,7 +16,7 @@ pub(super) fn number(value: f64) -> String {
     if is_everyday || plain.len() <= exponential.len() { plain } else { exponential }
 }
 
-/// The start value of a variable; of an array the first values, or one for all of them.
+/// Start value of a variable; for an array the first values, or the one that all share.
 pub(super) fn start(description: &ModelDescription, variable: &Variable) -> String {
     let item = |value: i128| {
         let enumeration = description.enumeration(variable)?;
@@ -45,7 +45,7 @@ fn list<T: PartialEq>(all: &[T], shown: impl Fn(&T) -> String) -> String {
     texts.join(", ")
 }
 
-/// Least and greatest value; nothing if there are none. The greatest number there is bounds nothing.
+/// Smallest and largest value; empty if there are none. The largest representable number is not a bound.
 pub(super) fn range(variable: &Variable) -> String {
     let bound = |value: Option<f64>| value.filter(|value| value.abs() < f64::MAX).map(number);
     match (bound(variable.min), bound(variable.max)) {

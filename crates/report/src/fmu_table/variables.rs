@@ -19,14 +19,14 @@ const GROUPS: [(Causality, &str); 7] = [
 /// Name, type, unit, start value, range.
 const COLUMNS: usize = 5;
 const TITLES: [&str; COLUMNS] = ["NAME", "TYPE", "UNIT", "START", "RANGE"];
-/// The columns become no wider, so that all of them have place in 80. A longer name has a line of its own, another longer
-/// text is below the description.
+/// Widest columns, so that all of them fit into 80. A longer name gets a separate line, any other longer
+/// text goes below the description.
 const WIDEST: [usize; COLUMNS] = [24, 14, 9, 12, 17];
-/// In a narrower column of its own a description is not readable: it goes below.
+/// A description in a narrower column would not be readable: it goes below.
 const NARROWEST_NOTE: usize = 22;
-/// What is below a variable.
+/// Indentation of lines below a variable.
 const INDENT: usize = 4;
-/// Variables that a note names.
+/// Most variables named in a note.
 const MOST_NAMES: usize = 4;
 
 /// All groups that have variables.
@@ -47,7 +47,7 @@ pub(super) fn variables(description: &ModelDescription, style: Style) -> String 
 struct Group<'a> {
     title: &'a str,
     count: usize,
-    /// What holds for all of them.
+    /// Remark that holds for all of them.
     remark: &'static str,
     rows: Vec<Row>,
 }
@@ -108,7 +108,7 @@ impl Row {
     }
 }
 
-/// The type by the name of the version, an enumeration by its own; with the shape of an array.
+/// Name of the type in this FMI version, or of the enumeration; with the shape of an array.
 fn data_type(description: &ModelDescription, variable: &Variable) -> String {
     let name = match (description.enumeration(variable), description.version, variable.data_type) {
         (Some(enumeration), ..) => plain(&enumeration.name),
@@ -123,7 +123,7 @@ fn data_type(description: &ModelDescription, variable: &Variable) -> String {
     format!("{name}[{}]", extents.join(","))
 }
 
-/// Which parameters are the extents of an array.
+/// Parameters that set the extents of an array.
 fn sizes(description: &ModelDescription, variable: &Variable) -> String {
     let structural = variable.dimensions.iter().filter_map(|dimension| match dimension {
         Dimension::Fixed(_) => None,
@@ -133,7 +133,7 @@ fn sizes(description: &ModelDescription, variable: &Variable) -> String {
     if names.is_empty() { names } else { format!("size set by {names}") }
 }
 
-/// What nobody need be told.
+/// Usual variability, which is not listed.
 fn usual(variable: &Variable) -> Variability {
     match variable.causality {
         Causality::Parameter | Causality::StructuralParameter | Causality::CalculatedParameter => Variability::Fixed,
@@ -142,7 +142,7 @@ fn usual(variable: &Variable) -> Variability {
     }
 }
 
-/// The first of them, and how many there are beyond.
+/// The first names, and the number of the others.
 fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     let first: Vec<String> = all.by_ref().take(MOST_NAMES).map(plain).collect();
     let names = first.join(", ");
@@ -152,11 +152,11 @@ fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Which inputs the outputs follow at once, by the position of the output; none where the file does not say.
+/// Inputs that each output follows directly, by position of the output; none where the file does not state it.
 struct Feedthrough(HashMap<usize, Option<Vec<usize>>>);
 
 impl Feedthrough {
-    /// Without inputs there is nothing to be followed.
+    /// Without inputs there is no feedthrough.
     fn of(description: &ModelDescription) -> Self {
         let is = |at: usize, causality| description.variables.get(at).is_some_and(|one| one.causality == causality);
         if !(0..description.variables.len()).any(|at| is(at, Causality::Input)) {
@@ -175,7 +175,7 @@ impl Feedthrough {
         Self(all)
     }
 
-    /// What all outputs have in common.
+    /// Feedthrough that all outputs have in common.
     fn remark(&self) -> &'static str {
         if self.0.is_empty() {
             ""
@@ -188,7 +188,7 @@ impl Feedthrough {
         }
     }
 
-    /// Which inputs this variable follows, unless the remark says it.
+    /// Inputs that this variable follows, unless the remark covers it.
     fn note(&self, description: &ModelDescription, at: usize) -> String {
         match self.0.get(&at) {
             Some(_) if !self.remark().is_empty() => String::new(),
@@ -202,16 +202,16 @@ impl Feedthrough {
     }
 }
 
-/// Where the columns are.
+/// Widths of the columns.
 struct Columns {
     widths: [usize; COLUMNS],
-    /// Width of the column of notes; none if they go below.
+    /// Width of the column of notes; `None` if they go below.
     note: Option<usize>,
     total: usize,
 }
 
 impl Columns {
-    /// As wide as these rows need them.
+    /// Columns as wide as these rows need.
     fn of(rows: &[Row], style: Style) -> Self {
         let width = |column: usize| match widest(rows.iter().map(|row| row.cells[column].as_str())) {
             0 => 0,
@@ -223,7 +223,7 @@ impl Columns {
         Self { widths, note, total: style.width }
     }
 
-    /// Texts of all columns but those in which there is nothing.
+    /// Texts of all columns except empty ones.
     fn line(&self, texts: [&str; COLUMNS]) -> String {
         let cells = self.widths.iter().zip(texts).filter(|(width, _)| **width > 0);
         cells.map(|(width, text)| format!("{text:width$} ")).collect::<Vec<_>>().concat()

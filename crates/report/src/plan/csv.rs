@@ -8,12 +8,12 @@ use std::io::Write;
 
 /// More rows than this (about 1 GB) are a mistake in the sample time rather than a table.
 const MOST_ROWS: u64 = 10_000_000;
-/// What the unit of each derivative has behind that of position, as tables of points have it.
+/// Suffix of the unit of each derivative, as in tables of points.
 pub(super) const DERIVED: [&str; 5] = ["", "/s", "/s2", "/s3", "/s4"];
 
 impl PlannedMove {
-    /// Writes a row every `step` (s); without one, for each sample of a sampled plan, of another one at equal steps: time,
-    /// position and its derivatives, in SI, with a heading that readers of points know.
+    /// Writes a row every `step` (s); without a step, one for each sample of a sampled plan, or at equal steps for any other plan: time,
+    /// position and its derivatives, in SI, with a heading that readers of points recognise.
     ///
     /// # Errors
     /// [`ReportError::TooManyRows`] before anything is written, [`ReportError::Io`].
@@ -52,8 +52,8 @@ impl PlannedMove {
         Ok(out.flush()?)
     }
 
-    /// Writes a row for each velocity command of a position profile: when it is sent, velocity, acceleration, in SI; whether
-    /// there are commands at all.
+    /// Writes a row for each velocity command of a position profile: time of sending, velocity, acceleration, in SI. Returns true
+    /// if there are commands at all.
     ///
     /// # Errors
     /// [`ReportError::Io`].
@@ -88,7 +88,7 @@ mod tests {
         rows.lines().map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
     }
 
-    /// Summing the snap of the samples up four times, forward Euler, lands on the distance: the samples are those of the
+    /// Summing the snap of the samples up four times, forward Euler, gives the distance: the samples are those of the
     /// sampled plan. Each sum of 1354 terms of one sign at a time rounds by less than 1e-12.
     #[test]
     fn a_sampled_plan_has_a_row_for_each_sample() {
@@ -126,7 +126,7 @@ mod tests {
         assert!(out.is_empty());
     }
 
-    /// 0 … 1.35 s in steps of 0.1 s, and one more for what is left.
+    /// 0 … 1.35 s in steps of 0.1 s, and one more for the remainder.
     #[test]
     fn rows_are_as_far_apart_as_asked_for() {
         let mut bytes = Vec::new();

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Parts into which a polynomial of the fourth degree is cut, so that it is drawn within 1e-8 of the move.
 const PARTS: u32 = 4;
-/// What the hundredths of a pixel in which a path is written do not show (pixels).
+/// Deviation that does not show in paths written to a hundredth of a pixel (pixels).
 const UNSEEN: f64 = 0.005;
 
 /// A derivative of position over the polynomials of a plan.
@@ -16,13 +16,13 @@ pub(super) struct Curve<'a> {
     pub(super) spans: &'a [Span],
     /// The set-point from the end on.
     pub(super) end: Setpoint,
-    /// Which derivative, 0 for position.
+    /// Derivative drawn, 0 for position.
     pub(super) k: usize,
-    /// Whether it begins at zero, as the highest derivative does at the beginning of the move.
+    /// True if it begins at zero, as the highest derivative does at the beginning of the move.
     pub(super) from_zero: bool,
-    /// Whether it ends at zero, as the highest derivative does at the end of the move.
+    /// True if it ends at zero, as the highest derivative does at the end of the move.
     pub(super) to_zero: bool,
-    /// How much of the SI its unit is.
+    /// Size of its unit in SI.
     pub(super) scale: f64,
 }
 
@@ -52,7 +52,7 @@ impl Pen {
 }
 
 impl Curve<'_> {
-    /// The path of the line, and of the area between it and zero; `None` without a span.
+    /// Paths of the line, and of the area between it and zero; `None` without a span.
     pub(super) fn paths(&self, time: &Axis, value: &Axis) -> Option<(String, String)> {
         let first = self.spans.first()?;
         let zero = value.at(0.0).clamp(value.to, value.from);
@@ -68,7 +68,7 @@ impl Curve<'_> {
         Some((pen.path, area))
     }
 
-    /// One polynomial, from where the pen is.
+    /// Draws one polynomial from the position of the pen.
     fn draw(&self, pen: &mut Pen, span: &Span, time: &Axis, value: &Axis) {
         let x = time.at(span.start + span.length);
         let higher = &derivatives(&span.state)[self.k + 1..];

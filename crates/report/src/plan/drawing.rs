@@ -13,18 +13,18 @@ use servobench_planner::Span;
 
 /// Characters in a line below the title.
 const CHARACTERS: usize = 108;
-/// Polynomials that are drawn as such; more of them are drawn as far as they are seen.
+/// Most polynomials that are drawn exactly; more are drawn as an envelope.
 const EXACT: usize = 250;
-/// Looks into a polynomial for how far its position goes.
+/// Samples of a polynomial that find the range of its position.
 const LOOKS: u32 = 8;
 
 impl PlannedMove {
-    /// The move as SVG, complete in itself.
+    /// The move as self-contained SVG.
     ///
-    /// Every polynomial is drawn as such, that of a sampled profile too, which is continuous between its samples; set-points
-    /// that are held, in steps. Of very many polynomials the lowest and the highest value in each column of pixels are drawn.
+    /// Every polynomial is drawn exactly, also those of a sampled profile, which is continuous between its samples; set-points
+    /// with a hold are drawn in steps. Of very many polynomials the lowest and the highest value in each column of pixels are drawn.
     ///
-    /// `from` and `to` (s) say which part of it is drawn; `None` is its beginning, or its end.
+    /// `from` and `to` (s) select the part drawn; `None` is the beginning, or the end.
     ///
     /// # Errors
     /// [`ReportError`] where the move has no such time.
@@ -60,7 +60,7 @@ impl PlannedMove {
                 Panel { name: NAMES[k], unit, range: (low / scale, high / scale), limit, line }
             })
             .collect();
-        // In the unit of the time axis; to the nanosecond they are in the table.
+        // In the unit of the time axis; the table has them to the nanosecond.
         let (unit, scale) = unit_at(duration, "s", true);
         let shown = |time: f64| format!("{} {unit}", four_digits(time / scale));
         let what = self.what(&self.drawn_unit(0).short(self.distance()));
@@ -121,7 +121,7 @@ mod tests {
         path.split(|c| !is_number(c)).filter(|text| !text.is_empty()).map(|text| text.parse().unwrap()).collect()
     }
 
-    /// The parts of a path, each as a cubic curve: its ends and what pulls at it; none for those that go upright.
+    /// Parts of a path, each as a cubic curve: its ends and control points; vertical parts are left out.
     fn cubics(path: &str) -> Vec<[(f64, f64); 4]> {
         let mut parts: Vec<[(f64, f64); 4]> = Vec::new();
         let mut here = (0.0, 0.0);
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// A part of the move: the same curve over another stretch of time, and nothing of the rest. Oracle: the profile itself.
+    /// A part of the move: the same curve over another interval, and nothing of the rest. Oracle: the profile itself.
     #[test]
     fn a_part_of_a_move_is_drawn_alone() {
         let plan = moves::lambrechts(Order::Fourth);
@@ -201,7 +201,7 @@ mod tests {
             let looks: Vec<f64> = (0..=1000).map(|i| from + (to - from) * f64::from(i) / 1000.0).collect();
             let values = || looks.iter().map(|t| at(k, *t));
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            // The ends of the parts: the lowest is at one of them, the highest at another, and a linear scale is between.
+            // Lowest and highest values are at ends of the parts, and the scale between them is linear.
             let points: Vec<(f64, f64)> = parts.iter().flat_map(|part| [part[0], part[3]]).collect();
             let y = |value: f64| {
                 let nearest = |wanted: f64| {
@@ -220,14 +220,14 @@ mod tests {
                 assert!((y(at(k, t)) - drawn).abs() < 0.1, "panel {k} at {t} s: {drawn} instead of {}", y(at(k, t)));
             }
         }
-        // The snap of the whole move rises from zero; that of a part of it begins with what it is, -1000 m/s4 here.
+        // The snap of the whole move rises from zero; that of a part begins at its value there, -1000 m/s4.
         let (whole, part) = (plan.svg(None, None).unwrap(), plan.svg(Some(0.12), None).unwrap());
         let first = |svg: &str| numbers(path(svg, 4))[1];
         assert!(first(&part) > first(&whole) + 40.0, "{} {}", first(&part), first(&whole));
         assert!(plan.svg(Some(1.4), None).is_err());
     }
 
-    /// Corners would show as a tangent that differs left and right of a point. A hundredth of a pixel of the control points
+    /// A corner would show as a tangent that differs left and right of a point. A hundredth of a pixel of the control points
     /// turns a tangent of ten pixels by a thousandth.
     #[test]
     fn curves_have_no_corners() {
@@ -243,7 +243,7 @@ mod tests {
         }
     }
 
-    /// Jerk is straight from switch to switch, snap goes level and upright and ends on both sides at zero.
+    /// Jerk is straight from switch to switch; snap is horizontal and vertical and ends on both sides at zero.
     #[test]
     fn the_highest_derivatives_are_drawn_without_slant() {
         let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
@@ -255,7 +255,7 @@ mod tests {
         assert!((numbers[1] - zero).abs() < 0.02 && (numbers.last().unwrap() - zero).abs() < 0.02, "{snap}");
     }
 
-    /// A move of 1.35 thousand million samples takes no more room than the continuous one, and looks the same.
+    /// A move of 1.35 thousand million samples needs no more space than the continuous one, and looks the same.
     #[test]
     fn the_size_of_a_drawing_does_not_depend_on_the_number_of_samples() {
         let (fine, continuous) =
@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(svg.matches("class=\"b\"").count(), 5 * 15, "15 segments in five panels");
         assert_eq!(svg.matches("class=\"e\"").count(), 1);
         assert!(svg.contains(">1.35</text>"), "the end of the move");
-        // 1.35 s cuts the distance to the label of 1.4 s, which there is none of, not to that of 1.2 s.
+        // 1.35 s is too close to 1.4 s for that label, not to 1.2 s.
         assert!(svg.contains(">1.2</text>"));
     }
 
@@ -307,8 +307,8 @@ mod tests {
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"), "{svg}");
     }
 
-    /// Lambrechts' move is at its limits in as many stretches as its figure shows: once the velocity, twice the acceleration,
-    /// four times the jerk, and snap in eight.
+    /// Lambrechts' move is at its limits in as many intervals as its figure shows: velocity in one, acceleration in two,
+    /// jerk in four, and snap in eight.
     #[test]
     fn where_a_bound_binds_is_marked() {
         let svg = moves::lambrechts(Order::Fourth).svg(None, None).unwrap();
@@ -317,7 +317,7 @@ mod tests {
             .skip(1)
             .map(|rest| rest.split("/>").next().unwrap().matches('M').count())
             .collect();
-        // The last one is the sign in the key.
+        // The last one is the symbol in the key.
         assert_eq!(marks, [1, 2, 4, 8, 1]);
         assert!(svg.contains(">at its limit<") && !svg.contains("for an instant"));
     }
@@ -330,7 +330,7 @@ mod tests {
         assert!(svg.contains("<path class=\"d\"") && svg.contains("at its limit for an instant"), "{svg}");
     }
 
-    /// The panels end with the order: no empty one.
+    /// The panels end with the order: none is empty.
     #[test]
     fn there_is_a_panel_for_each_derivative_that_is_limited() {
         let svg = moves::lambrechts(Order::Third).svg(None, None).unwrap();
@@ -351,7 +351,7 @@ mod tests {
         assert!(!svg.contains("rad"));
     }
 
-    /// The samples of the cascade, as far as they are seen, and a table of a hundred thousand points.
+    /// The samples of the cascade, as far as they are visible, and a table of a hundred thousand points.
     #[test]
     fn very_many_polynomials_take_little_room() {
         let knots = (0..100_000).map(|k| Knot::new(f64::from(k), f64::from(k % 3))).collect();
@@ -362,8 +362,8 @@ mod tests {
         }
     }
 
-    /// A filter cuts the profile where its pieces begin, in the middle of a cruise too: a line stands where the snap changes, as a row
-    /// does in the table, and nowhere else.
+    /// A filter cuts the profile where its pieces begin, also in the middle of a cruise: there is a line where the snap changes, as there
+    /// is a row in the table, and nowhere else.
     #[test]
     fn lines_of_segments_stand_where_the_highest_derivative_changes() {
         let generator = |order| {

@@ -1,4 +1,4 @@
-//! What is seen of a plan of very many polynomials: the lowest and the highest value in each column of pixels.
+//! Envelope of a plan of very many polynomials: the lowest and the highest value in each column of pixels.
 use super::derivatives;
 use super::window::Window;
 use crate::drawing::Axis;
@@ -7,10 +7,10 @@ use std::fmt::Write;
 
 /// Columns over the width of a panel.
 pub(super) const COLUMNS: usize = 640;
-/// Looks into a polynomial beside its ends: an extreme between them is missed by less than a hundredth of its swing.
+/// Samples of a polynomial beside its ends: an extreme between them is missed by less than a hundredth of its swing.
 const LOOKS: u32 = 4;
 
-/// Lowest and highest values of position and its derivatives (SI) in equal parts of what is drawn.
+/// Lowest and highest values of position and its derivatives (SI) in equal parts of the window.
 #[derive(Debug, Clone)]
 pub(super) struct Envelope {
     columns: Vec<[(f64, f64); 5]>,
@@ -18,7 +18,7 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// That of `spans`, which fill `window`.
+    /// The envelope of `spans`, which fill `window`.
     pub(super) fn of(spans: impl Iterator<Item = Span>, window: &Window) -> Self {
         let (begin, length) = (window.from, window.to - window.from);
         let mut columns = vec![[(f64::INFINITY, f64::NEG_INFINITY); 5]; COLUMNS];
@@ -30,7 +30,7 @@ impl Envelope {
                 let (from, to) = (within(edge(i)), within(edge(i + 1)));
                 for look in 0..=LOOKS {
                     let t = from + (to - from) * f64::from(look) / f64::from(LOOKS);
-                    // From the right at its end: the next one begins there with its own value.
+                    // From the right at its end: the next one begins there with another value.
                     for (value, (low, high)) in derivatives(&span.after(t)).into_iter().zip(column.iter_mut()) {
                         (*low, *high) = (low.min(value), high.max(value));
                     }
@@ -46,7 +46,7 @@ impl Envelope {
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (l, h)| (low.min(l), high.max(h)))
     }
 
-    /// The outline of derivative `k` in a unit that is `scale` of the SI's.
+    /// The outline of derivative `k` in a unit of size `scale` in SI.
     pub(super) fn path(&self, k: usize, scale: f64, time: &Axis, value: &Axis) -> String {
         let Window { from, to, .. } = self.window;
         let x = |i: usize| time.at(from + (to - from) * (i as f64 + 0.5) / COLUMNS as f64);
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use servobench_base::Setpoint;
 
-    /// A saw of a thousand teeth: each column sees it from 0 to 1.
+    /// A saw-tooth of a thousand teeth: each column sees it from 0 to 1.
     #[test]
     fn every_column_sees_all_there_is_in_it() {
         let tooth = |k: u32| Span {

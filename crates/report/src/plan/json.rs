@@ -1,4 +1,4 @@
-//! A plan for a program.
+//! A plan as JSON.
 use super::{NAMES, PlannedMove, derivatives};
 use crate::error::ReportError;
 use indexmap::IndexMap;
@@ -10,7 +10,7 @@ use servobench_motion::sampled::Shortest;
 use servobench_planner::{PlanDetails, Sending};
 use std::iter;
 
-/// Segments, bindings and commands at most, each; of more the number alone is told, and `--csv` has the values.
+/// Most segments, bindings and commands listed, each; of more, only the number is written, and `--csv` has the values.
 const MOST: usize = 100_000;
 
 /// A plan; values are SI.
@@ -23,7 +23,7 @@ struct Plan {
     unit: &'static str,
     distance: f64,
     duration_s: f64,
-    /// How much of the duration is that of shaper and averages.
+    /// Part of the duration added by shaper and moving averages.
     #[serde(skip_serializing_if = "Option::is_none")]
     filter_s: Option<f64>,
     #[serde(flatten)]
@@ -31,24 +31,24 @@ struct Plan {
     /// `t_d` … `t_v` (s).
     #[serde(flatten)]
     dwells: IndexMap<String, f64>,
-    /// What the pulses of the highest derivative reach, signed: `snap_effective` at order 4.
+    /// Values that the pulses of the highest derivative reach, signed: `snap_effective` at order 4.
     #[serde(flatten)]
     effective: IndexMap<String, f64>,
     /// Largest magnitudes.
     peaks: IndexMap<String, f64>,
     /// Lowest and highest values.
     extremes: IndexMap<String, [f64; 2]>,
-    /// Lowest and highest values allowed, where there is a limit.
+    /// Lowest and highest values allowed, for each limited quantity.
     limits: IndexMap<String, [Option<f64>; 2]>,
     #[serde(flatten)]
     samples: Option<Samples>,
-    /// How far a transition goes beyond its limits, as a part of them.
+    /// Relative excess of a transition over its limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     excess: Option<f64>,
-    /// Of Rockwell's ramps.
+    /// Jerks of Rockwell's ramps.
     #[serde(skip_serializing_if = "Option::is_none")]
     jerks: Option<Jerks>,
-    /// What the position differs from the spline's at most.
+    /// Largest deviation of the position from the spline.
     #[serde(skip_serializing_if = "Option::is_none")]
     position_error: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,7 +61,7 @@ struct Plan {
     commands: Option<Vec<Command>>,
     #[serde(flatten)]
     points: Option<Points>,
-    /// Where a derivative is at its limit.
+    /// Number of intervals with a derivative at its limit.
     binding_count: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     bindings: Option<Vec<Binding>>,
@@ -76,21 +76,21 @@ struct Points {
     point_count: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     point_time_s: Option<f64>,
-    /// What the way through them differs from the plan at most, and when.
+    /// Largest deviation of the path through the points from the plan, and its time.
     point_deviation: f64,
     point_deviation_at_s: f64,
-    /// The same of the way of a drive that is sent them in whole counts.
+    /// The same for the path of a drive that receives the points in whole counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     sent_deviation: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sent_deviation_at_s: Option<f64>,
 }
 
-/// Beside the published profile.
+/// Comparison with the published profile.
 #[derive(Debug, Serialize)]
 struct Compared {
     published_duration_s: f64,
-    /// Part of its duration that is gained.
+    /// Relative gain in duration.
     gain: f64,
 }
 
@@ -99,7 +99,7 @@ struct Samples {
     sample_time_s: f64,
     #[serde(rename = "samples")]
     count: u64,
-    /// Below which no move reaches the distance, as far as that is proven.
+    /// Proven lower bound of the number of samples.
     #[serde(rename = "samples_at_least", skip_serializing_if = "Option::is_none")]
     at_least: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -121,7 +121,7 @@ struct Command {
     acceleration: f64,
 }
 
-/// A derivative at its limit; for an instant where the length is 0.
+/// A derivative at its limit; at an instant if the length is 0.
 #[derive(Debug, Serialize)]
 struct Binding {
     quantity: &'static str,
@@ -130,7 +130,7 @@ struct Binding {
     value: f64,
 }
 
-/// A stretch of constant highest derivative.
+/// An interval of constant highest derivative.
 #[derive(Debug, Serialize)]
 struct Segment {
     start_s: f64,
@@ -140,7 +140,7 @@ struct Segment {
     state: Option<State>,
 }
 
-/// The set-point at the beginning of a segment, where that is no move from rest to rest.
+/// The set-point at the beginning of a segment of a move that is not from rest to rest.
 #[derive(Debug, Serialize)]
 struct State {
     position: f64,
@@ -252,7 +252,7 @@ impl PlannedMove {
         Some(Samples { sample_time_s, count, at_least, sampling, execution })
     }
 
-    /// The segments of a profile from rest to rest; of another plan its polynomials with where they begin, none of samples.
+    /// Segments of a profile from rest to rest; for other plans the polynomials with their initial states; none for samples.
     fn segments(&self) -> Vec<Segment> {
         if let Some(segments) = self.profile().map(Profile::segments) {
             let segment = |of: servobench_motion::Segment| Segment {

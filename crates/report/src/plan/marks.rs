@@ -4,22 +4,22 @@ use servobench_motion::online::Sides;
 use servobench_planner::Binding;
 use std::fmt::Write;
 
-/// Shorter than this a stretch is a dot, and marks that are nearer to each other are one (pixels).
+/// A shorter interval is a dot, and marks closer together than this are one (pixels).
 const DOT: f64 = 1.5;
 
 /// Marks on the limits of one panel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Marks {
-    /// Stretches along the limit, as a path.
+    /// Intervals along the limit, as a path.
     pub(super) stretches: String,
-    /// Dots, as a path of lines of no length.
+    /// Dots, as a path of lines of zero length.
     pub(super) dots: String,
 }
 
 impl Marks {
-    /// Those of `bindings`, all of one derivative, along its `limit`, also where it is beyond.
+    /// Marks of `bindings`, all of one derivative, along its `limit`, also where it is exceeded.
     pub(super) fn of<'a>(bindings: impl Iterator<Item = &'a Binding>, limit: Sides, time: &Axis, value: &Axis) -> Self {
-        // Above zero and below, each from left to right: where it begins, where it ends, its height.
+        // Above zero and below, each from left to right: start, end, height.
         let mut merged: [Vec<(f64, f64, f64)>; 2] = [vec![], vec![]];
         for binding in bindings {
             let (from, to) = (time.at(binding.start), time.at(binding.start + binding.length));
@@ -61,7 +61,7 @@ mod tests {
         let time = Axis { low: 0.0, high: 1.0, from: 0.0, to: 100.0 };
         let value = Axis { low: -2.0, high: 2.0, from: 100.0, to: 0.0 };
         let binding = |start, length, value| Binding { derivative: 1, start, length, value };
-        // The second begins where the first ends, but for a pixel; the last is beyond.
+        // The second begins where the first ends, except for a pixel; the last exceeds the limit.
         let all = [binding(0.1, 0.2, 2.0), binding(0.31, 0.1, 2.0), binding(0.5, 0.0, -2.0), binding(0.9, 0.001, 2.5)];
         let marks = Marks::of(all.iter(), Sides::both(2.0), &time, &value);
         assert_eq!(marks.stretches, "M10.0,0.0H41.0");

@@ -7,7 +7,7 @@ use servobench_motion::online::Sides;
 
 /// Height of a panel.
 pub(super) const HEIGHT: f64 = 118.0;
-/// A limit more than this many times the peak would flatten the curve: it is named, not drawn.
+/// A limit more than this many times the peak would flatten the curve: it is named instead of drawn.
 const IN_SIGHT: f64 = 2.5;
 
 /// One quantity over time.
@@ -15,22 +15,22 @@ const IN_SIGHT: f64 = 2.5;
 pub(super) struct Panel<'a> {
     /// `velocity`.
     pub(super) name: &'a str,
-    /// In which its values are drawn.
+    /// Unit in which its values are drawn.
     pub(super) unit: DisplayUnit,
     /// Its lowest and highest value, in that unit.
     pub(super) range: (f64, f64),
     /// Largest magnitudes allowed, in that unit; infinite where there is no limit. Drawn dashed.
     pub(super) limit: Sides,
-    /// What it does.
+    /// Curve of the quantity.
     pub(super) line: Line<'a>,
 }
 
-/// What a quantity does.
+/// Curve of a quantity.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Line<'a> {
-    /// Its polynomials.
+    /// Its exact polynomials.
     Exact(Curve<'a>),
-    /// The derivative of position of that number, as far as it is seen.
+    /// Envelope, and the number of the derivative of position.
     Seen(&'a Envelope, usize),
 }
 
@@ -101,7 +101,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Unit of the scale, and how much of the plain unit it is.
+    /// Unit of the scale, and its size in plain units.
     fn shown_unit(&self) -> (String, f64) {
         let Sides { below, above } = self.limit;
         let largest = [below, above].into_iter().filter_map(|limit| self.in_sight(limit)).fold(self.peak(), f64::max);
@@ -112,7 +112,7 @@ impl Panel<'_> {
         self.range.1.abs().max(self.range.0.abs())
     }
 
-    /// A limit, where it is one that does not flatten the curve.
+    /// The limit, if it does not flatten the curve.
     fn in_sight(&self, limit: f64) -> Option<f64> {
         let peak = self.peak();
         (limit.is_finite() && (peak == 0.0 || limit <= IN_SIGHT * peak)).then_some(limit)
@@ -126,12 +126,12 @@ impl Panel<'_> {
         limits.into_iter().flatten().filter(move |limit| range.contains(limit))
     }
 
-    /// Whether a limit is drawn.
+    /// True if a limit is drawn.
     pub(super) fn shows_a_limit(&self) -> bool {
         self.drawn_limits(&self.axis(0.0)).next().is_some()
     }
 
-    /// Room for the values, for zero unless they are far from it, and for the limit on each side that the values go to.
+    /// Axis that holds the values, zero unless they are far from it, and the limit on each side that the values reach.
     pub(super) fn axis(&self, top: f64) -> Axis {
         let (mut low, mut high) = with_zero(self.range);
         let tiny = 1e-9 * self.peak();
@@ -181,14 +181,14 @@ mod tests {
         assert!(svg.contains(">limit 2.00 m/s<") && svg.contains(">limit -1.50 m/s<"), "{svg}");
     }
 
-    /// 1 mm of way beside a position of 5 m.
+    /// 1 mm of travel at a position of 5 m.
     #[test]
     fn what_is_far_from_zero_takes_its_panel() {
         let axis = panel((5.0, 5.001), f64::INFINITY).axis(0.0);
         assert!(axis.low > 4.99 && axis.high < 5.01, "{axis:?}");
     }
 
-    /// The curve takes its panel but for a room of 2 and 8 % of the span; the limit is named.
+    /// The curve fills its panel except for margins of 2 and 8 % of the span; the limit is named.
     #[test]
     fn a_far_limit_does_not_flatten_the_curve() {
         let far = panel((0.0, 1.0), 10.0);

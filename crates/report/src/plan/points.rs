@@ -1,4 +1,4 @@
-//! A move as points: for a table, and in the words in which a drive is sent them.
+//! A move as points: for a table, and as the words that are sent to a drive.
 use super::csv::DERIVED;
 use super::table::kept;
 use super::words::exceeded;
@@ -14,40 +14,40 @@ use servobench_motion::pvt::Knot;
 use servobench_planner::{Deviation, Generator, PointMove, PointTimes, TableMove, Velocities};
 use std::io::Write;
 
-/// When the points of a move are.
+/// Spacing of the points of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PointChoice {
-    /// As far apart (s).
+    /// Constant time between points (s).
     Every(f64),
-    /// As rare as keeps the way through them so near to the move (m or rad).
+    /// Fewest points that keep the path through them this close to the move (m or rad).
     FewestWithin(f64),
-    /// Those of a table that is followed as it is, of another move every [`PointTimes::SPACING`].
+    /// The points of a table that is followed as it is; for any other move one every [`PointTimes::SPACING`].
     Own,
 }
 
 /// A move as points.
 #[derive(Debug, Clone)]
 pub(super) struct Points {
-    /// Time from point to point (s); of a table its own.
+    /// Time from point to point (s); `None` for the points of a table.
     pub(super) spacing: Option<f64>,
     pub(super) through: PointMove,
     pub(super) sent: Option<Sent>,
 }
 
-/// The same as a drive is sent them.
+/// The points as sent to a drive.
 #[derive(Debug, Clone)]
 pub(super) struct Sent {
     pub(super) transfer: PointTransfer,
     encoding: PointEncoding,
     points: Vec<Point>,
-    /// Counts in a metre or radian.
+    /// Counts per metre or radian.
     pub(super) counts: f64,
-    /// How far the drive's way leads from the move.
+    /// Deviation of the drive's path from the move.
     pub(super) deviation: Deviation,
 }
 
 impl PlannedMove {
-    /// The same with its points.
+    /// Adds the points of the move.
     ///
     /// # Errors
     /// [`PlanError`] for times or a deviation that the move cannot have.
@@ -68,7 +68,7 @@ impl PlannedMove {
         self.plan.in_points(PointTimes::every(spacing))
     }
 
-    /// The ends of the segments of a table that is followed as it is; without a velocity where a line leads there.
+    /// Ends of the segments of a table that is followed as it is; without a velocity where a line leads to the point.
     fn own_points(&self) -> Option<Vec<Knot>> {
         if !self.is_plain_table() || self.family() != "pvt" {
             return None;
@@ -87,11 +87,11 @@ impl PlannedMove {
         Some(knots)
     }
 
-    /// The same with its points in the words by which `transfer` takes them to a drive that has `counts` in a metre or radian, below zero
-    /// if it counts the other way round.
+    /// Encodes the points for `transfer` to a drive with `counts` per metre or radian, below zero
+    /// if it counts in the opposite direction.
     ///
     /// # Errors
-    /// [`Unsendable`] names the first point that the words do not hold; [`PlanError`] of points that no move goes through.
+    /// [`Unsendable`] names the first point that the words cannot hold; [`PlanError`] for points that no move goes through.
     pub fn sent_by(mut self, transfer: PointTransfer, counts: f64) -> Result<Self, Unsent> {
         let Some(own) = &mut self.points else { return Ok(self) };
         let millisecond = TimePeriod::new(1, -3).map_err(|error| Unsent::Setting(error.to_string()))?;
@@ -106,7 +106,7 @@ impl PlannedMove {
         Ok(self)
     }
 
-    /// Writes time, position and velocity of each point, in SI; whether there are some.
+    /// Writes time, position and velocity of each point, in SI. Returns true if there are points.
     ///
     /// # Errors
     /// [`ReportError::Io`].
@@ -121,8 +121,8 @@ impl PlannedMove {
         Ok(true)
     }
 
-    /// Writes a row for each point as it is sent: what it says in units of the drive, and its words in hexadecimal digits; whether there are
-    /// some.
+    /// Writes a row for each point as sent: its values in units of the drive, and its words in hexadecimal digits. Returns true if there
+    /// are points.
     ///
     /// # Errors
     /// [`ReportError::Io`].
@@ -153,7 +153,7 @@ impl PlannedMove {
         Ok(true)
     }
 
-    /// What there is to tell of the points.
+    /// Notes about the points.
     pub(super) fn notes_of_points(&self, time: impl Fn(f64) -> String) -> Vec<String> {
         let Some(Points { spacing, through, sent }) = &self.points else { return Vec::new() };
         let count = through.knots.len();
@@ -166,7 +166,7 @@ impl PlannedMove {
             }
         };
         let mut notes = vec![format!("{count} points, {when}: the way through them is {}", off(&through.deviation))];
-        // What a table itself exceeds is told with it.
+        // Excess of a table itself is reported with the table.
         if spacing.is_some() {
             let beyond = exceeded(&kept(&through.way));
             notes.extend(beyond.map(|beyond| format!("the way through them {beyond}")));
@@ -178,13 +178,13 @@ impl PlannedMove {
         notes
     }
 
-    /// Whether nothing but rounding is between the plan and what deviates so much.
+    /// True if the deviation from the plan is only rounding.
     pub(super) fn is_on_the_plan(&self, deviation: &Deviation) -> bool {
         let (from, to) = (self.plan.start().x.abs(), self.plan.end().x.abs());
         super::without_dust(deviation.distance, from.max(to).max(self.distance().abs())) == 0.0
     }
 
-    /// The points to be marked in a drawing, and whether the velocity is known at each: (time, position, velocity).
+    /// The points to mark in a drawing, with the velocity where it is known: (time, position, velocity).
     pub(super) fn marked_points(&self) -> Vec<(f64, f64, Option<f64>)> {
         let of = |knots: &[Knot]| {
             let start = knots.first().map_or(0.0, |knot| knot.t);
@@ -199,7 +199,7 @@ impl PlannedMove {
         }
     }
 
-    /// Whether it is a table that nothing slows or filters.
+    /// True if it is a table that is neither slowed down nor filtered.
     fn is_plain_table(&self) -> bool {
         matches!(self.request.generator, Generator::Table(_))
             && self.request.duration.is_none()
@@ -207,10 +207,10 @@ impl PlannedMove {
     }
 }
 
-/// Why a move was not made words.
+/// Reasons why a move could not be encoded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Unsent {
-    /// A point that they do not hold.
+    /// A point that the words cannot hold.
     #[error(transparent)]
     Point(#[from] Unsendable),
     /// Points in whole counts through which no move goes.

@@ -1,4 +1,4 @@
-//! The parts of a plan in the order of time, as many as a person reads.
+//! The parts of a plan in order of time, as many as a person reads.
 use super::times::Times;
 use super::{NAMES, PlannedMove, derivatives, without_dust};
 use servobench_base::Setpoint;
@@ -7,15 +7,15 @@ use servobench_motion::position_profile::Command;
 use servobench_planner::{Generator, PlanDetails, Span};
 use std::collections::VecDeque;
 
-/// `125.663706 ms` fits.
+/// Width of `125.663706 ms`.
 const TIME: usize = 13;
 const QUANTITY: usize = 16;
-/// Rows at most; of more the first and the last are shown.
+/// Most rows; of more, the first and the last are shown.
 const MOST: usize = 40;
 const FIRST: usize = 12;
 const LAST: usize = 4;
 
-/// Times, and quantities of derivatives of position, of one row.
+/// Times of one row, and its derivatives of position.
 #[derive(Debug, Clone, Copy)]
 struct Row {
     start: f64,
@@ -32,14 +32,14 @@ impl Row {
         Self { start, length: Some(length), quantities: [Some((k, value)), None, None] }
     }
 
-    /// Whether `other` has the same quantities but for rounding.
+    /// True if `other` has the same quantities except for rounding.
     fn is_as(&self, other: &Self) -> bool {
         let mut both = self.quantities.iter().flatten().zip(other.quantities.iter().flatten());
         both.all(|((_, one), (_, other))| (one - other).abs() <= 1e-9 * one.abs())
     }
 }
 
-/// Rows that follow each other with the same quantities, as one.
+/// Consecutive rows with the same quantities, joined into one.
 fn joined(mut rows: impl Iterator<Item = Row>) -> impl Iterator<Item = Row> {
     let mut next = rows.next();
     std::iter::from_fn(move || {
@@ -56,7 +56,7 @@ fn joined(mut rows: impl Iterator<Item = Row>) -> impl Iterator<Item = Row> {
 }
 
 impl PlannedMove {
-    /// The segments, points or commands: heading and rows. None of a plan whose set-points are held: they are samples.
+    /// The segments, points or commands: heading and rows. None for a plan whose set-points are held: they are samples.
     pub(super) fn rows(&self) -> Vec<String> {
         let n = self.plan.order();
         if let PlanDetails::Commands { commands, .. } = self.plan.details() {
@@ -70,7 +70,7 @@ impl PlannedMove {
             return Vec::new();
         }
         if matches!(self.request.generator, Generator::Table(_)) {
-            // Where velocity jumps, there is no acceleration to tell.
+            // Where velocity jumps, there is no acceleration to list.
             let has_acceleration = n > 1;
             let row = |t: f64, Setpoint { x, v, a, .. }: Setpoint| {
                 Row::point(t, [Some((0, x)), Some((1, v)), has_acceleration.then_some((2, a))])
@@ -82,7 +82,7 @@ impl PlannedMove {
         self.listed("start", self.segment_rows(), "segments")
     }
 
-    /// The segments, each as long as the highest derivative stays what it is.
+    /// The segments, one for each interval of constant highest derivative.
     fn segment_rows(&self) -> Box<dyn Iterator<Item = Row> + '_> {
         let n = self.plan.order();
         if let Some(profile) = self.profile() {
@@ -93,7 +93,7 @@ impl PlannedMove {
         Box::new(joined(self.plan.spans().map(row)))
     }
 
-    /// Ends of the rows (s), those of a table where its points are; none of a plan whose set-points are held.
+    /// Ends of the rows (s), for a table its points; none for a plan whose set-points are held.
     pub(super) fn boundaries(&self) -> Vec<f64> {
         if self.plan.held().is_some() {
             return Vec::new();
@@ -104,7 +104,7 @@ impl PlannedMove {
         self.segment_rows().map(|row| row.start + row.length.unwrap_or_default()).collect()
     }
 
-    /// Rows below their headings, of very many only the first and the last.
+    /// Rows below their headings; of very many only the first and the last.
     fn listed(&self, start: &str, rows: impl Iterator<Item = Row>, name: &str) -> Vec<String> {
         let mut rows = rows.enumerate();
         let mut first: Vec<(usize, Row)> = rows.by_ref().take(MOST).collect();
@@ -117,19 +117,19 @@ impl PlannedMove {
         }
         let count = last.back().map_or(first.len(), |(i, _)| i + 1);
         if count > MOST {
-            // Of those between the first and the last some are still among the first.
+            // Some of those between the first and the last are still among the first.
             first.extend(last);
             first.retain(|(i, _)| *i < FIRST || i + LAST >= count);
         }
         self.written(start, &first, (count - first.len(), name))
     }
 
-    /// `rows` with their numbers, and a line for those that are left out, so many of that name.
+    /// `rows` as text, and a line that counts the `left_out` of that name.
     fn written(&self, start: &str, rows: &[(usize, Row)], (left_out, name): (usize, &str)) -> Vec<String> {
         let Some((_, Row { length, quantities, .. })) = rows.first() else { return Vec::new() };
         let all = rows.iter().flat_map(|(_, row)| [Some(row.start), row.length]).flatten();
         let times = Times::new(self.plan.duration(), all);
-        // A single quantity stands at the left of its column, as nothing follows.
+        // A single quantity is aligned left in its column, as nothing follows.
         let is_single = quantities[1].is_none();
         let column = |text: &str| if is_single { format!("  {text}") } else { format!(" {text:>QUANTITY$}") };
         let names = quantities.iter().flatten().map(|(k, _)| column(NAMES[*k]));

@@ -1,4 +1,4 @@
-//! Panels below each other, with what stands above, below and beside them.
+//! Panels below each other, with the texts above, below and beside them.
 use super::marks::Marks;
 use super::panel::{HEIGHT, Panel};
 use super::window::Window;
@@ -9,9 +9,9 @@ use servobench_planner::Binding;
 pub(super) const WIDTH: f64 = 860.0;
 pub(super) const LEFT: f64 = 84.0;
 pub(super) const RIGHT: f64 = 132.0;
-/// Above the first panel, with one line below the title.
+/// Height above the first panel, with one line below the title.
 pub(super) const TOP: f64 = 96.0;
-/// Height of another one.
+/// Height of each further line.
 const LINE: f64 = 17.0;
 const BOTTOM: f64 = 46.0;
 pub(super) const GAP: f64 = 22.0;
@@ -19,13 +19,13 @@ const STYLE: &str = ".b{stroke:#aab3c0;stroke-width:1;stroke-dasharray:1.5 3}\
 .l{stroke:#c2303a;stroke-width:1.2;stroke-dasharray:6 4}.lt{font-size:11px;fill:#c2303a}.c{fill:none;\
 stroke-width:2;stroke-linejoin:round}.f{stroke:none;opacity:.09}.v{stroke-width:1.2;stroke-linejoin:round}\
 .m{fill:none;stroke:#c2303a;stroke-width:4}.d{fill:none;stroke:#c2303a;stroke-width:7;stroke-linecap:round}.p{fill:#fff;stroke-width:1.4}";
-/// Labels of the time axis keep this far from that of the end.
+/// Smallest distance of labels of the time axis from that of the end.
 const LABEL: f64 = 34.0;
 /// Marks closer than this are one.
 const APART: f64 = 1.5;
-/// More ends of segments than this would hide the curves.
+/// More segment ends than this would hide the curves.
 const MOST_BOUNDARIES: usize = 80;
-/// More points than this could not be told apart: they are 6 pixels from each other on average.
+/// Most points that can be distinguished: they are 6 pixels from each other on average.
 const MOST_POINTS: usize = 107;
 /// Radius of a point.
 const POINT: f64 = 2.4;
@@ -34,13 +34,13 @@ const POINT: f64 = 2.4;
 pub(super) struct Sheet<'a> {
     /// Headline: `1 m in 1.35 s, order 4`.
     pub(super) title: &'a str,
-    /// What a reader wants to know besides: segment times, what the planner tells.
+    /// Further lines for the reader: segment times, notes of the planner.
     pub(super) lines: Vec<String>,
-    /// What is drawn of the move.
+    /// The part of the move that is drawn.
     pub(super) window: Window,
     /// Ends of the segments (s), ascending.
     pub(super) boundaries: Vec<f64>,
-    /// Where quantities are at their limits.
+    /// Intervals in which quantities are at their limits.
     pub(super) bindings: Vec<Binding>,
     /// Points of the move: time, position, velocity if it is known (SI).
     pub(super) points: Vec<(f64, f64, Option<f64>)>,
@@ -125,7 +125,7 @@ impl Sheet<'_> {
         format!("{:.decimals$}", to / scale)
     }
 
-    /// What points, the lines of limits and the marks on them mean, as far as there are some.
+    /// Key to the points, the lines of limits and the marks on them, as far as there are some.
     fn draw_key(&self, svg: &mut Vec<String>, y: f64, (has_stretches, has_dots): (bool, bool), has_points: bool) {
         let mut x = LEFT;
         if has_points {
@@ -152,7 +152,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Where a segment ends (pixels); segments too short to be seen end where the next one does.
+    /// Ends of the segments (pixels); segments too short to be seen end where the next one does.
     fn seen_boundaries(&self, time: &Axis) -> Vec<f64> {
         let mut boundaries: Vec<f64> = Vec::new();
         for x in self.boundaries.iter().map(|t| time.at(*t)) {
@@ -165,7 +165,7 @@ impl Sheet<'_> {
 }
 
 impl Sheet<'_> {
-    /// The points that are in sight, by their place (pixels), unless these are too many.
+    /// The visible points by their place (pixels); none if there are too many.
     fn seen_points(&self, time: &Axis) -> Vec<(f64, f64, Option<f64>)> {
         let all = self.points.iter().map(|(t, position, velocity)| (time.at(*t), *position, *velocity));
         let seen: Vec<_> =
@@ -174,7 +174,7 @@ impl Sheet<'_> {
     }
 }
 
-/// A positive number with four significant digits at most.
+/// A positive number with at most four significant digits.
 pub(super) fn four_digits(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     format!("{rounded}")

@@ -1,17 +1,17 @@
-//! A plan for a person.
+//! A plan as text.
 use super::times::Times;
 use super::{NAMES, PlannedMove};
 use crate::text::wrapped;
 use servobench_motion::Profile;
 use servobench_planner::{Peak, Plan};
 
-/// `125.663706 ms` fits.
+/// Width of `125.663706 ms`.
 const TIME: usize = 13;
 const QUANTITY: usize = 16;
 /// Characters in a line.
 const WIDTH: usize = 80;
 
-/// A peak and the limit it keeps (SI); infinite where there is none.
+/// A peak and its limit (SI); infinite without a limit.
 pub(super) struct Kept {
     /// Derivative of position, 1 to 4.
     pub(super) derivative: usize,
@@ -22,7 +22,7 @@ pub(super) struct Kept {
 }
 
 impl PlannedMove {
-    /// Duration, what there is to tell, peaks against limits, segments: in the units in which distance and limits were given,
+    /// Duration, notes, peaks against limits, segments: in the units in which distance and limits were given,
     /// all times in one unit.
     #[must_use]
     pub fn table(&self) -> String {
@@ -69,13 +69,13 @@ impl PlannedMove {
         lines
     }
 
-    /// The largest magnitudes of velocity … with their limits, by direction where the limits differ.
+    /// Largest magnitudes of velocity and higher derivatives with their limits, by direction where the limits differ.
     pub(super) fn kept(&self) -> Vec<Kept> {
         kept(&self.plan)
     }
 }
 
-/// The same of any plan.
+/// Peaks and limits of any plan.
 pub(super) fn kept(plan: &Plan) -> Vec<Kept> {
     let mut all = Vec::new();
     let peaks = plan.peaks().into_iter().zip(plan.largest()).zip(plan.limits()).take(plan.order());
@@ -107,7 +107,7 @@ mod tests {
     };
     use std::f64::consts::TAU;
 
-    /// The table, each line of which fits the screen.
+    /// The table; each line must fit the screen.
     fn table(plan: &PlannedMove) -> String {
         let table = plan.table();
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");

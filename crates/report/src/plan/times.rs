@@ -1,20 +1,20 @@
-//! Times of a plan beside each other: one unit, one number of decimals.
+//! Times of a plan in one unit and with one number of decimals.
 use servobench_metrics::Quantity;
 
-/// To the nanosecond: a plan is read to be typed in somewhere else.
+/// To the nanosecond: times of a plan are typed in elsewhere.
 const DECIMALS_OF_A_SECOND: i32 = 9;
 
-/// How times are written.
+/// Format of times.
 #[derive(Debug)]
 pub(super) struct Times {
     unit: String,
-    /// How much of a second the unit is.
+    /// Size of the unit in seconds.
     scale: f64,
     decimals: usize,
 }
 
 impl Times {
-    /// The unit that suits the `longest` (s), with the decimals that `times` (s) need.
+    /// Format in the unit that suits the `longest` time (s), with the decimals that `times` (s) need.
     pub(super) fn new(longest: f64, times: impl IntoIterator<Item = f64>) -> Self {
         let (unit, scale) = Quantity::axis_unit(longest, "s");
         let exponent: i32 = format!("{scale:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);

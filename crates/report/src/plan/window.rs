@@ -2,20 +2,20 @@
 use crate::error::ReportError;
 use servobench_planner::{Binding, Span};
 
-/// Shortest stretch that is drawn (s), and as a part of the time at its end: numbers along the axis stay apart.
+/// Shortest interval that is drawn (s), and relative to the time at its end: numbers along the axis stay apart.
 const SHORTEST: f64 = 1e-9;
 
-/// From when to when (s).
+/// Start and end (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Window {
     pub(super) from: f64,
     pub(super) to: f64,
-    /// Whether it is the whole move.
+    /// True if the window is the whole move.
     pub(super) is_whole: bool,
 }
 
 impl Window {
-    /// What there is of a move of `duration` (s) from `from` to `to`.
+    /// Window on a move of `duration` (s), `from` and `to` clamped to it.
     pub(super) fn of(duration: f64, from: Option<f64>, to: Option<f64>) -> Result<Self, ReportError> {
         if from.is_none() && to.is_none() {
             return Ok(Self { from: 0.0, to: duration, is_whole: true });
@@ -29,7 +29,7 @@ impl Window {
         }
     }
 
-    /// What is in it of `span`.
+    /// Part of `span` in the window.
     pub(super) fn part(&self, span: Span) -> Option<Span> {
         if self.is_whole {
             return Some(span);
@@ -39,13 +39,13 @@ impl Window {
         (to > from).then_some(Span { start: from, length: to - from, state, ..span })
     }
 
-    /// What is in it of `binding`; an instant stays one.
+    /// Part of `binding` in the window; an instant stays one.
     pub(super) fn part_of_binding(&self, binding: Binding) -> Option<Binding> {
         let (start, end) = (binding.start.max(self.from), (binding.start + binding.length).min(self.to));
         (end >= start).then_some(Binding { start, length: end - start, ..binding })
     }
 
-    /// Whether `time` (s) is in it.
+    /// True if `time` (s) is in the window.
     pub(super) fn contains(&self, time: f64) -> bool {
         (self.from..=self.to).contains(&time)
     }

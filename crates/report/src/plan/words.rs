@@ -1,4 +1,4 @@
-//! What is said of a plan beside its numbers.
+//! Texts about a plan besides its numbers.
 use super::table::Kept;
 use super::{NAMES, PlannedMove};
 use servobench_base::Setpoint;
@@ -12,9 +12,9 @@ use servobench_planner::{
 };
 use std::cmp::Ordering;
 
-/// An excess below this part of a limit is rounding.
+/// An excess below this fraction of a limit is rounding.
 const EXCESS: f64 = 1e-9;
-/// A position that is missed by less (m or rad) is hit: that is rounding.
+/// A smaller deviation from a position (m or rad) is rounding.
 const HIT: f64 = 1e-12;
 
 impl PlannedMove {
@@ -29,7 +29,7 @@ impl PlannedMove {
         }
     }
 
-    /// Which one of its family it is.
+    /// Name of the method within its family.
     pub(super) fn method(&self) -> &'static str {
         match &self.request.generator {
             Generator::PointToPoint(asked) => asked.method.name(),
@@ -43,7 +43,7 @@ impl PlannedMove {
         }
     }
 
-    /// How the samples come about, where there are some.
+    /// Sample grid of the plan, if it has one.
     pub(super) const fn grid(&self) -> Option<Grid> {
         match &self.request.generator {
             Generator::PointToPoint(asked) => asked.grid,
@@ -51,7 +51,7 @@ impl PlannedMove {
         }
     }
 
-    /// Family and method for a person: `order 4, optimal`.
+    /// Family and method as text: `order 4, optimal`.
     pub(super) fn kind(&self) -> String {
         let order = self.plan.order();
         match &self.request.generator {
@@ -77,7 +77,7 @@ impl PlannedMove {
         }
     }
 
-    /// What is moved: `move of 1.00 m`.
+    /// Description of the move: `move of 1.00 m`.
     pub(super) fn what(&self, distance: &str) -> String {
         match &self.request.generator {
             Generator::Table(asked) => format!("{distance} through {} points", asked.knots.len()),
@@ -89,7 +89,7 @@ impl PlannedMove {
         }
     }
 
-    /// What there is to tell, a sentence each.
+    /// Notes on the plan, a sentence each.
     pub(super) fn notes(&self) -> Vec<String> {
         let time = |time: f64| {
             let (unit, scale) = Quantity::axis_unit(time, "s");
@@ -130,12 +130,12 @@ impl PlannedMove {
         notes
     }
 
-    /// Farthest distance beyond its target of a move that passes it and comes back, in words; `None` of any other.
+    /// Largest overshoot beyond the target of a move that passes it and comes back, in words; `None` for any other move.
     fn beyond_target(&self, target: &Target) -> Option<String> {
         let (Target::Position { x, .. }, start, reached) = (target, self.plan.start().x, self.plan.positions()) else {
             return None;
         };
-        // Before the start it may turn round, too: that is not beyond its target.
+        // Before the start it may turn round, too: that is not an overshoot of its target.
         let [above, below] = [reached.highest - x, x - reached.lowest];
         let beyond = match x.total_cmp(&start) {
             Ordering::Greater => above,
@@ -150,7 +150,7 @@ impl PlannedMove {
         })
     }
 
-    /// What is particular to the generator.
+    /// Notes specific to the generator.
     fn of_generator(&self) -> Vec<String> {
         match (&self.request.generator, self.plan.details()) {
             (Generator::Replanning(asked), PlanDetails::Transition { excess, .. }) => {
@@ -201,17 +201,17 @@ impl PlannedMove {
         }
     }
 
-    /// The limits that a table goes beyond, which is followed all the same.
+    /// The limits exceeded by a table, which is followed all the same.
     fn exceeded(&self) -> Option<String> {
         matches!(self.request.generator, Generator::Table(_)).then(|| exceeded(&self.kept())).flatten()
     }
 
-    /// An error of position, far smaller than positions.
+    /// An error of position, much smaller than the positions.
     pub(super) fn show_error(&self, error: f64) -> String {
         if self.units.base() == "m" { DisplayUnit::si("m", 0).text(error) } else { self.show(0, error) }
     }
 
-    /// What filters the plan.
+    /// Filters of the plan.
     fn filters(&self, time: &impl Fn(f64) -> String) -> Option<String> {
         let Filter { shapers, averages } = &self.request.filter;
         let shaper = self.request.filter.impulses().ok().flatten().map(|all| {
@@ -229,7 +229,7 @@ impl PlannedMove {
     }
 }
 
-/// The limits that are exceeded, in words; rounding aside.
+/// The exceeded limits, in words; rounding aside.
 pub(super) fn exceeded(kept: &[Kept]) -> Option<String> {
     let beyond = kept.iter().filter(|kept| kept.limit.is_finite() && kept.peak > kept.limit * (1.0 + EXCESS));
     let beyond: Vec<String> = beyond
@@ -240,12 +240,12 @@ pub(super) fn exceeded(kept: &[Kept]) -> Option<String> {
     (!beyond.is_empty()).then(|| format!("exceeds its limit of {}", beyond.join(" and of ")))
 }
 
-/// A share to six digits behind the point.
+/// A share to six decimals.
 fn rounded(share: f64) -> f64 {
     (1e6 * share).round() / 1e6
 }
 
-/// Where the velocities at the points come from.
+/// Source of the velocities at the points.
 fn velocities(asked: &TableMove) -> String {
     match asked.velocities {
         Velocities::Given if asked.knots.iter().all(|knot| knot.v.is_none()) => "linear from point to point".to_owned(),

@@ -1,4 +1,4 @@
-//! The cells of a heat map: colours, numbers where they have room, marks of what misses a limit.
+//! The cells of a heat map: colours, numbers where they fit, marks of missed limits.
 use super::colours::Colour;
 use super::layers::Layer;
 use super::scale::Scale;
@@ -7,13 +7,13 @@ use super::survey::Survey;
 use crate::drawing::{escaped, text_width};
 use std::collections::BTreeMap;
 
-/// The number in a cell has this much room beside it (pixels), and is of this size.
+/// Padding beside the number in a cell, and size of its letters (pixels).
 const PADDING: f64 = 3.0;
 const NUMBER: f64 = 10.5;
-/// Smaller cells are not marked one by one: what misses a limit has an outline.
+/// Smaller cells are not marked one by one: an outline surrounds those that miss a limit.
 pub(super) const SMALL: f64 = 8.0;
 
-/// A map: its place and size (pixels), and the group of each cell, from left to right and from below to above.
+/// A map: its place and size (pixels), and the group of each cell, from left to right and from bottom to top.
 pub(super) struct Cells<'g> {
     pub(super) corner: [f64; 2],
     pub(super) size: [f64; 2],
@@ -37,10 +37,10 @@ impl Cells<'_> {
         [self.size[0] / self.groups.len() as f64, self.size[1] / rows as f64]
     }
 
-    /// All cells; what goes side by side leaves most places empty.
+    /// All cells; axes that go side by side leave most places empty.
     fn all(&self) -> Vec<Cell> {
         let [width, height] = self.cell_size();
-        // Edges between pixels, so that nothing shines through between two cells.
+        // Edges on whole pixels, so that nothing shows through between two cells.
         let column_at = |column: usize| self.corner[0] + (width * column as f64).round();
         let row_at = |row: usize| self.corner[1] + self.size[1] - (height * row as f64).round();
         let mut cells = Vec::new();
@@ -93,7 +93,7 @@ impl Cells<'_> {
         sheet.push(format!("<rect class=\"o\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/>"));
     }
 
-    /// The edges between what is marked and what is not.
+    /// The edges between marked and unmarked cells.
     fn outline(&self, survey: &Survey<'_, '_>, marked: &[&Cell]) -> String {
         let is_marked = |column: Option<usize>, row: Option<usize>| {
             let group = column.and_then(|column| self.groups.get(column)).zip(row);
@@ -120,7 +120,7 @@ fn mark(cell: &Cell, has_number: bool) -> String {
     cross_path(if has_number { [cell.right - arm - 3.0, cell.top + arm + 3.0] } else { middle }, arm)
 }
 
-/// Whether the numbers of all cells have room in them.
+/// True if the numbers of all cells fit into them.
 fn have_room(layer: &Layer, [width, height]: [f64; 2]) -> bool {
     let texts = layer.spreads.iter().flatten().map(|spread| layer.measure.text(spread.median));
     height >= 17.0

@@ -1,7 +1,7 @@
-//! Colours of values, of series and of what is missing.
+//! Colours of values, of series and of missing values.
 use crate::drawing::COLOURS;
 
-/// The map `viridis` at ten equal distances: of even steps to the eye, and the same order without colour vision and in grey.
+/// The map `viridis` at ten equal distances: perceptually even steps, and the same order without colour vision and in grey.
 ///
 /// Source: S. van der Walt & N. Smith, *A better default colormap for Matplotlib*, SciPy 2015; CC0.
 const VIRIDIS: [[u8; 3]; 10] = [
@@ -16,7 +16,7 @@ const VIRIDIS: [[u8; 3]; 10] = [
     [0xb4, 0xde, 0x2c],
     [0xfd, 0xe7, 0x25],
 ];
-/// Colours that are told apart in a map: cells of the same one are drawn together.
+/// Number of steps between colours of a map: cells of the same one are drawn together.
 const STEPS: f64 = 127.0;
 
 /// A colour of the map.
@@ -24,7 +24,7 @@ const STEPS: f64 = 127.0;
 pub(super) struct Colour([u8; 3]);
 
 impl Colour {
-    /// The colour at `part` of the map, 0 to 1.
+    /// The colour at fraction `part` of the map, 0 to 1.
     pub(super) fn at(part: f64) -> Self {
         let place = (part.clamp(0.0, 1.0) * STEPS).round() / STEPS * (VIRIDIS.len() - 1) as f64;
         let lower = (0..VIRIDIS.len() - 1).rev().find(|index| *index as f64 <= place).unwrap_or(0);
@@ -32,7 +32,7 @@ impl Colour {
         let (one, next) = (VIRIDIS[lower], VIRIDIS[lower + 1]);
         Self([0, 1, 2].map(|channel: usize| {
             let mixed = f64::from(one[channel]) * (1.0 - within) + f64::from(next[channel]) * within;
-            // The number of a byte that is not below it: between 0 and 255.
+            // The smallest byte that is not below it: between 0 and 255.
             (0..=u8::MAX).find(|byte| f64::from(*byte) + 0.5 >= mixed).unwrap_or(u8::MAX)
         }))
     }
@@ -42,7 +42,7 @@ impl Colour {
         format!("#{red:02x}{green:02x}{blue:02x}")
     }
 
-    /// The colour of a text on it.
+    /// Colour of text on it.
     pub(super) fn ink(self) -> &'static str {
         if self.luminance() < 0.36 { "#ffffff" } else { "#1c2330" }
     }
@@ -54,14 +54,14 @@ impl Colour {
     }
 }
 
-/// A series of points: neighbours differ in hue and in lightness, and each has another shape.
+/// Colours of series of points: neighbours differ in hue and in lightness, and each has another shape.
 pub(super) const SERIES: [&str; 6] = [COLOURS[0], "#c77a00", COLOURS[3], COLOURS[1], "#4d5663", "#7a9be0"];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// From dark to light, so that it is read without colours too, and through the published colours.
+    /// From dark to light, so that it can be read without colours, and through the published colours.
     #[test]
     fn the_map_goes_from_dark_to_light() {
         let luminance: Vec<f64> = (0..=20).map(|k| Colour::at(f64::from(k) / 20.0).luminance()).collect();
@@ -71,7 +71,7 @@ mod tests {
         assert_eq!((Colour::at(0.0).ink(), Colour::at(1.0).ink()), ("#ffffff", "#1c2330"));
     }
 
-    /// 4.5 : 1 is asked for by WCAG 2.1; a number in a cell is large enough for 3 : 1 at the least fortunate colour.
+    /// WCAG 2.1 requires 4.5 : 1; a number in a cell is large enough for 3 : 1 at the least favourable colour.
     #[test]
     fn numbers_are_legible_on_every_colour() {
         for k in 0..=127 {

@@ -6,26 +6,26 @@ use crate::style::{Ink, Style};
 use crate::text::{elided, widest, wrapped};
 use servobench_sweep::Outcome;
 
-/// Rows at most; of more the best ones.
+/// Most rows; of more, the best ones.
 const MOST_ROWS: usize = 20;
 /// Columns between two cells.
 const APART: usize = 2;
-/// A line of a heading.
+/// Width of a line of a heading.
 const WORD: usize = 10;
-/// Width of a value, at most: `-814.1 µrad`.
+/// Largest width of a value: `-814.1 µrad`.
 pub(super) const NUMBER: usize = 12;
-/// Width of a key's column, at most.
+/// Largest width of a key's column.
 const KEY: usize = 18;
-/// Lines of a heading at most.
+/// Most lines of a heading.
 const LINES: usize = 4;
-/// Verdict, time and vibration: what the keys leave room for.
+/// Columns for which the keys leave room: verdict, time and vibration.
 const MAIN: usize = 3;
 
 /// A column of the table.
 struct Cells {
     heading: Vec<String>,
     rows: Vec<String>,
-    /// Rows that are to be seen.
+    /// True for rows to highlight.
     bad: Vec<bool>,
     is_number: bool,
 }
@@ -35,7 +35,7 @@ impl Cells {
         widest(self.heading.iter().chain(&self.rows).map(String::as_str))
     }
 
-    /// With what is between it and the next one.
+    /// Width with the gap to the next column.
     fn room(&self) -> usize {
         self.width() + APART
     }
@@ -58,7 +58,7 @@ impl Cells {
     }
 }
 
-/// The table of all combinations; empty where there is one only.
+/// The table of all combinations; empty if there is only one.
 pub(super) fn combinations(survey: &Survey<'_, '_>, style: Style) -> String {
     if survey.dimensions.is_empty() {
         return String::new();
@@ -101,7 +101,7 @@ pub(super) fn combinations(survey: &Survey<'_, '_>, style: Style) -> String {
     text
 }
 
-/// Groups in the order of the rows, and what that order is.
+/// Groups in the order of the rows, and a description of that order.
 fn rows(survey: &Survey<'_, '_>) -> (Vec<usize>, String) {
     let count = survey.table.groups();
     if count <= MOST_ROWS {
@@ -131,7 +131,7 @@ fn of_draws(survey: &Survey<'_, '_>) -> String {
     if survey.is_drawn { format!("; of {draws} draws each") } else { String::new() }
 }
 
-/// What the keys are.
+/// Columns of the keys.
 fn keys(survey: &Survey<'_, '_>, groups: &[usize]) -> Vec<Cells> {
     let of = |dimension: &Dimension| {
         let cells: Vec<String> = groups.iter().map(|group| dimension.label(*group).to_owned()).collect();
@@ -141,13 +141,13 @@ fn keys(survey: &Survey<'_, '_>, groups: &[usize]) -> Vec<Cells> {
     survey.dimensions.iter().map(of).collect()
 }
 
-/// Numbers of the rows, where the keys have no room.
+/// Numbers of the rows, if the keys do not fit.
 fn numbers_of(groups: &[usize]) -> Cells {
     let cells = vec![String::new(); groups.len()];
     Cells { heading: Vec::new(), bad: vec![false; cells.len()], is_number: false, rows: cells }
 }
 
-/// How the runs ended; of draws the share that keeps all limits and its lower bound.
+/// Outcomes of the runs; for draws the share that keeps all limits and its lower bound.
 fn verdicts(survey: &Survey<'_, '_>, groups: &[usize]) -> Cells {
     let bad: Vec<bool> = groups.iter().map(|group| survey.is_marked(*group)).collect();
     if survey.is_drawn {
@@ -166,7 +166,7 @@ fn verdicts(survey: &Survey<'_, '_>, groups: &[usize]) -> Cells {
     Cells { heading: vec!["VERDICT".to_owned()], rows: groups.iter().map(word).collect(), bad, is_number: false }
 }
 
-/// A metric; of draws its median and what 95 % of them are within.
+/// A metric; for draws its median and the bound that 95 % of them keep.
 fn metric(survey: &Survey<'_, '_>, column: usize, groups: &[usize]) -> Cells {
     let measure = Measure::of(&survey.table.columns[column]);
     let spreads: Vec<Option<Spread>> = groups.iter().map(|group| survey.with_never(column, *group)).collect();
@@ -210,7 +210,7 @@ fn line(columns: &[Cells], row: usize, style: Style) -> String {
     format!("{}\n", row.join("  ").trim_end())
 }
 
-/// A name in lines of at most `width` characters, broken behind one of `breaks`; a longer part in the middle is left out.
+/// A name in lines of at most `width` characters, broken after one of `breaks`; the middle of a longer part is left out.
 pub(super) fn parts(name: &str, breaks: &[char], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in name.split_inclusive(breaks) {
@@ -229,7 +229,7 @@ pub(super) fn parts(name: &str, breaks: &[char], width: usize) -> Vec<String> {
     lines
 }
 
-/// `text` in lines of at most `width` characters, broken between words, and within words that are longer.
+/// `text` in lines of at most `width` characters, broken between words, and within longer words.
 pub(super) fn broken(text: &str, width: usize) -> String {
     let mut out = String::new();
     for line in wrapped(text, width.saturating_sub(2)) {
@@ -249,7 +249,7 @@ pub(super) fn faint(text: &str, style: Style) -> String {
     painted(text, Ink::Faint, style)
 }
 
-/// `text` in one colour, in as many lines as it takes.
+/// `text` in one colour, wrapped.
 pub(super) fn painted(text: &str, ink: Ink, style: Style) -> String {
     let lines = broken(text, style.width);
     let lines = lines.lines().map(|line| style.paint(ink, line) + "\n");

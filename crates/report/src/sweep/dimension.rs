@@ -1,41 +1,41 @@
-//! In which respects the groups of a sweep differ.
+//! Dimensions in which the groups of a sweep differ.
 use servobench_results::printable;
 use servobench_sweep::{Arrangement, Table, Value};
 use std::collections::HashSet;
 
-/// Something that has more than one value among the groups: an axis, axes that go side by side, the engines.
+/// A dimension with more than one value among the groups: an axis, axes that go side by side, the engines.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dimension {
     /// The key, or the keys.
     pub(super) name: String,
-    /// As much of the end of it as tells it apart.
+    /// Shortest end of the name that is unique.
     pub(super) short: String,
-    /// The unit of all of its numbers; empty where there is none.
+    /// The unit of all its numbers; empty without one.
     pub(super) unit: String,
-    /// Its values, where all of them are finite numbers in one unit and no two are the same.
+    /// Its values, if all of them are finite numbers in one unit and no two are the same.
     pub(super) numbers: Option<Vec<f64>>,
-    /// Its values in words, each different from the others as far as the values are.
+    /// Its values as text, each different from the others as far as the values are.
     pub(super) labels: Vec<String>,
-    /// The same with the keys: `jerk 50 m/s3`.
+    /// The labels with the keys: `jerk 50 m/s3`.
     words: Vec<String>,
-    /// Of several keys the one whose numbers it has, and the other ones.
+    /// With several keys, the one whose numbers it has, and the others.
     along: Option<(String, String)>,
-    /// Which of its values each group has.
+    /// Index of its value in each group.
     of_group: Vec<usize>,
 }
 
 impl Dimension {
-    /// How many values it has.
+    /// Number of its values.
     pub(super) const fn count(&self) -> usize {
         self.labels.len()
     }
 
-    /// Which of its values `group` has.
+    /// Index of its value in `group`.
     pub(super) fn place(&self, group: usize) -> usize {
         self.of_group[group]
     }
 
-    /// Its value in `group`, in words.
+    /// Its value in `group`, as text.
     pub(super) fn label(&self, group: usize) -> &str {
         &self.labels[self.of_group[group]]
     }
@@ -45,14 +45,14 @@ impl Dimension {
         &self.words[self.of_group[group]]
     }
 
-    /// What stands at an axis of its numbers in `unit`.
+    /// Title of an axis of its numbers in `unit`.
     pub(super) fn axis_title(&self, unit: &str) -> String {
         let (name, others) = self.along.as_ref().map_or((&self.name, None), |(along, others)| (along, Some(others)));
         let with_unit = if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") };
         others.map_or(with_unit.clone(), |others| format!("{with_unit}, and with it {others}"))
     }
 
-    /// Its values without their unit, where that is the same for all.
+    /// Its value without the unit, if that is the same for all.
     pub(super) fn bare(&self, place: usize) -> String {
         let label = &self.labels[place];
         let bare = label.strip_suffix(self.unit.as_str()).map(str::trim_end).filter(|_| !self.unit.is_empty());
@@ -93,7 +93,7 @@ pub(super) fn dimensions(table: &Table<'_>) -> Vec<Dimension> {
     std::iter::once(engines).chain(axes).filter(|dimension| dimension.count() > 1).collect()
 }
 
-/// Axes that go side by side as one dimension, along the first one that has numbers.
+/// Axes that go side by side as one dimension, along the first one with numbers.
 fn side_by_side(axes: Vec<Dimension>) -> Vec<Dimension> {
     if axes.len() < 2 {
         return axes;
@@ -131,7 +131,7 @@ fn are_different(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| seen.insert((number + 0.0).to_bits()))
 }
 
-/// As many parts of the end of key `which` as tell it from the other ones.
+/// Shortest end of key `which` that is unique among the keys.
 fn short(keys: &[String], which: usize) -> String {
     let key = &keys[which];
     let starts = key.char_indices().rev().filter(|(_, c)| *c == '.').map(|(at, _)| at + 1);
@@ -143,7 +143,7 @@ fn short(keys: &[String], which: usize) -> String {
     end.unwrap_or(key).to_owned()
 }
 
-/// `values` in words with so many digits that no two different numbers look the same, four at least.
+/// `values` as text with enough digits that no two different numbers look the same, at least four.
 fn texts(values: &[Value]) -> Vec<String> {
     let numbers: Vec<f64> = values.iter().filter_map(Value::number).collect();
     let mut different: Vec<u64> = numbers.iter().map(|number| number.to_bits()).collect();
@@ -162,13 +162,13 @@ fn texts(values: &[Value]) -> Vec<String> {
     values.iter().map(text).collect()
 }
 
-/// `number` with so many significant digits at most, without zeros at its end.
+/// `number` with at most `digits` significant digits, without trailing zeros.
 pub(super) fn rounded(number: f64, digits: usize) -> String {
     let text = format!("{number:.*e}", digits.saturating_sub(1));
     let rounded: f64 = text.parse().unwrap_or(number);
     let magnitude = rounded.abs();
     if rounded == 0.0 || (1e-4..1e7).contains(&magnitude) || !rounded.is_finite() {
-        // A minus sign before zero reads as a mistake.
+        // A minus sign before zero looks like a mistake.
         format!("{}", rounded + 0.0)
     } else {
         format!("{rounded:e}")

@@ -1,4 +1,4 @@
-//! How the metrics of the draws are distributed: which share is not above which value.
+//! Distributions of the metrics over the draws: the share that is at or below each value.
 use super::layers::{MOST_LAYERS, note_of_left_out};
 use super::metric::Measure;
 use super::scale::{Scale, apart, range, spans_decades};
@@ -7,14 +7,14 @@ use super::survey::{MOST, Survey};
 use crate::drawing::COLOURS;
 use servobench_sweep::Sample;
 
-/// Height of a panel (pixels), of what is above it, and the axis below it.
+/// Heights of a panel, of its heading and of the axis below it (pixels).
 const HEIGHT: f64 = 120.0;
 const HEADING: f64 = 28.0;
 const AXIS: f64 = 24.0;
-/// Steps that are drawn of a distribution.
+/// Most steps drawn of a distribution.
 const MOST_STEPS: usize = 400;
 
-/// The drawing; `None` where no metric was measured.
+/// The drawing; `None` if no metric was measured.
 pub(super) fn distributions(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
     let table = &*survey.table;
     let columns = survey.metrics.in_order(table);
@@ -82,14 +82,14 @@ fn draw_panel(sheet: &mut Sheet, measure: &Measure, sample: &Sample, colour: &st
     }
 }
 
-/// The share of the draws that is not above a value, as a path.
+/// The share of the draws at or below a value, as a path.
 fn steps(sample: &Sample, along: &Scale, up: &Scale) -> String {
     let sorted = sample.sorted();
     let count = sorted.len();
     let shown = count.min(MOST_STEPS);
     let mut parts = vec![format!("M{:.1},{:.1}", along.from, up.at(0.0))];
     for step in 0..shown {
-        // The last of those that a step stands for.
+        // The last of the draws that a step stands for.
         let last = (step + 1) * count / shown - 1;
         let (x, y) = (along.at(sorted[last]), up.at((last + 1) as f64 / count as f64));
         parts.push(format!("H{x:.1}V{y:.1}"));

@@ -1,4 +1,4 @@
-//! Heat maps: each metric as colours over two dimensions, beside each other for the others.
+//! Heat maps: each metric as colours over two dimensions, side by side for the others.
 use super::cells::{Cells, SMALL};
 use super::colours::Colour;
 use super::dimension::Dimension;
@@ -9,29 +9,29 @@ use super::survey::Survey;
 use crate::drawing::{fitted, text_width};
 use std::collections::{BTreeMap, HashMap};
 
-/// Maps of each metric at most, and cells along the two dimensions of a map.
+/// Most maps of each metric, and most cells along the two dimensions of a map.
 const MOST_FACETS: usize = 12;
 const MOST_CELLS: [usize; 2] = [120, 60];
-/// Room for the labels of the upright dimension, at most.
+/// Largest width of the labels of the vertical dimension.
 const LABELS: f64 = 150.0;
-/// At the right: the bar of colours with its labels.
+/// Width at the right: the bar of colours with its labels.
 const BAR: f64 = 112.0;
 const BAR_WIDTH: f64 = 13.0;
-/// Between maps; above each the values of the other dimensions.
+/// Gap between maps; above each the values of the other dimensions.
 const GAP: f64 = 14.0;
 const FACET: f64 = 18.0;
-/// Below the lowest maps: labels and name of the dimension along.
+/// Height below the lowest maps: labels and name of the horizontal dimension.
 const AXIS: f64 = 40.0;
 
-/// A dimension as it is drawn: its values from left to right or from below to above.
+/// A dimension as drawn: its values from left to right or from bottom to top.
 struct Along<'d> {
     dimension: &'d Dimension,
-    /// Places of its values, in order.
+    /// Indices of its values, in order.
     places: Vec<usize>,
 }
 
 impl<'d> Along<'d> {
-    /// `most` of its values at most, at even distances in their order.
+    /// At most `most` of its values, at even distances in their order.
     fn of(dimension: &'d Dimension, most: usize) -> Self {
         let mut places: Vec<usize> = (0..dimension.count()).collect();
         if let Some(numbers) = &dimension.numbers {
@@ -54,7 +54,7 @@ impl<'d> Along<'d> {
     }
 }
 
-/// Where things stand: a map beside the other.
+/// Layout of the maps side by side.
 struct Grid {
     columns: usize,
     rows: usize,
@@ -74,7 +74,7 @@ impl Grid {
         };
         let left = (MARGIN + labels + 8.0).ceil();
         let width = ((WIDTH - BAR - left - GAP * (columns as f64 - 1.0)) / columns as f64).floor();
-        // Cells are not much higher than they are wide, and a map leaves room for the next.
+        // Cells are not much higher than wide, and a map leaves room for the next.
         let most = if columns == 1 { 300.0 } else { 170.0 };
         let cell = (width / nx as f64).clamp(20.0, 34.0);
         let height = (cell * ny as f64).clamp(40.0, most).round();
@@ -101,7 +101,7 @@ impl Grid {
     }
 }
 
-/// The drawing; `None` where nothing was measured.
+/// The drawing; `None` if nothing was measured.
 pub(super) fn heat_maps(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
     let (layers, left_out) = layers(survey);
     if layers.iter().all(|layer| layer.range(true).is_none()) {
@@ -155,7 +155,7 @@ pub(super) fn heat_maps(survey: &Survey<'_, '_>, title: &str) -> Option<String> 
         let y = sheet.y - 6.0;
         let words = fitted(&format!("↑ {}", up.title()), room, LETTERS).unwrap_or_default();
         sheet.text("k", MARGIN, y, &words);
-        // The arrow stands whatever else has no room.
+        // The arrow is drawn even if nothing else fits.
         let words = fitted(&along.title(), room - 16.0, LETTERS).unwrap_or_default();
         sheet.anchored("k", "end", [right, y], &format!("{words} →"));
     }
@@ -170,7 +170,7 @@ fn facets_left_out(shown: usize, all: usize) -> Option<String> {
     (shown < all).then(|| format!("{shown} of {all} combinations of the other keys are drawn"))
 }
 
-/// The combinations of `others` that are drawn by the places of their values, each with a group of it, and how many there are.
+/// The combinations of `others` that are drawn, as indices of their values with a group of each, and the total number.
 fn facets(survey: &Survey<'_, '_>, others: &[&Dimension]) -> (Vec<(Vec<usize>, usize)>, usize) {
     let mut all: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
     for group in 0..survey.table.groups() {
@@ -180,7 +180,7 @@ fn facets(survey: &Survey<'_, '_>, others: &[&Dimension]) -> (Vec<(Vec<usize>, u
     (all.into_iter().take(MOST_FACETS).collect(), count)
 }
 
-/// What stands above each map: keys and values, or values alone where these have no room; then the keys are said once.
+/// Title of each map: keys and values, or values alone where these do not fit; then the keys are named once.
 fn names(facets: &[(Vec<usize>, usize)], others: &[&Dimension], room: f64) -> (Vec<String>, Option<String>) {
     let of = |between: &str, words: &dyn Fn(&Dimension, usize) -> String| -> Vec<String> {
         let name = |group: usize| others.iter().map(|dimension| words(dimension, group)).collect::<Vec<_>>();
@@ -220,10 +220,10 @@ fn cells(
     cells
 }
 
-/// Groups from left to right and from below to above.
+/// Groups from left to right and from bottom to top.
 type Groups = Vec<Vec<Option<usize>>>;
 
-/// What the symbols mean.
+/// Key to the symbols.
 fn key(survey: &Survey<'_, '_>, layers: &[Layer], is_small: bool) -> Vec<(String, String)> {
     let mut key = Vec::new();
     if layers.iter().any(|layer| layer.spreads.iter().any(Option::is_none)) {
@@ -248,7 +248,7 @@ fn bar_scale(layer: &Layer, top: f64, height: f64) -> Option<Scale> {
     Some(Scale::tight(range, is_log, top + height.max(40.0), top))
 }
 
-/// The bar of colours; gives the unit of its numbers.
+/// Draws the bar of colours; returns the unit of its numbers.
 fn draw_bar(sheet: &mut Sheet, layer: &Layer, scale: Option<Scale>, grid: &Grid) -> String {
     let Some(scale) = scale else { return String::new() };
     let x = grid.right() + 18.0;
@@ -258,7 +258,7 @@ fn draw_bar(sheet: &mut Sheet, layer: &Layer, scale: Option<Scale>, grid: &Grid)
     for step in 0..steps {
         let colour = Colour::at((f64::from(step) + 0.5) / f64::from(steps)).hex();
         let y = bottom - height * f64::from(step + 1);
-        // A little more, so that nothing shines through between two.
+        // Slightly larger, so that nothing shows through between two.
         let more = if step == 0 { 0.0 } else { 1.0 };
         sheet.push(format!(
             "<rect x=\"{x:.1}\" y=\"{y:.2}\" width=\"{BAR_WIDTH}\" height=\"{:.2}\" fill=\"{colour}\"/>",
@@ -275,7 +275,7 @@ fn draw_bar(sheet: &mut Sheet, layer: &Layer, scale: Option<Scale>, grid: &Grid)
     unit
 }
 
-/// Labels of the upright dimension, left of the map at `corner`.
+/// Labels of the vertical dimension, left of the map at `corner`.
 fn draw_up(sheet: &mut Sheet, up: &Along<'_>, [x, y]: [f64; 2], grid: &Grid) {
     let height = grid.height / up.places.len() as f64;
     let every = (14.0 / height).ceil().max(1.0);
@@ -289,7 +289,7 @@ fn draw_up(sheet: &mut Sheet, up: &Along<'_>, [x, y]: [f64; 2], grid: &Grid) {
     }
 }
 
-/// Labels of the dimension along, below the map at `corner`.
+/// Labels of the horizontal dimension, below the map at `corner`.
 fn draw_along(sheet: &mut Sheet, along: &Along<'_>, [x, y]: [f64; 2], grid: &Grid) {
     let width = grid.width / along.places.len() as f64;
     let is_named = along.dimension.numbers.is_none();
@@ -298,7 +298,7 @@ fn draw_along(sheet: &mut Sheet, along: &Along<'_>, [x, y]: [f64; 2], grid: &Gri
         let label = if is_named { fitted(&label, (width - 4.0).max(30.0), LETTERS)? } else { label };
         Some((x + width * (column as f64 + 0.5), label))
     });
-    // Nothing reaches into the labels of the next map.
+    // Keeps clear of the labels of the next map.
     let end = x + grid.width + 4.0;
     let labels = labels.filter(|(at, label)| grid.columns == 1 || at + text_width(label, LETTERS) / 2.0 <= end);
     for (at, label) in apart(&labels.collect::<Vec<_>>(), LETTERS) {

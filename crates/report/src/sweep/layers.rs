@@ -1,23 +1,23 @@
-//! What is drawn of each group: layers of values.
+//! Values drawn for each group, in layers.
 use super::metric::Measure;
 use super::scale::range;
 use super::survey::{CONFIDENCE, Spread, Survey};
 
-/// Metrics that are drawn at most.
+/// Most metrics drawn.
 pub(super) const MOST_LAYERS: usize = 4;
-/// What differs by less, in parts of itself, is the same everywhere.
+/// Values that differ by a smaller fraction of themselves are the same everywhere.
 const SAME: f64 = 1e-9;
 
 /// A metric in every group.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layer {
     pub(super) measure: Measure,
-    /// What it is in each group.
+    /// Its spread in each group.
     pub(super) spreads: Vec<Option<Spread>>,
 }
 
 impl Layer {
-    /// The range of what is drawn: of the medians, or of all.
+    /// The range drawn: of the medians, or of everything.
     pub(super) fn range(&self, of_medians: bool) -> Option<(f64, f64)> {
         let spreads = self.spreads.iter().flatten();
         if of_medians {
@@ -27,8 +27,8 @@ impl Layer {
     }
 }
 
-/// Time and vibration, the metrics that differ among the groups, and of draws the share that keeps all limits; and the names of the metrics that
-/// are not drawn.
+/// Time and vibration, the metrics that differ among the groups, and for draws the share that keeps all limits; and the names of the
+/// metrics that are not drawn.
 pub(super) fn layers(survey: &Survey<'_, '_>) -> (Vec<Layer>, Vec<String>) {
     let (mut layers, mut left_out) = (Vec::new(), Vec::new());
     let share = kept(survey);
@@ -62,7 +62,7 @@ pub(super) fn layers(survey: &Survey<'_, '_>) -> (Vec<Layer>, Vec<String>) {
     (layers, left_out)
 }
 
-/// The share that keeps all limits, with its bounds on either side, where it is not all everywhere.
+/// The share that keeps all limits, with its bounds on either side, unless it is all everywhere.
 fn kept(survey: &Survey<'_, '_>) -> Option<Layer> {
     let spread = |group: usize| {
         let kept = survey.kept(group);
@@ -74,7 +74,7 @@ fn kept(survey: &Survey<'_, '_>) -> Option<Layer> {
     (survey.is_judged && survey.is_drawn && is_less).then(|| Layer { measure: Measure::share(), spreads })
 }
 
-/// What the picture is of and what is not in it, in a line or two.
+/// Note on the metrics that are not drawn; `None` without any.
 pub(super) fn note_of_left_out(left_out: &[String]) -> Option<String> {
     let (count, names) = (left_out.len(), left_out.join(", "));
     match count {

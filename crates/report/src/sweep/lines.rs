@@ -1,4 +1,4 @@
-//! Metrics over a single dimension: a line, and of draws the band that nine in ten are within.
+//! Metrics over a single dimension: a line, and for draws the band that holds nine in ten.
 use super::dimension::Dimension;
 use super::layers::{Layer, layers, note_of_left_out};
 use super::metric::Measure;
@@ -7,21 +7,21 @@ use super::sheet::{LEFT, LETTERS, RIGHT, Sheet, WIDTH, cross};
 use super::survey::Survey;
 use crate::drawing::{COLOURS, fitted};
 
-/// Height of a panel (pixels), of what is above it, and the axis below the last one.
+/// Heights of a panel, of its heading and of the axis below the last one (pixels).
 const HEIGHT: f64 = 132.0;
 const HEADING: f64 = 28.0;
 const AXIS: f64 = 42.0;
-/// Beyond so many groups points would be a line of their own.
+/// With more groups than this the points would merge into a line.
 const MOST_POINTS: usize = 60;
-/// Crosses nearer than this would be one.
+/// Crosses closer than this would merge.
 const APART: f64 = 10.0;
-/// More are drawn at even distances only.
+/// Most groups drawn; of more, those at even distances.
 const MOST_GROUPS: usize = 600;
 
-/// A group as it is drawn: its place along, its number.
+/// A group as drawn: its place along the axis, its number.
 type Point = (f64, usize);
 
-/// The drawing; `None` where nothing was measured.
+/// The drawing; `None` if nothing was measured.
 pub(super) fn lines(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
     let (layers, left_out) = layers(survey);
     if layers.iter().all(|layer| layer.range(false).is_none()) {
@@ -58,7 +58,7 @@ pub(super) fn lines(survey: &Survey<'_, '_>, title: &str) -> Option<String> {
     Some(sheet.to_svg())
 }
 
-/// What the symbols mean.
+/// Key to the symbols.
 fn key(survey: &Survey<'_, '_>, layers: &[Layer]) -> Vec<(String, String)> {
     let mut key = Vec::new();
     if (0..survey.table.groups()).any(|group| survey.is_marked(group)) {
@@ -75,7 +75,7 @@ fn key(survey: &Survey<'_, '_>, layers: &[Layer]) -> Vec<(String, String)> {
     key
 }
 
-/// A small upright mark at the foot of a panel.
+/// A small vertical mark at the foot of a panel.
 fn missing([x, y]: [f64; 2]) -> String {
     format!("<path class=\"o\" style=\"stroke-width:2\" d=\"M{x:.1},{:.1}V{:.1}\"/>", y - 5.0, y + 4.0)
 }
@@ -85,7 +85,7 @@ struct Along {
     points: Vec<Point>,
     labels: Vec<Tick>,
     title: String,
-    /// Whether neighbours are joined by a line.
+    /// True if neighbours are joined by a line.
     is_joined: bool,
 }
 
@@ -149,7 +149,7 @@ impl Along {
     fn draw_values(&self, sheet: &mut Sheet, survey: &Survey<'_, '_>, layer: &Layer, colour: &str, value: &Scale) {
         let has_points = self.points.len() <= MOST_POINTS;
         let measured = |point: &&[Point]| layer.spreads[point[0].1].is_some();
-        // Stretches between what was not measured.
+        // Runs of neighbours that were measured, or not.
         let stretches =
             self.points.chunk_by(|one, other| layer.spreads[one.1].is_some() == layer.spreads[other.1].is_some());
         for stretch in stretches.filter(|stretch| measured(stretch)) {

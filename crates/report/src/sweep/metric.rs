@@ -1,4 +1,4 @@
-//! Which metrics of a sweep are looked at, and how their values are written.
+//! Metrics of a sweep that are reported, and the format of their values.
 use super::SweepOptions;
 use super::dimension::rounded;
 use super::scale::range;
@@ -8,14 +8,14 @@ use servobench_metrics::{Name, Quantity};
 use servobench_results::printable;
 use servobench_sweep::{Column, Table};
 
-/// What stands for time, and what for vibration, the first that was measured.
+/// Metrics that stand for time and for vibration; the first one measured is used.
 const TIME: [&str; 3] = ["program_time", Name::MoveAndSettlingTime.as_str(), Name::MoveTime.as_str()];
 const VIBRATION: [&str; 2] = [Name::ResidualVibrationAmplitude.as_str(), Name::ResidualVibrationPp.as_str()];
 
-/// Characters of a unit: `kg·m²/rad` fits.
+/// Most characters of a unit: enough for `kg·m²/rad`.
 const UNIT: usize = 10;
 
-/// A metric of a table, by its place among the columns.
+/// Columns of the metrics in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Metrics {
     pub(super) time: Option<usize>,
@@ -32,7 +32,7 @@ impl Metrics {
         Self { time: of(options.time, &TIME), vibration: of(options.vibration, &VIBRATION) }
     }
 
-    /// The columns that were measured: time and vibration first, the others in their order.
+    /// The columns that were measured: time and vibration first, the others in order.
     pub(super) fn in_order(self, table: &Table<'_>) -> Vec<usize> {
         let main = [self.time, self.vibration];
         let others = (0..table.columns.len()).filter(|place| !main.contains(&Some(*place)));
@@ -45,7 +45,7 @@ fn is_measured(column: &Column) -> bool {
     column.values.iter().any(|value| value.is_finite())
 }
 
-/// What values are, and how they are written.
+/// Kind of values, and their format.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Measure {
     pub(super) name: String,
@@ -57,9 +57,9 @@ pub(super) struct Measure {
 enum Kind {
     /// A metric (SI).
     Metric,
-    /// Parts of a whole, which are shown as percent.
+    /// Fractions of a whole, shown as percent.
     Share,
-    /// What a key takes, in the unit of the file.
+    /// Values of a key, in the unit of the file.
     Key,
 }
 
@@ -73,7 +73,7 @@ impl Measure {
         Self { name: "runs that keep all limits".into(), unit: String::new(), kind: Kind::Share }
     }
 
-    /// What a key takes, in the unit of the file.
+    /// Values of a key, in the unit of the file.
     pub(super) fn key(unit: &str) -> Self {
         Self { name: String::new(), unit: unit.to_owned(), kind: Kind::Key }
     }
@@ -82,7 +82,7 @@ impl Measure {
         matches!(self.kind, Kind::Share)
     }
 
-    /// A value as an engineer writes it.
+    /// A value in engineering notation.
     pub(super) fn text(&self, value: f64) -> String {
         match self.kind {
             Kind::Metric if value.is_infinite() => "never".to_owned(),
@@ -92,7 +92,7 @@ impl Measure {
         }
     }
 
-    /// Values with as many digits as tell the smallest from the largest.
+    /// Values with enough digits to distinguish the smallest from the largest.
     pub(super) fn texts_apart<const N: usize>(&self, values: [f64; N]) -> [String; N] {
         let (low, high) = range(values).unwrap_or_default();
         let digits = Quantity::digits_apart(low, high);
@@ -104,7 +104,7 @@ impl Measure {
         })
     }
 
-    /// A round value at a logarithmic axis. A metric has its unit with it, which changes its prefix along the axis.
+    /// A round value at a logarithmic axis. A metric has its unit with it, because its prefix changes along the axis.
     pub(super) fn round_text(&self, value: f64) -> String {
         match self.kind {
             Kind::Share => percent(value),
@@ -113,12 +113,12 @@ impl Measure {
         }
     }
 
-    /// The unit that is not said with the values of a logarithmic axis.
+    /// The unit that is not written with the values of a logarithmic axis.
     pub(super) fn unit_of_log(&self) -> String {
         if self.kind == Kind::Key { self.unit.clone() } else { String::new() }
     }
 
-    /// Unit of an axis up to `largest`, and how much of the plain unit it is.
+    /// Unit of an axis up to `largest`, and its size in plain units.
     pub(super) fn axis_unit(&self, largest: f64) -> (String, f64) {
         match self.kind {
             Kind::Share => ("%".into(), 0.01),
@@ -127,13 +127,13 @@ impl Measure {
         }
     }
 
-    /// Name and unit, as they stand at an axis.
+    /// Name and unit, as title of an axis.
     pub(super) fn titled(&self, unit: &str) -> String {
         if unit.is_empty() { self.name.clone() } else { format!("{} ({unit})", self.name) }
     }
 }
 
-/// The unit of an axis up to `largest`: numbers that no prefix makes short have a power of ten with the unit.
+/// The unit of an axis up to `largest`: with a power of ten for numbers that no prefix makes short.
 fn power_of_ten(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
     let (symbol, scale) = unit_at(largest, unit, takes_prefix);
     let shown = largest / scale;
@@ -141,7 +141,7 @@ fn power_of_ten(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
         return (symbol, scale);
     }
     let exponent: i32 = format!("{shown:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
-    // Smaller powers are no normal numbers.
+    // Smaller powers are not normal numbers.
     let exponent = (exponent.div_euclid(3) * 3).max(-300);
     let digit = |c: char| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][c.to_digit(10).unwrap_or(0) as usize];
     let raised: String = exponent.unsigned_abs().to_string().chars().map(digit).collect();
@@ -149,12 +149,12 @@ fn power_of_ten(largest: f64, unit: &str, takes_prefix: bool) -> (String, f64) {
     (format!("×10⁻{raised} {symbol}").trim_end().to_owned(), scale * power)
 }
 
-/// A share in percent, to a tenth, beyond 99 % to a hundredth: what is not all is not 100 %.
+/// A share in percent, to a tenth, beyond 99 % to a hundredth: less than all is never shown as 100 %.
 pub(super) fn percent(share: f64) -> String {
     in_percent(share, f64::round)
 }
 
-/// A lower bound of a share: never more than it is.
+/// A lower bound of a share, rounded down.
 pub(super) fn at_least(share: f64) -> String {
     in_percent(share, f64::floor)
 }
@@ -162,7 +162,7 @@ pub(super) fn at_least(share: f64) -> String {
 fn in_percent(share: f64, round: fn(f64) -> f64) -> String {
     let percent = 100.0 * share;
     let (decimals, steps) = if percent > 99.0 { (2, 100.0) } else { (1, 10.0) };
-    // Of 29 % the product is 28.999999999999996.
+    // For 29 % the product is 28.999999999999996.
     let shown = round(percent * steps + 1e-9) / steps;
     match share {
         _ if !share.is_finite() => "–".to_owned(),

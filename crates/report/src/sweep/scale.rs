@@ -1,13 +1,13 @@
-//! From values to pixels, linear or logarithmic, with round numbers along it.
+//! Mapping from values to pixels, linear or logarithmic, with round numbers along it.
 use super::metric::Measure;
 use crate::drawing::ticks;
 use servobench_metrics::{round_above, round_below};
 
-/// Values that span more powers of ten than this are on a logarithmic scale.
+/// Values that span more decades than this are on a logarithmic scale.
 const DECADES: f64 = 1.5;
-/// Room beyond the outermost values, as a part of the whole.
+/// Margin beyond the outermost values, as a fraction of the whole.
 const ROOM: f64 = 0.04;
-/// What differs by less, in parts of itself, is the same.
+/// Values that differ by a smaller fraction of themselves are the same.
 const SAME: f64 = 1e-9;
 
 /// A scale from values to pixels.
@@ -33,12 +33,12 @@ pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
     })
 }
 
-/// Whether values in this range are better seen on a logarithmic scale.
+/// True if values in this range are easier to read on a logarithmic scale.
 pub(super) fn spans_decades((low, high): (f64, f64)) -> bool {
     low > 0.0 && high.log10() - low.log10() > DECADES
 }
 
-/// Whether `numbers` were chosen at about equal ratios: those are more alike than the distances.
+/// True if `numbers` were chosen at about equal ratios: the ratios are more uniform than the differences.
 pub(super) fn are_spaced_by_ratio(numbers: &[f64]) -> bool {
     let mut sorted = numbers.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -53,7 +53,7 @@ pub(super) fn are_spaced_by_ratio(numbers: &[f64]) -> bool {
 }
 
 impl Scale {
-    /// A scale that has the values from `low` to `high`, and room beyond them; a scale of shares has all from none to all.
+    /// A scale of the values from `low` to `high` with a margin; a scale of shares goes from none to all.
     pub(super) fn with_room((low, high): (f64, f64), is_log: bool, from: f64, to: f64) -> Self {
         let tight = Self::tight((low, high), is_log, from, to);
         let room = ROOM * (to - from);
@@ -65,7 +65,7 @@ impl Scale {
         }
     }
 
-    /// A scale whose ends are `low` and `high`; about a single value there is as much as it is itself on either side.
+    /// A scale with the ends `low` and `high`; around a single value from half to twice it (logarithmic), or 5 % to either side.
     pub(super) fn tight((low, high): (f64, f64), is_log: bool, from: f64, to: f64) -> Self {
         let largest = low.abs().max(high.abs());
         // Half of the smallest numbers is 0, which has no logarithm.
@@ -74,20 +74,20 @@ impl Scale {
         let (low, high) = match (is_single, is_log) {
             (false, _) => (low, high),
             (true, true) => (low / 2.0, high * 2.0),
-            // Of the smallest numbers that is nothing.
+            // For the smallest numbers the margin would be zero.
             (true, false) if largest > f64::MIN_POSITIVE => (low - 0.05 * largest, high + 0.05 * largest),
             (true, false) => (-1.0, 1.0),
         };
         Self { low: low.max(-f64::MAX), high: high.min(f64::MAX), is_log, from, to }
     }
 
-    /// How far `value` is along the scale: 0 at the low end, 1 at the high one.
+    /// Place of `value` along the scale: 0 at the low end, 1 at the high one.
     pub(super) fn part(&self, value: f64) -> f64 {
         if self.is_log {
             let (low, high) = (self.low.log10(), self.high.log10());
             return (value.log10() - low) / (high - low);
         }
-        // In parts of the largest, so that no difference is beyond all numbers.
+        // Relative to the largest, so that no difference overflows.
         let largest = self.low.abs().max(self.high.abs());
         let (low, high) = (self.low / largest, self.high / largest);
         (value / largest - low) / (high - low)
@@ -107,7 +107,7 @@ impl Scale {
         self.low * (1.0 - part) + self.high * part
     }
 
-    /// The unit that stands at the scale, and about `wanted` round values.
+    /// The unit at the scale, and about `wanted` round values.
     pub(super) fn ticks(&self, measure: &Measure, wanted: f64) -> (String, Vec<Tick>) {
         if self.is_log {
             return (measure.unit_of_log(), self.powers(measure, wanted));
@@ -123,7 +123,7 @@ impl Scale {
         (unit, ticks.into_iter().map(|(value, label)| (self.at(value * scale), label)).collect())
     }
 
-    /// Powers of ten, some of them where they are many, and parts of them where they are few.
+    /// Powers of ten, only some if there are many, with fractions of them if there are few.
     fn powers(&self, measure: &Measure, wanted: f64) -> Vec<Tick> {
         let power = |exponent: f64| format!("1e{exponent:.0}").parse::<f64>().unwrap_or(1.0);
         let (low, high) = (self.low.log10(), self.high.log10());
@@ -135,7 +135,7 @@ impl Scale {
             count => ((count / wanted).ceil().max(1.0), &[1.0]),
         };
         let mut ticks = Vec::new();
-        // One below: parts of that power may be in sight.
+        // One below: parts of that power may be visible.
         let mut exponent = if every > 1.0 { (first / every).ceil() * every } else { first - 1.0 };
         while exponent <= last && ticks.len() < 60 {
             ticks.extend(parts.iter().map(|part| part * power(exponent)).filter(|value| {
@@ -148,7 +148,7 @@ impl Scale {
     }
 }
 
-/// Those of `ticks`, in order, whose labels of `size` pixels keep apart along a line.
+/// Those of `ticks`, in order, whose labels of `size` pixels do not overlap along a line.
 pub(super) fn apart(ticks: &[Tick], size: f64) -> Vec<Tick> {
     let mut end = f64::NEG_INFINITY;
     let mut kept = Vec::new();
@@ -190,7 +190,7 @@ mod tests {
         assert!(many.len() >= 3 && many.len() <= 7, "{many:?}");
     }
 
-    /// A single value, zero, the smallest numbers: a scale is one in any case.
+    /// A single value, zero, the smallest numbers: the scale is valid in any case.
     #[test]
     fn a_value_is_in_sight_whatever_it_is() {
         for range in

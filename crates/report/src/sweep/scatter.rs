@@ -12,21 +12,21 @@ use std::collections::{HashMap, HashSet};
 const HEIGHT: f64 = 360.0;
 const HEADING: f64 = 28.0;
 const AXIS: f64 = 42.0;
-/// A row of the list below.
+/// Height of a row of the list below.
 const ROW: f64 = 17.0;
-/// Points at most, and combinations that are named.
+/// Most points, and most combinations that are named.
 const MOST_POINTS: usize = 3000;
 const MOST_NAMES: usize = 12;
-/// Numbers nearer than this to each other would be one.
+/// Numbers closer together than this would merge.
 const APART: f64 = 15.0;
 
-/// A combination as it is drawn.
+/// A combination as drawn.
 struct Point {
     group: usize,
     at: [f64; 2],
 }
 
-/// The drawing; `None` where no combination has both numbers.
+/// The drawing; `None` if no combination has both numbers.
 pub(super) fn scatter(survey: &Survey<'_, '_>, title: &str, note: &str) -> Option<String> {
     let (time, vibration) = (survey.metrics.time?, survey.metrics.vibration?);
     let [along, up] = [time, vibration].map(|column| Measure::of(&survey.table.columns[column]));
@@ -91,7 +91,7 @@ pub(super) fn scatter(survey: &Survey<'_, '_>, title: &str, note: &str) -> Optio
     Some(sheet.to_svg())
 }
 
-/// The dimension that points have their colours by: names before numbers, few values before many.
+/// The dimension that colours the points: names before numbers, few values before many.
 fn series<'s>(survey: &'s Survey<'_, '_>) -> Option<&'s Dimension> {
     let few = survey.dimensions.iter().filter(|dimension| dimension.count() <= SERIES.len());
     let others = |dimension: &&Dimension| survey.dimensions.len() > 1 || dimension.numbers.is_none();
@@ -116,7 +116,7 @@ fn draw_axes(sheet: &mut Sheet, [along, up]: [&Measure; 2], [x, y]: [&Scale; 2])
     sheet.anchored("k", "middle", [f64::midpoint(x.from, x.to), y.from + 35.0], &words);
 }
 
-/// What colours and shapes mean.
+/// Key to the colours and shapes.
 fn key(survey: &Survey<'_, '_>, series: Option<&Dimension>) -> Vec<(String, String)> {
     let mut key = Vec::new();
     if let Some(dimension) = series {
@@ -143,7 +143,7 @@ fn draw_point(sheet: &mut Sheet, survey: &Survey<'_, '_>, series: Option<&Dimens
     sheet.push(shape(place, point.at, if is_front { 5.2 } else { 3.6 }, look));
 }
 
-/// How a point is filled and outlined.
+/// Fill and outline of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Look {
     Plain,
@@ -174,7 +174,7 @@ fn shape(place: usize, [x, y]: [f64; 2], size: f64, look: Look) -> String {
     format!("<path d=\"M{}Z\" {style}/>", path.join("L"))
 }
 
-/// The border of what is beaten: from the top down to the fastest one, along and down to the next, at last to the right.
+/// The border of the dominated region: from the top down to the fastest point, along and down to the next, at last to the right.
 fn draw_front(sheet: &mut Sheet, front: &[&Point], top: f64) {
     let Some(first) = front.first() else { return };
     let corners: Vec<String> = front.iter().map(|point| format!("H{:.1}V{:.1}", point.at[0], point.at[1])).collect();
@@ -182,12 +182,12 @@ fn draw_front(sheet: &mut Sheet, front: &[&Point], top: f64) {
     sheet.push(format!("<path class=\"f\" d=\"M{start:.1},{top:.1}{}H{end:.1}\"/>", corners.concat()));
 }
 
-/// Numbers beside points of the front, where there is room for them; gives the groups that have one.
+/// Draws numbers beside points of the front, where there is room; returns the groups that have one.
 fn draw_numbers(sheet: &mut Sheet, front: &[&Point], [top, bottom]: [f64; 2]) -> Vec<usize> {
     let mut places: Vec<[f64; 2]> = Vec::new();
     let mut named = Vec::new();
     for point in spread_out(front) {
-        // To the lower left there is nothing: nothing is smaller in both.
+        // The lower left is free: no point is smaller in both.
         let [x, y] = point.at;
         let width = text_width(&(named.len() + 1).to_string(), LETTERS) * BOLD / 2.0;
         let left = [[x - width - 6.0, y + 14.0], [x - width - 9.0, y + 4.0], [x, y + 18.0]];
@@ -210,7 +210,7 @@ fn draw_numbers(sheet: &mut Sheet, front: &[&Point], [top, bottom]: [f64; 2]) ->
     named
 }
 
-/// As many of the front as are named: the ends, and what is between them at even distances in its order.
+/// Points of the front that are named: the ends, and those between at even distances in its order.
 fn spread_out<'p>(front: &[&'p Point]) -> Vec<&'p Point> {
     let count = front.len();
     if count <= MOST_NAMES {
@@ -219,7 +219,7 @@ fn spread_out<'p>(front: &[&'p Point]) -> Vec<&'p Point> {
     (0..MOST_NAMES).map(|k| front[k * (count - 1) / (MOST_NAMES - 1)]).collect()
 }
 
-/// What the numbered ones are.
+/// Draws the list of the numbered points.
 fn draw_list(sheet: &mut Sheet, survey: &Survey<'_, '_>, named: &[usize], [along, up]: [(&Measure, usize); 2]) {
     let value = |(measure, column): (&Measure, usize), group: usize| {
         survey.spread(column, group).map_or(String::new(), |spread| measure.text(spread.median))

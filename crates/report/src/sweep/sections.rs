@@ -1,4 +1,4 @@
-//! What stands below the combinations: quantiles, sensitivities, the front, remarks.
+//! Sections below the combinations: quantiles, sensitivities, the front, remarks.
 use super::combinations::{NUMBER as WIDEST, broken, faint, painted};
 use super::dimension::rounded;
 use super::metric::{Measure, percent};
@@ -7,22 +7,22 @@ use crate::style::{Ink, Style};
 use crate::text::{elided, widest};
 use servobench_sweep::{Influence, Outcome, Sample, Sensitivity, Value};
 
-/// Metrics whose sensitivities are told, and keys of each.
+/// Most metrics whose sensitivities are listed, and most keys of each.
 const METRICS: usize = 4;
 const METRICS_OF_COMBINATIONS: usize = 2;
 const KEYS: usize = 8;
-/// Combinations of the front.
+/// Most combinations of the front.
 const FRONT: usize = 12;
-/// A value in display units.
+/// Width of a value in display units.
 const NUMBER: usize = 9;
-/// `100 %`.
+/// Width of `100 %`.
 const SHARE: usize = 5;
-/// Beyond so many standard deviations it is not chance.
+/// Standard deviations beyond which it is not chance.
 const BY_CHANCE: f64 = 2.0;
-/// Smaller shares have no line of their own.
+/// Smaller shares are not listed.
 const LEAST: f64 = 0.005;
 
-/// Quantiles of each metric, where nothing but draws varied.
+/// Quantiles of each metric, if only draws varied.
 pub(super) fn quantiles(survey: &Survey<'_, '_>, style: Style) -> String {
     if !(survey.is_drawn && survey.dimensions.is_empty()) {
         return String::new();
@@ -69,9 +69,9 @@ pub(super) fn quantiles(survey: &Survey<'_, '_>, style: Style) -> String {
     text
 }
 
-/// Quantiles, the bound of the largest of them and the mean, in digits that tell them apart.
+/// Quantiles, the bound of the largest of them and the mean, in enough digits to distinguish them.
 fn cells(measure: &Measure, sample: &Sample) -> [String; 5] {
-    // Half of the rest on either side: the bound alone is as sure as is said.
+    // Half of the remainder on either side: the bound alone then has the stated confidence.
     let [_, bound] = sample.interval(MOST, 2.0 * CONFIDENCE - 1.0);
     let [low, median, high] = [1.0 - MOST, 0.5, MOST].map(|share| sample.quantile(share));
     let [low, median, high, most, mean] =
@@ -79,7 +79,7 @@ fn cells(measure: &Measure, sample: &Sample) -> [String; 5] {
     [low, median, high, bound.map_or("–".to_owned(), |_| most), mean].map(|cell| elided(&cell, WIDEST))
 }
 
-/// Which key costs how much.
+/// Cost of each key.
 pub(super) fn sensitivities(survey: &Survey<'_, '_>, style: Style) -> String {
     let (mut text, table) = (String::new(), &*survey.table);
     let most = if survey.dimensions.is_empty() { METRICS } else { METRICS_OF_COMBINATIONS };
@@ -116,7 +116,7 @@ fn whole(share: f64) -> String {
     if share < LEAST { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Whether a key has a share that is worth a line.
+/// True if the share of a key is large enough to list.
 fn is_told(key: &Influence) -> bool {
     key.share >= LEAST && key.share > BY_CHANCE * key.chance
 }
@@ -139,14 +139,14 @@ fn influence(key: &Influence, measure: &Measure, style: Style) -> String {
     beside(&whole(key.share), &format!("{name}: {words}"), style)
 }
 
-/// `text` in as many lines as it takes, to the right of `share`.
+/// `text` wrapped to the right of `share`.
 fn beside(share: &str, text: &str, style: Style) -> String {
     let lines = broken(text, style.width.saturating_sub(SHARE + 2).max(20));
     let line = |(k, line): (usize, &str)| format!("{:>SHARE$}  {line}\n", if k == 0 { share } else { "" });
     lines.lines().enumerate().map(line).collect()
 }
 
-/// Nothing is chosen: why there is no front.
+/// Explanation of a missing front: all keys describe the machine, so that nothing is left to choose.
 pub(super) fn no_choice(survey: &Survey<'_, '_>, given: &[&str], style: Style) -> String {
     if survey.dimensions.is_empty() || survey.metrics.time.is_none() || survey.metrics.vibration.is_none() {
         return String::new();
@@ -159,7 +159,7 @@ fn is_or_are(given: &str) -> &'static str {
     if given.contains(", ") || given == "the engines" { "are" } else { "is" }
 }
 
-/// The combinations that no other one beats in time and vibration, `at_worst` over what is given.
+/// The combinations that no other one beats in time and vibration, `at_worst` over the given keys.
 pub(super) fn front(survey: &Survey<'_, '_>, at_worst: &str, seed: &str, style: Style) -> String {
     let (Some(time), Some(vibration)) = (survey.metrics.time, survey.metrics.vibration) else { return String::new() };
     let front = survey.front();
@@ -209,7 +209,7 @@ pub(super) fn front(survey: &Survey<'_, '_>, at_worst: &str, seed: &str, style: 
     text
 }
 
-/// What is to be known of the numbers above.
+/// Remarks on the numbers above.
 pub(super) fn remarks(survey: &Survey<'_, '_>, seed: &str, style: Style) -> String {
     let of = survey.table.outcomes.len();
     let runs = |count: usize| if count == 1 { "run" } else { "runs" };

@@ -1,34 +1,34 @@
-//! What drawings of sweeps have in common: the page, its head, keys and notes.
+//! Common parts of drawings of sweeps: the page, its head, keys and notes.
 use crate::drawing::{STYLE as SHARED, escaped, fitted, text_width};
 
-/// Width of the page (pixels), as of the other drawings.
+/// Width of the page (pixels), the same as for other drawings.
 pub(super) const WIDTH: f64 = 860.0;
 pub(super) const MARGIN: f64 = 14.0;
-/// Room at the left and at the right of a panel.
+/// Margins at the left and right of a panel.
 pub(super) const LEFT: f64 = 84.0;
 pub(super) const RIGHT: f64 = 26.0;
 /// Sizes of letters: title, label, name of a panel.
 const TITLE: f64 = 17.0;
 pub(super) const LETTERS: f64 = 11.0;
 pub(super) const NAME: f64 = 13.0;
-/// Bold letters are that much wider.
+/// Bold letters are wider by this factor.
 pub(super) const BOLD: f64 = 1.12;
-/// Lines of notes below.
+/// Height of a line of the notes below.
 const NOTE: f64 = 17.0;
-/// Cells and lines; ink of what is missing and of what misses a limit.
+/// Cells and lines; ink of missing values and of missed limits.
 const STYLE: &str = ".c{fill:none;stroke-width:2;stroke-linejoin:round}.d{opacity:.17;stroke:none}.w{stroke-width:1.4;fill:none}\
 .q{stroke:#5b6472;stroke-width:1;stroke-dasharray:4 3;fill:none}.x{stroke:#c2303a;stroke-width:1.6;fill:none}\
 .h{stroke:#ffffff;stroke-width:3.6;fill:none;stroke-linecap:round}.v{font-size:10.5px}.o{fill:none;stroke:#9aa3b0;stroke-width:1}\
 .r{font-size:11px}.f{fill:none;stroke:#1c2330;stroke-width:1.2;stroke-dasharray:5 3}.m{font-size:11px;font-weight:600;\
 paint-order:stroke;stroke:#ffffff;stroke-width:3px}";
-/// Hatching of what was not measured.
+/// Hatching of values that were not measured.
 const HATCHED: &str = "<defs><pattern id=\"sweep-not-measured\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\" \
 patternTransform=\"rotate(45)\"><rect width=\"6\" height=\"6\" fill=\"#eef0f3\"/><rect width=\"2\" height=\"6\" fill=\"#c9cfd8\"/></pattern></defs>";
 
-/// A drawing under way: what is on it, and how far down it goes.
+/// A drawing in progress: its parts, and its current height.
 pub(super) struct Sheet {
     parts: Vec<String>,
-    /// What is above is done (pixels).
+    /// Bottom of the finished part (pixels).
     pub(super) y: f64,
     title: String,
 }
@@ -70,7 +70,7 @@ impl Sheet {
         self.parts.push(format!("<path class=\"{class}\" d=\"M{x1:.1},{y1:.1}L{x2:.1},{y2:.1}\"/>"));
     }
 
-    /// The name of a panel and the unit at its scale, with what stands at the right end of the line.
+    /// The name of a panel and the unit of its scale, with a text at the right end of the line.
     pub(super) fn heading(&mut self, y: f64, name: &str, unit: &str, colour: &str, right: &str) {
         let room = WIDTH - 2.0 * MARGIN - text_width(unit, LETTERS) - text_width(right, LETTERS) - 24.0;
         let name = fitted(name, room / BOLD, NAME).unwrap_or_default();
@@ -85,7 +85,7 @@ impl Sheet {
         }
     }
 
-    /// Symbols with their meanings, side by side, in as many rows as it takes. A symbol is drawn about its place.
+    /// Symbols with their meanings, side by side, in as many rows as needed. A symbol is drawn about its place.
     pub(super) fn key(&mut self, entries: &[(String, String)]) {
         let mut x = MARGIN;
         if entries.is_empty() {
@@ -128,7 +128,7 @@ impl Sheet {
     }
 }
 
-/// `text` in lines that fit on the page in letters of `size`, two at most.
+/// `text` in at most two lines that fit on the page in letters of `size`.
 fn lines(text: &str, size: f64) -> Vec<String> {
     let room = WIDTH - 2.0 * MARGIN;
     let mut lines: Vec<String> = Vec::new();
@@ -152,7 +152,7 @@ fn lines_fit(line: &str, word: &str, room: f64, size: f64) -> bool {
     text_width(line, size) + text_width(" ", size) + text_width(word, size) <= room
 }
 
-/// A small cross about a place: what misses a limit.
+/// A small cross about a place: a missed limit.
 pub(super) fn cross(place: [f64; 2], arm: f64) -> String {
     crosses(&cross_path(place, arm))
 }
@@ -163,7 +163,7 @@ pub(super) fn cross_path([x, y]: [f64; 2], arm: f64) -> String {
     format!("M{:.1},{:.1}l{whole:.1},{whole:.1}m-{whole:.1},0l{whole:.1},-{whole:.1}", x - arm, y - arm)
 }
 
-/// Crosses, or an outline, by their path: on a light ground that sets them off from every colour.
+/// Crosses, or an outline, by their path: with a light border that sets them off from every colour.
 pub(super) fn crosses(path: &str) -> String {
     format!("<path class=\"h\" d=\"{path}\"/><path class=\"x\" d=\"{path}\"/>")
 }

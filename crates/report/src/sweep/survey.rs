@@ -1,32 +1,33 @@
-//! A table of runs as it is looked at: in which respects its groups differ, and what each of them gave.
+//! A table of runs prepared for a report: the dimensions in which its groups differ, and the results of each.
 use super::SweepOptions;
 use super::dimension::{Dimension, dimensions};
 use super::metric::{Metrics, at_least, percent};
 use servobench_sweep::{Outcome, Proportion, Sample, Table};
 use std::borrow::Cow;
 
-/// Confidence of every bound that is said.
+/// Confidence of every bound reported.
 pub(super) const CONFIDENCE: f64 = 0.95;
-/// Values that differ by less, as a part of the smaller, are equal.
+/// Values that differ by a smaller fraction of the smaller one are equal.
 const SAME: f64 = 0.01;
-/// The share that most machines are within.
+/// Share of the machines that counts as most.
 pub(super) const MOST: f64 = 0.95;
 
-/// A table as it is looked at.
+/// A table prepared for a report.
 #[derive(Debug)]
 pub(super) struct Survey<'t, 'a> {
     pub(super) table: Cow<'t, Table<'a>>,
     pub(super) dimensions: Vec<Dimension>,
     pub(super) metrics: Metrics,
-    /// Whether each group is several draws.
+    /// True if each group consists of several draws.
     pub(super) is_drawn: bool,
-    /// True where runs are judged: they have limits, or one of them broke a requirement.
+    /// True if runs are judged: they have limits, or one of them broke a requirement.
     pub(super) is_judged: bool,
-    /// Lengths that are equal differ by this much at most.
+    /// Largest difference of lengths that count as equal.
     length: f64,
 }
 
-/// What a metric is in a group: of a single run its value, of draws what half of them, and all but a twentieth on either side, are within.
+/// Spread of a metric in a group: the value of a single run; for draws the median, and the bounds that leave out a twentieth on either
+/// side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
     pub(super) low: f64,
@@ -48,7 +49,7 @@ impl<'t, 'a> Survey<'t, 'a> {
         }
     }
 
-    /// Column `column` in `group`, as far as it can be drawn; `None` where it was not measured, or is never.
+    /// Column `column` in `group`, as far as it can be drawn; `None` if it was not measured or is never reached.
     pub(super) fn spread(&self, column: usize, group: usize) -> Option<Spread> {
         let spread = self.with_never(column, group)?;
         let finite = self.table.values(&self.table.columns[column], group).iter().copied().filter(|x| x.is_finite());
@@ -56,7 +57,7 @@ impl<'t, 'a> Survey<'t, 'a> {
         spread.median.is_finite().then_some(Spread { high, ..spread })
     }
 
-    /// The same with times that are infinite since they are never reached.
+    /// The spread including infinite times of targets that are never reached.
     pub(super) fn with_never(&self, column: usize, group: usize) -> Option<Spread> {
         let values = self.table.values(&self.table.columns[column], group);
         if let [value] = values {
@@ -67,13 +68,13 @@ impl<'t, 'a> Survey<'t, 'a> {
         Some(Spread { low, median, high })
     }
 
-    /// How many runs of `group` keep all limits. What has no verdict does not keep them.
+    /// Share of the runs of `group` that keep all limits. A run without a verdict counts as not keeping them.
     pub(super) fn kept(&self, group: usize) -> Proportion {
         let good = self.table.count_of(Outcome::Good, group);
         Proportion::new(good as u64, (self.table.rows(group).len() - good) as u64)
     }
 
-    /// Whether `group` is to be marked, since a run of it, of draws more than a twentieth, does not keep all limits.
+    /// True if `group` is marked, because a run of it, or more than a twentieth of its draws, does not keep all limits.
     pub(super) fn is_marked(&self, group: usize) -> bool {
         let kept = self.kept(group);
         kept.trials() > 0 && kept.share() < if self.is_drawn { MOST } else { 1.0 }
@@ -89,18 +90,18 @@ impl<'t, 'a> Survey<'t, 'a> {
         }
     }
 
-    /// Number of runs that ended so.
+    /// Number of runs with this outcome.
     pub(super) fn count_of(&self, of: Outcome) -> usize {
         self.table.outcomes.iter().filter(|outcome| **outcome == of).count()
     }
 
-    /// What `group` is, in words: `jerk 50 m/s3, order 4`.
+    /// Keys and values of `group`, as text: `jerk 50 m/s3, order 4`.
     pub(super) fn words(&self, group: usize) -> String {
         self.dimensions.iter().map(|dimension| dimension.words(group)).collect::<Vec<_>>().join(", ")
     }
 
-    /// The groups that no other one beats in time and vibration, the fastest first; of draws by their medians. Those that are marked are not
-    /// among them. Of nearly equal values none is the smaller.
+    /// The groups that no other one beats in time and vibration, the fastest first; for draws by their medians. Marked groups are
+    /// left out. Nearly equal values count as equal.
     pub(super) fn front(&self) -> Vec<usize> {
         let median = |column, group| self.with_never(column, group).map_or(f64::NAN, |spread| spread.median);
         let (Some(time), Some(vibration)) = (self.metrics.time, self.metrics.vibration) else { return Vec::new() };
@@ -115,12 +116,12 @@ impl<'t, 'a> Survey<'t, 'a> {
         servobench_sweep::front_apart(&pairs, &[equal(0.0), equal(self.length)])
     }
 
-    /// True where groups are left out of the front since they failed.
+    /// True if groups are left out of the front because they failed.
     pub(super) fn is_front_of_good(&self) -> bool {
         (0..self.table.groups()).any(|group| self.is_marked(group))
     }
 
-    /// What the front is of.
+    /// Condition on the groups of the front.
     pub(super) fn of_good(&self) -> &'static str {
         match (self.is_front_of_good(), self.is_drawn) {
             (false, _) => "",

@@ -7,14 +7,14 @@ use std::fmt::Write;
 
 /// Height of a panel (pixels).
 pub(super) const HEIGHT: f64 = 104.0;
-/// The panels from top to bottom: name, colour, set-point, what the load does.
+/// The panels from top to bottom: name, colour, set-point, motion of the load.
 const PANELS: [(&str, &str, Signal, Signal); 2] = [
     ("velocity", COLOURS[1], Signal::SetpointVelocity, Signal::LoadVelocity),
     ("position", COLOURS[0], Signal::SetpointPosition, Signal::LoadPosition),
 ];
-/// Values from here on are no motion, but a loop that diverged.
+/// Larger values are not a motion, but a loop that diverged.
 const DIVERGED: f64 = 1e100;
-/// Values within this part of the largest are one, of which only rounding would be drawn.
+/// Values within this fraction of the largest are one, of which only rounding would be drawn.
 const SAME: f64 = 1e-12;
 
 /// One quantity over time.
@@ -30,7 +30,7 @@ pub(super) struct Panel<'a> {
 /// One curve.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// What it is of: `set-point`, `load`.
+    /// Quantity of the curve: `set-point`, `load`.
     pub(super) label: &'static str,
     /// Class of its style.
     pub(super) class: &'static str,
@@ -38,7 +38,7 @@ pub(super) struct Line {
     points: Vec<(f64, f64)>,
 }
 
-/// The panels of what `recording` has in `window`, thinned for `width` pixels.
+/// The panels of `recording` in `window`, thinned for `width` pixels.
 pub(super) fn panels(recording: &Recording, window: Window, width: f64) -> Vec<Panel<'_>> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand pixels")]
     let buckets = width as usize;
@@ -60,7 +60,7 @@ pub(super) fn panels(recording: &Recording, window: Window, width: f64) -> Vec<P
     PANELS.into_iter().filter_map(panel).collect()
 }
 
-/// What is seen of `channel` in `window`, to its very ends as far as it is recorded.
+/// Visible points of `channel` in `window`, up to its very ends as far as it is recorded.
 fn points(recording: &Recording, channel: &Channel, window: Window, buckets: usize) -> Vec<(f64, f64)> {
     let values = &channel.values[..channel.values.len().min(recording.len())];
     // On the straight line between the instants before and after.
@@ -92,7 +92,7 @@ impl Panel<'_> {
         Axis::upright(with_zero(range), top, HEIGHT)
     }
 
-    /// Unit of the scale of `axis`, and its ticks: where (pixels), label, whether it is zero.
+    /// Unit of the scale of `axis`, and its ticks: place (pixels), label, true at zero.
     pub(super) fn ticks(&self, axis: &Axis) -> (String, Vec<(f64, String, bool)>) {
         let (unit, scale) = unit_at(axis.low.abs().max(axis.high.abs()) / 1.08, self.unit, true);
         let ticks = about_four(axis.low / scale, axis.high / scale);
@@ -101,7 +101,7 @@ impl Panel<'_> {
 }
 
 impl Line {
-    /// Its path; a new one begins after what is no value.
+    /// Its path; a new one begins after values that cannot be drawn.
     pub(super) fn path(&self, time: &Axis, value: &Axis) -> String {
         let tenth = |pixel: f64| (pixel * 10.0).round() / 10.0;
         let pixels: Vec<Option<(f64, f64)>> = self
@@ -117,7 +117,7 @@ impl Line {
                 let is_level =
                     |other: Option<(f64, f64)>| other.is_some_and(|(_, there)| there.to_bits() == y.to_bits());
                 let written = match (is_level(before), is_level(next)) {
-                    // On the way along a level line.
+                    // Continues a level line.
                     (true, true) => Ok(()),
                     (true, false) => write!(path, "H{x:.1}"),
                     _ if before.is_none() => write!(path, "M{x:.1},{y:.1}"),
@@ -131,7 +131,7 @@ impl Line {
     }
 }
 
-/// Whether `value` can be drawn.
+/// True if `value` can be drawn.
 fn is_value(value: f64) -> bool {
     value.abs() < DIVERGED
 }

@@ -3,7 +3,7 @@ use super::stretch::{Stretch, stretches};
 use super::window::Window;
 use servobench_trace::{Call, CallFate, Recording, Signal};
 
-/// Values of a signal in which nothing happens.
+/// Values of an idle signal.
 const IDLE: [&str; 4] = ["FALSE", "0", "16#0000", "none"];
 
 /// Numbers with more values than this are drawn as a curve.
@@ -16,7 +16,7 @@ pub(super) struct Group<'a> {
     pub(super) rows: Vec<Row<'a>>,
 }
 
-/// One signal in what is shown.
+/// Visible part of one signal.
 #[derive(Debug)]
 pub(super) struct Row<'a> {
     pub(super) name: &'a str,
@@ -24,24 +24,24 @@ pub(super) struct Row<'a> {
     pub(super) kind: Kind,
 }
 
-/// What a row is.
+/// Kind of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A signal whose values are TRUE and FALSE.
     Logic,
     /// A signal with other values.
     States,
-    /// A number that changes more often than bars with it could be read.
+    /// A number that changes too often for readable bars.
     Number,
-    /// Why a call did not come to its end, where the run may do without it.
+    /// Reason why a call did not finish, if the run may do without it.
     Excused,
-    /// Why a call did not come to its end, where it should have.
+    /// Reason why a call did not finish, if it should have.
     Missed,
 }
 
 impl<'a> Group<'a> {
-    /// Those of `recording` by `sources`, or all, in the order in which they first come. A call that was never executed, or
-    /// that failed, has a row that says so before its signals; one without signals comes after the call before it.
+    /// Groups of `recording` for `sources`, or for all, in the order of their first appearance. A call that was never executed, or
+    /// that failed, has a row with the reason before its signals; one without signals comes after the call before it.
     pub(super) fn all(recording: &'a Recording, sources: &[String], window: Window) -> Vec<Self> {
         let mut groups: Vec<Self> = Vec::new();
         let is_asked_for = |source: &str| sources.is_empty() || sources.iter().any(|name| name == source);
@@ -72,7 +72,7 @@ impl<'a> Group<'a> {
         groups
     }
 
-    /// Whether every row is idle.
+    /// True if every row is idle.
     pub(super) fn is_idle(&self) -> bool {
         self.rows.iter().all(Row::is_idle)
     }
@@ -91,7 +91,7 @@ impl<'a> Row<'a> {
         Self { name: &signal.name, stretches, kind }
     }
 
-    /// Why `call` was never executed or did not come to its end, all the time, or failed, from then on; `None` for any other.
+    /// Reason why `call` was never executed or did not finish, over the whole window, or failed, from then on; `None` for any other.
     fn of_fate(call: &'a Call, window: Window) -> Option<Self> {
         let (name, since, why) = match &call.fate {
             CallFate::Executed => return None,
@@ -100,14 +100,14 @@ impl<'a> Row<'a> {
             CallFate::Failed { time, message, .. } => ("failed", *time, message),
         };
         let kind = if call.is_optional { Kind::Excused } else { Kind::Missed };
-        // Not a number, or after what is shown.
+        // Not a number, or after the window.
         let is_seen = since <= window.to;
         let from = since.max(window.from);
         let stretch = Stretch { from, to: window.to, value: why, is_change: since >= window.from };
         is_seen.then_some(Self { name, stretches: vec![stretch], kind })
     }
 
-    /// Whether nothing happens in it: it has no value, or stays FALSE, 0 or none.
+    /// True if the signal has no value, or stays FALSE, 0 or none.
     fn is_idle(&self) -> bool {
         if matches!(self.kind, Kind::Excused | Kind::Missed) {
             return false;
@@ -116,7 +116,7 @@ impl<'a> Row<'a> {
         IDLE.contains(&first) && self.stretches.iter().all(|stretch| stretch.value == first)
     }
 
-    /// When it becomes TRUE (s).
+    /// Times at which it becomes TRUE (s).
     pub(super) fn rises(&self) -> impl Iterator<Item = f64> {
         let mut before = "";
         self.stretches.iter().filter_map(move |stretch| {
@@ -127,7 +127,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// `groups` without idle rows, and the names of these.
+/// `groups` without idle rows, and the names of those rows.
 pub(super) fn without_idle(groups: Vec<Group<'_>>) -> (Vec<Group<'_>>, Vec<String>) {
     let mut idle = Vec::new();
     let mut kept = Vec::new();

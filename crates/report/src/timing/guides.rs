@@ -1,32 +1,32 @@
-//! Guide lines: when a command begins and when it ends.
+//! Guide lines: start and end of commands.
 use super::group::{self, Group};
 use crate::drawing::{Axis, escaped, text_width};
 
-/// What begins a command.
+/// Input that begins a command.
 const BEGIN: &str = "Execute";
-/// Outputs by which a block says that its command is over or in effect.
+/// Outputs by which a block reports that its command is over or in effect.
 const ENDS: [&str; 7] =
     ["Done", "InVelocity", "InEndVelocity", "InTorque", "ProfileCompleted", "CommandAborted", "Error"];
 /// More lines than this would hide the curves.
 const MOST: usize = 60;
 /// Instants closer than this are one (pixels).
 const APART: f64 = 0.5;
-/// Room for the times above the panels, and how much of it the lines take to get there (pixels).
+/// Height for the times above the panels, and the part of it that the slanted lines take (pixels).
 const STRIP: f64 = 24.0;
 const SLANT: f64 = 9.0;
-/// Size of the letters of a time, which are bold, and the room between two (pixels).
+/// Size of the letters of a time, which are bold, and the gap between two (pixels).
 const LETTERS: f64 = 11.0;
 const BOLD: f64 = 1.12;
 const ROOM: f64 = 6.0;
 
-/// What happens at an instant.
+/// Kind of event at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A command begins.
     Begin,
-    /// One is over or in effect.
+    /// A command is over or in effect.
     End,
-    /// One begins as another is over.
+    /// A command begins as another is over.
     Both,
 }
 
@@ -43,17 +43,17 @@ impl Kind {
     }
 }
 
-/// An instant at which something begins or ends.
+/// An instant at which a command begins or ends.
 #[derive(Debug, Clone)]
 struct Guide {
-    /// Where (pixels).
+    /// Place (pixels).
     x: f64,
-    /// What happens: `First.Done`.
+    /// Event: `First.Done`.
     what: String,
     kind: Kind,
-    /// When, in the unit of the axis of time.
+    /// Time, in the unit of the time axis.
     label: String,
-    /// Middle of the label (pixels); `None` where there is no room for it.
+    /// Middle of the label (pixels); `None` if it does not fit.
     middle: Option<f64>,
 }
 
@@ -61,19 +61,19 @@ struct Guide {
 #[derive(Debug, Default)]
 pub(super) struct Guides {
     lines: Vec<Guide>,
-    /// How many there would be, if they were not too many.
+    /// Number of lines, if they were left out as too many.
     pub(super) left_out: usize,
-    /// Names of the outputs that end something.
+    /// Names of the outputs that end a command.
     ends: Vec<&'static str>,
 }
 
-/// Whether the rise of a signal `name` has a guide line.
+/// True if the rise of a signal `name` has a guide line.
 pub(super) fn has_guide(name: &str) -> bool {
     name == BEGIN || ENDS.contains(&name)
 }
 
 impl Guides {
-    /// Those of `groups`, with times in a unit that is `scale` of a second.
+    /// Guide lines of `groups`, with times in a unit of `scale` seconds.
     pub(super) fn of(groups: &[Group<'_>], time: &Axis, scale: f64) -> Self {
         let mut rises: Vec<(f64, Kind, String)> = Vec::new();
         let mut ends = Vec::new();
@@ -112,7 +112,7 @@ impl Guides {
         Self { lines: guides, left_out: 0, ends }
     }
 
-    /// What lines of that kind mean; `None` where there are none.
+    /// Meaning of lines of that kind; `None` without any.
     pub(super) fn meaning(&self, kind: Kind) -> Option<String> {
         let is_there = |kind| self.lines.iter().any(|guide| guide.kind == kind);
         is_there(kind).then(|| match kind {
@@ -123,7 +123,7 @@ impl Guides {
         })
     }
 
-    /// Whether there are none.
+    /// True without any lines.
     pub(super) const fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }
@@ -133,7 +133,7 @@ impl Guides {
         if self.lines.is_empty() { 0.0 } else { STRIP }
     }
 
-    /// The lines from the times, which stand above `top`, down to `bottom`, with what happens there.
+    /// Draws the lines from the times, which are above `top`, down to `bottom`, with their events.
     pub(super) fn draw(&self, svg: &mut Vec<String>, top: f64, bottom: f64) {
         for Guide { x, what, kind, label, middle } in &self.lines {
             let (class, what) = (kind.class(), escaped(what));
@@ -152,8 +152,8 @@ impl Guides {
     }
 }
 
-/// Finds a place for the label of each of `guides`: above its line, or as near as the others allow. Of more than there is
-/// room for those have one that need not move.
+/// Places the label of each of `guides` above its line, or as near as the others allow. If they do not all fit, only those
+/// that need not move have one.
 fn place(guides: &mut [Guide], time: &Axis) {
     let half = |guide: &Guide| 0.5 * (BOLD * text_width(&guide.label, LETTERS) + ROOM);
     let halves: Vec<f64> = guides.iter().map(half).collect();
@@ -176,7 +176,7 @@ fn place(guides: &mut [Guide], time: &Axis) {
         }
         return;
     }
-    // What each wants to move from there, and gets: ascending, the mean of those that are in each other's way.
+    // Wanted and actual shift of each from there: ascending, the mean of those that are in each other's way.
     let mut blocks: Vec<(f64, usize)> = Vec::new();
     let mean = |(sum, count): (f64, usize)| sum / count as f64;
     for (guide, place) in guides.iter().zip(&side_by_side) {
@@ -201,7 +201,7 @@ fn labels(times: &[f64], pixel: f64) -> Vec<String> {
         text.split_once('.').map_or(0, |(_, decimals)| decimals.trim_end_matches('0').len())
     };
     let decimals = times.iter().map(needed).max().unwrap_or(0);
-    // A minus sign before zero reads as a mistake.
+    // A minus sign before zero looks like a mistake.
     times.iter().map(|time| format!("{:.decimals$}", if *time == 0.0 { 0.0 } else { *time })).collect()
 }
 

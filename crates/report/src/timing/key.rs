@@ -1,17 +1,17 @@
-//! What the lines of a diagram mean: signs with words, in as many lines as they need.
+//! Key to the lines of a diagram: symbols with words, in as many lines as needed.
 use crate::drawing::{fitted, text_width};
 
-/// Height of a line, and room below the last (pixels).
+/// Height of a line, and margin below the last (pixels).
 const LINE: f64 = 17.0;
 const BELOW: f64 = 8.0;
-/// Length of a sign, from it to its words, and from these to the next sign (pixels).
+/// Length of a symbol, distance from it to its words, and from these to the next symbol (pixels).
 const SIGN: f64 = 26.0;
 const WORDS: f64 = 32.0;
 const APART: f64 = 18.0;
 /// Size of the letters.
 const LETTERS: f64 = 11.0;
 
-/// Signs with words.
+/// Symbols with words.
 #[derive(Debug)]
 pub(super) struct Key {
     left: f64,
@@ -25,7 +25,7 @@ pub(super) struct Key {
 #[derive(Debug)]
 struct Entry {
     x: f64,
-    /// In which line, from 0.
+    /// Index of its line, from 0.
     line: usize,
     class: &'static str,
     colour: Option<&'static str>,
@@ -33,12 +33,12 @@ struct Entry {
 }
 
 impl Key {
-    /// One from `left` to `right` (pixels), without entries.
+    /// A key from `left` to `right` (pixels), without entries.
     pub(super) const fn new(left: f64, right: f64) -> Self {
         Self { left, right, entries: Vec::new(), end: left, lines: 0 }
     }
 
-    /// Adds that lines of `class`, in `colour` where that is not in their class, mean `text`.
+    /// Adds the entry that lines of `class`, in `colour` if their class has none, mean `text`.
     pub(super) fn add(&mut self, class: &'static str, colour: Option<&'static str>, text: &str) {
         let text = fitted(text, self.right - self.left - WORDS, LETTERS).unwrap_or_default();
         let width = WORDS + text_width(&text, LETTERS);
@@ -49,12 +49,12 @@ impl Key {
         self.end += width + APART;
     }
 
-    /// Height with the room below; zero without entries.
+    /// Height with the margin below; zero without entries.
     pub(super) const fn height(&self) -> f64 {
         if self.lines == 0 { 0.0 } else { LINE * self.lines as f64 + BELOW }
     }
 
-    /// The entries from `top` down.
+    /// Draws the entries from `top` down.
     pub(super) fn draw(&self, svg: &mut Vec<String>, top: f64) {
         svg.extend(self.entries.iter().map(|Entry { x, line, class, colour, text }| {
             let y = top + LINE * *line as f64 + 8.0;

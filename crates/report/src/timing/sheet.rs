@@ -1,4 +1,4 @@
-//! The whole diagram: what stands above, below and beside the curves and the rows.
+//! The whole diagram: curves and rows with the texts above, below and beside them.
 use super::curves::{self, Panel};
 use super::group::{self, Group};
 use super::guides::{Guides, Kind, has_guide};
@@ -9,30 +9,30 @@ use crate::drawing::{Axis, STYLE as SHARED, escaped, fitted, text_width, ticks, 
 use servobench_metrics::round_above;
 use servobench_trace::About;
 
-/// Room at the left and at the right of what is drawn (pixels).
+/// Margins at the left and right of the diagram (pixels).
 const MARGIN: f64 = 14.0;
 const RIGHT: f64 = 26.0;
-/// Room for the names of the signals, at least and at most.
+/// Smallest and largest width for the names of the signals.
 const NAMES: (f64, f64) = (84.0, 190.0);
-/// From the top to the key, or to the times of the guide lines.
+/// Distance from the top to the key, or to the times of the guide lines.
 const TOP: f64 = 42.0;
-/// Height of a heading of a panel and of a group, and room below either.
+/// Height of a heading of a panel and of a group, and margin below either.
 const HEADING: f64 = 22.0;
 const GAP: f64 = 10.0;
-/// From the last row to the axis of time.
+/// Distance from the last row to the time axis.
 const ABOVE_AXIS: f64 = 4.0;
-/// Below: the axis of time, and a line of notes.
+/// Height below: the time axis, and a line of notes.
 const AXIS: f64 = 46.0;
 const NOTE: f64 = 18.0;
 /// Sizes of letters: title, heading, label.
 const TITLE: f64 = 17.0;
 const LETTERS: f64 = 11.0;
-/// Bold letters are that much wider.
+/// Bold letters are wider by this factor.
 const BOLD: f64 = 1.12;
-/// Room between two labels of the axis of time (pixels).
+/// Gap between two labels of the time axis (pixels).
 const APART: f64 = 26.0;
-/// A set-point is a broad line in colour, what the load does a thin dark one; TRUE and states are blue, what went wrong red,
-/// in dark enough shades to be told apart in black and white.
+/// A set-point is a broad line in colour, the motion of the load a thin dark one; TRUE and states are blue, errors red,
+/// in shades dark enough to be distinguished in black and white.
 const STYLE: &str = ".c{fill:none;stroke-width:2.6;stroke-linejoin:round}.a{fill:none;stroke:#1c2330;stroke-width:1;\
 stroke-linejoin:round}.w{fill:none;stroke:#1f5fa8;stroke-width:1.5}.f{fill:#1f5fa8;opacity:.22}.x{fill:#c2303a;\
 fill-opacity:.3;stroke:#c2303a;stroke-width:1.5}.q{fill:#7d8794}.bs,.bo,.bx{fill:#e3ecf7;stroke:#1f5fa8;stroke-width:1}\
@@ -48,16 +48,16 @@ pub(super) struct Sheet<'a> {
     pub(super) width: f64,
     pub(super) curves: Vec<Panel<'a>>,
     pub(super) groups: Vec<Group<'a>>,
-    /// Names of the signals that are left out as nothing happens in them.
+    /// Names of idle signals, which are left out.
     pub(super) idle: Vec<String>,
 }
 
-/// Where things stand (pixels).
+/// Layout (pixels).
 struct Layout {
     /// Tops of the curves and of the first row of each group.
     curves: Vec<f64>,
     rows: Vec<f64>,
-    /// End of the last of them.
+    /// Bottom of the last of them.
     bottom: f64,
 }
 
@@ -98,7 +98,7 @@ impl Sheet<'_> {
         svg.join("\n")
     }
 
-    /// Where the axis of time begins: right of the longest name.
+    /// Left end of the time axis: right of the longest name.
     fn left(&self) -> f64 {
         let names = self.groups.iter().flat_map(|group| &group.rows).map(|row| text_width(row.name, LETTERS));
         let longest = names.fold(0.0, f64::max);
@@ -143,7 +143,7 @@ impl Sheet<'_> {
         ]
     }
 
-    /// What the lines mean.
+    /// Key to the lines.
     fn key(&self, guides: &Guides) -> Key {
         let mut key = Key::new(MARGIN, self.width - RIGHT);
         let lines = || self.curves.iter().flat_map(|panel| panel.lines.iter().map(|line| (panel.colour, line)));
@@ -160,7 +160,7 @@ impl Sheet<'_> {
         key
     }
 
-    /// What is not drawn.
+    /// Notes on signals and lines that are left out.
     fn notes(&self, guides: &Guides) -> Vec<String> {
         let mut notes = Vec::new();
         if !self.idle.is_empty() {
@@ -240,7 +240,7 @@ fn draw_panel(svg: &mut Vec<String>, panel: &Panel<'_>, time: &Axis, top: f64) {
     }));
 }
 
-/// Places and labels of round times, as many as there is room for.
+/// Places and labels of round times, as many as fit.
 fn time_labels(time: &Axis, scale: f64) -> Vec<(f64, String)> {
     let (low, high, room) = (time.low / scale, time.high / scale, time.to - time.from);
     let every = |pixels: f64| ticks(low, high, round_above((high - low) * pixels / room));
@@ -250,7 +250,7 @@ fn time_labels(time: &Axis, scale: f64) -> Vec<(f64, String)> {
     labels.into_iter().map(|(t, label)| (time.at(t * scale), label)).collect()
 }
 
-/// The axis of time below everything.
+/// The time axis below everything.
 fn draw_time(svg: &mut Vec<String>, time: &Axis, labels: &[(f64, String)], unit: &str, bottom: f64) {
     let (left, right) = (time.from, time.to);
     svg.push(format!("<line class=\"z\" x1=\"{left}\" x2=\"{right}\" y1=\"{bottom:.1}\" y2=\"{bottom:.1}\"/>"));

@@ -1,31 +1,31 @@
-//! From change to change: how long a signal has a value, and what of it is seen.
+//! Intervals of constant value of a signal, and their visible parts.
 use super::window::{Window, is_time};
 use crate::drawing::Axis;
 use servobench_trace::Signal;
 
-/// Stretches narrower than this are not seen on their own (pixels).
+/// Narrower intervals are not visible on their own (pixels).
 const NARROW: f64 = 0.5;
 
-/// A stretch of one value.
+/// An interval of one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch<'a> {
-    /// Since when (s), within what is shown.
+    /// Start within the window (s).
     pub(super) from: f64,
-    /// Until when (s), within what is shown.
+    /// End within the window (s).
     pub(super) to: f64,
     pub(super) value: &'a str,
-    /// Whether the signal changes where it begins, and is seen to.
+    /// True if the signal visibly changes at its start.
     pub(super) is_change: bool,
 }
 
 impl Stretch<'_> {
-    /// Its value, where that is a number.
+    /// Its value, if it is a number.
     pub(super) fn number(&self) -> Option<f64> {
         self.value.parse().ok().filter(|number: &f64| number.is_finite())
     }
 }
 
-/// The stretches of `signal` in `window`, in the order of time.
+/// The intervals of `signal` in `window`, in order of time.
 pub(super) fn stretches<'a>(signal: &'a Signal, window: Window) -> Vec<Stretch<'a>> {
     let changes: Vec<(f64, &'a str)> =
         signal.changes.iter().filter(|(time, _)| is_time(*time)).map(|(time, value)| (*time, value.as_str())).collect();
@@ -36,7 +36,7 @@ pub(super) fn stretches<'a>(signal: &'a Signal, window: Window) -> Vec<Stretch<'
         if since > window.to || until <= window.from {
             continue;
         }
-        // No earlier than the one before: time does not go back.
+        // No earlier than the one before: time is monotonic.
         let (from, to) = (since.max(done), until.clamp(since.max(done), window.to.max(done)));
         stretches.push(Stretch { from, to, value, is_change: since >= window.from });
         done = to;
@@ -44,16 +44,16 @@ pub(super) fn stretches<'a>(signal: &'a Signal, window: Window) -> Vec<Stretch<'
     stretches
 }
 
-/// What of stretches is seen.
+/// Visible intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Seen<'a> {
     /// One, from pixel to pixel.
     One { from: f64, to: f64, value: &'a str },
-    /// So many, each too narrow to be seen, together from pixel to pixel; with the last value.
+    /// `count` intervals, each too narrow to be seen, together from pixel to pixel; with the last value.
     Many { from: f64, to: f64, count: usize, value: &'a str },
 }
 
-/// `stretches` as far as they are seen: at most two for each half pixel.
+/// Visible parts of `stretches`: at most two for each half pixel.
 pub(super) fn seen<'a>(stretches: &[Stretch<'a>], time: &Axis) -> Vec<Seen<'a>> {
     let mut seen = Vec::new();
     let is_narrow = |stretch: &Stretch<'_>| time.at(stretch.to) - time.at(stretch.from) < NARROW;
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(shown, expected);
     }
 
-    /// A pulse of a cycle is seen; a thousand of them are one block.
+    /// A pulse of one cycle is visible; a thousand of them are one block.
     #[test]
     fn one_pulse_is_drawn_and_a_thousand_are_a_block() {
         let pulse = signal(&[(0.0, "FALSE"), (0.5, "TRUE"), (0.501, "FALSE")]);

@@ -7,22 +7,22 @@ use std::fmt::Write;
 
 /// Height of a row (pixels).
 pub(super) const HEIGHT: f64 = 20.0;
-/// From the top of a row to TRUE and to FALSE, and to the edges of a bar.
+/// Distances from the top of a row to TRUE and to FALSE, and to the edges of a bar.
 const HIGH: f64 = 4.0;
 const LOW: f64 = 16.0;
 const BAR: (f64, f64) = (2.0, 18.0);
-/// Size of letters in a bar, and the room at each end of them.
+/// Size of letters in a bar, and the margin at each end of them.
 const LETTERS: f64 = 11.0;
 const MARGIN: f64 = 3.0;
 /// Size of the letters beside a curve.
 const SMALL: f64 = 10.0;
 
-/// Values that say that something is off.
+/// Values that mean off.
 const OFF: [&str; 6] = ["FALSE", "0", "16#0000", "none", "Off", "Disabled"];
-/// Parts of values and of names of signals that say that something went wrong.
+/// Parts of values and of names of signals that report an error.
 const WRONG: [&str; 6] = ["Error", "Fault", "fault", "Aborted", "Underflow", "Overflow"];
 
-/// Whether `text` says that something went wrong.
+/// True if `text` reports an error.
 fn is_wrong(text: &str) -> bool {
     WRONG.iter().any(|wrong| text.contains(wrong))
 }
@@ -39,7 +39,7 @@ pub(super) fn draw(svg: &mut Vec<String>, row: &Row<'_>, time: &Axis, top: f64) 
     }
 }
 
-/// A line that is low or high, and filled below where it is high.
+/// A line that is low or high, filled below where it is high.
 fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
     let (high, low) = (top + HIGH, top + LOW);
     let level = |value: &str| if value == "TRUE" { high } else { low };
@@ -64,7 +64,7 @@ fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
         debug_assert!([written, along, filled].iter().all(Result::is_ok), "a string takes everything");
         here = Some(y);
     }
-    // What went wrong is in front of the line, with an edge of its own.
+    // Errors are in front of the line, with a separate edge.
     let parts = if is_wrong(name) {
         [("q", blocks), ("w", line), ("x", fill)]
     } else {
@@ -74,13 +74,13 @@ fn logic(svg: &mut Vec<String>, name: &str, seen: &[Seen<'_>], top: f64) {
     svg.extend(seen.map(|(class, path)| format!("<path class=\"{class}\" d=\"{path}\"/>")));
 }
 
-/// A number from change to change, from its lowest value at the bottom of the row to its highest; both are said beside it. Of the
+/// A number from change to change, from its lowest value at the bottom of the row to its highest; both are written beside it. Of the
 /// changes within half a pixel the lowest and the highest value are drawn.
 fn curve(svg: &mut Vec<String>, stretches: &[Stretch<'_>], time: &Axis, top: f64) {
     let values = || stretches.iter().filter_map(|stretch| Some((*stretch, stretch.number()?)));
     let (low, high) =
         values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, value)| (low.min(value), high.max(value)));
-    // Half of each, as their difference may be more than there is.
+    // Half of each, as their difference may overflow.
     let range = 0.5 * high - 0.5 * low;
     let part = |value: f64| if range > 0.0 { (0.5 * value - 0.5 * low) / range } else { 0.0 };
     let level = |value: f64| top + LOW - (LOW - HIGH) * part(value);
@@ -102,7 +102,7 @@ fn curve(svg: &mut Vec<String>, stretches: &[Stretch<'_>], time: &Axis, top: f64
     }
     let label = format!("{} … {}", digits(low, 4), digits(high, 4));
     let room = text_width(&label, SMALL) + 2.0 * MARGIN;
-    // Where the curve stays in the other half: at the end of the row, or at its beginning.
+    // Places where the curve stays in the other half: at the end of the row, or at its beginning.
     let is_free = |from: f64, to: f64, is_above: bool| {
         let seen = stretches.iter().filter(|one| time.at(one.to) >= from && time.at(one.from) <= to);
         seen.filter_map(Stretch::number).all(|value| if is_above { part(value) <= 0.5 } else { part(value) >= 0.5 })
@@ -117,9 +117,9 @@ fn curve(svg: &mut Vec<String>, stretches: &[Stretch<'_>], time: &Axis, top: f64
     ));
 }
 
-/// In which half of which pixel a stretch begins.
+/// Half pixel in which an interval begins.
 fn half_pixel(time: &Axis, stretch: Stretch<'_>) -> u64 {
-    // Pixels of a drawing are some thousand.
+    // A drawing has a few thousand pixels.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     let half = (2.0 * time.at(stretch.from)) as u64;
     half
@@ -134,7 +134,7 @@ fn class(name: &str, value: &str) -> &'static str {
     }
 }
 
-/// A bar for each state with its name, as far as it fits. Those that say that something went wrong are in front: a short
+/// A bar for each state with its name, as far as it fits. Those that report an error are in front: a short
 /// one is not hidden by the edges of its neighbours.
 fn bars(svg: &mut Vec<String>, seen: &[Seen<'_>], class: impl Fn(&str) -> &'static str, top: f64) {
     let is_in_front = |stretch: &&Seen<'_>| matches!(stretch, Seen::One { value, .. } if class(value) == "bx");
@@ -191,7 +191,7 @@ mod tests {
         svg.clear();
         curve(&mut svg, &stretches(&[(0.0, "0"), (0.5001, "-4"), (0.5002, "4"), (0.5003, "0")]), &time, 0.0);
         assert!(svg[0].contains("H150.01V16.0V4.0V10.0H200.00"), "{}", svg[0]);
-        // Numbers at the ends of what there is.
+        // Numbers at the ends of the range of f64.
         svg.clear();
         curve(&mut svg, &stretches(&[(0.0, "-1.7e308"), (0.5, "1.7e308")]), &time, 0.0);
         assert!(!svg[0].contains("NaN") && !svg[0].contains("inf"), "{}", svg[0]);

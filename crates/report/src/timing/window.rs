@@ -2,14 +2,14 @@
 use crate::error::ReportError;
 use servobench_trace::Recording;
 
-/// Shortest stretch that is shown (s).
+/// Shortest interval that is shown (s).
 const SHORTEST: f64 = 1e-9;
-/// A time beyond is a mistake of whoever recorded (s): thirty million years.
+/// A larger time is a mistake in the recording (s): thirty million years.
 const BEYOND: f64 = 1e15;
-/// How long the last value is shown where nothing else goes on, as a part of the whole.
+/// Duration for which the last value is shown if nothing follows, as a fraction of the whole.
 const AFTERWARDS: f64 = 0.05;
 
-/// From when to when (s).
+/// Start and end (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Window {
     pub(super) from: f64,
@@ -17,12 +17,12 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// What there is of `recording` from `from` to `to`.
+    /// Window on `recording`, `from` and `to` clamped to it.
     pub(super) fn of(recording: &Recording, from: Option<f64>, to: Option<f64>) -> Result<Self, ReportError> {
         let Self { from: start, to: end } = Self::whole(recording);
         let (asked_from, asked_to) = (from.unwrap_or(start), to.unwrap_or(end));
         let (from, to) = (asked_from.max(start), asked_to.min(end));
-        // A quotient so that numbers along the axis stay apart late in a long recording.
+        // Relative, so that numbers along the axis stay apart late in a long recording.
         let shortest = SHORTEST * from.abs().max(to.abs()).max(1.0);
         if asked_from < asked_to && to - from >= shortest {
             Ok(Self { from, to })
@@ -31,7 +31,7 @@ impl Window {
         }
     }
 
-    /// From the first to the last that is recorded. After the last change its value is shown for a while.
+    /// From the first to the last recorded instant. After the last change its value is shown for a while.
     fn whole(recording: &Recording) -> Self {
         let instants = recording.len().checked_sub(1).map_or(0.0, |last| recording.time_of(last));
         let times = || recording.signals.iter().flat_map(|signal| &signal.changes).map(|(time, _)| *time);
@@ -44,7 +44,7 @@ impl Window {
     }
 }
 
-/// Whether `time` (s) can be one.
+/// True if `time` (s) is a plausible time.
 pub(super) fn is_time(time: f64) -> bool {
     time.abs() < BEYOND
 }
