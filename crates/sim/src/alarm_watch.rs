@@ -1,18 +1,18 @@
-//! Watches what hardware says of itself: nothing goes wrong in silence, whether a drive looks at it or not.
+//! Records the alarms of the hardware as events, whether or not a drive reads them.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
 use servobench_base::Stateful;
 use servobench_signals::Alarms;
 use servobench_trace::{Event, Recorder};
 
-/// Who has an alarm, and what it says.
+/// Source and message of each alarm.
 const WORDS: [(&str, &str); 3] = [
     ("DC link", "the DC link has less than half of its voltage"),
     ("motor encoder", "the motor encoder has an error: its signals cannot be trusted"),
     ("load encoder", "the load encoder has an error: its signals cannot be trusted"),
 ];
 
-/// All of them.
+/// The watches of all alarms.
 #[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct AlarmWatch {
     watches: [Watch; 3],
@@ -20,7 +20,7 @@ pub(crate) struct AlarmWatch {
 }
 
 impl AlarmWatch {
-    /// Takes the alarms of tick `t` (s).
+    /// Records the alarms of the tick at `t` (s).
     #[inline(always)]
     pub(crate) fn tick(&mut self, t: f64, alarms: Alarms, recorder: &mut Recorder) {
         if alarms != self.last {
@@ -28,7 +28,7 @@ impl AlarmWatch {
         }
     }
 
-    /// Ends what is still said at `t` (s).
+    /// Ends the alarms that are still active at `t` (s).
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
         self.note(t, Alarms::default(), recorder);
     }

@@ -1,4 +1,4 @@
-//! One axis: its closed loop, what acts on it from outside, and what is recorded of it.
+//! One axis: its closed loop, external influences, and its recording.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::alarm_watch::AlarmWatch;
 use crate::closed_loop::{ClosedLoop, Source};
@@ -20,11 +20,11 @@ const MECHANICS: &str = "FMU of the axis";
 /// A closed loop, its surroundings and its recording.
 pub(crate) struct Axis {
     pub(crate) closed_loop: ClosedLoop,
-    /// What acts on it in the tick under way.
+    /// External influences in the current tick.
     pub(crate) external: External,
-    /// Before a tick: the bodies at that tick, everything else of the tick before. After `observe`: all of that tick.
+    /// Before a tick: the bodies at that tick, everything else of the previous tick. After `observe`: all of that tick.
     pub(crate) now: Instant,
-    /// The channels that the scenario asks for.
+    /// The channels that the scenario records.
     pub(crate) wanted: Selection,
     pub(crate) recorder: Recorder,
     /// Base ticks from row to row: one, unless the run is too long for that.
@@ -32,13 +32,13 @@ pub(crate) struct Axis {
     watches: Watches,
 }
 
-/// An axis at a tick, and how much of its recording there was.
+/// State of an axis at a tick, and the length of its recording.
 pub(crate) struct Saved {
     words: Vec<u64>,
     mark: Mark,
 }
 
-/// Changes that a recording notes, and when its next row is due.
+/// Watches whose changes are recorded, and the ticks until the next row.
 #[derive(Stateful)]
 #[state(fixed)]
 struct Watches {
@@ -70,15 +70,14 @@ impl Axis {
         Self { closed_loop, external, now, wanted, recorder, record_every, watches }
     }
 
-    /// The same axis with nothing recorded of it.
+    /// The same axis without a recording.
     pub(crate) fn unrecorded(self) -> Self {
         let mut recorder = Recorder::silent(self.recorder.about().clone(), self.closed_loop.base_rate);
         let watches = Watches::new(&mut recorder);
         Self { recorder, watches, record_every: 1, ..self }
     }
 
-    /// Tick `k`, which is at `time` (s), but for the mechanics: the loop, then its row. What is recorded together belongs to the same
-    /// instant.
+    /// Tick `k`, at `time` (s), without the mechanics: the loop, then its row. All values of a row belong to the same instant.
     #[inline(always)]
     pub(crate) fn observe(&mut self, k: u64, time: f64) {
         self.closed_loop.tick(k, &self.external, &mut self.recorder, &mut self.now);
@@ -103,37 +102,37 @@ impl Axis {
         *ticks_to_row -= 1;
     }
 
-    /// Moves the mechanics to the next tick.
+    /// Advances the mechanics to the next tick.
     ///
     /// # Errors
-    /// [`Reason`] why the loop cannot go on.
+    /// [`Reason`] why the loop cannot continue.
     #[inline(always)]
     pub(crate) fn integrate(&mut self) -> Result<(), Reason> {
         self.closed_loop.integrate(&self.external, &self.now)
     }
 
-    /// Brings the bodies at the present tick to `now`.
+    /// Writes the bodies at the current tick to `now`.
     pub(crate) fn sample(&mut self) {
         self.closed_loop.sample(&self.external, &mut self.now);
     }
 
-    /// Notes the log lines of the mechanics, `time` (s) being the present.
+    /// Records the log lines of the mechanics, at the current `time` (s).
     pub(crate) fn note_log(&mut self, time: f64) {
         for line in self.closed_loop.mechanics.take_log() {
             self.note_log_line(time, MECHANICS, (line.severity, line.time), &line.text);
         }
     }
 
-    /// Notes a log line of `source`, which says itself how severe it is and from when (s): never from after the present, `time` (s).
+    /// Records a log line of `source` with its own severity and start (s), which is clamped to the current `time` (s).
     pub(crate) fn note_log_line(&mut self, time: f64, source: &str, (severity, from): (Severity, f64), text: &str) {
         let from = if from.is_finite() { from.clamp(0.0, time) } else { time };
         self.recorder.note_said(source, severity, from, text);
     }
 
-    /// Writes the axis at the present tick.
+    /// Writes the state of the axis at the current tick.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
+    /// [`MechanicsError`] if the engine cannot save its state.
     pub(crate) fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         self.closed_loop.save(to)?;
         self.external.save(to);
@@ -142,10 +141,10 @@ impl Axis {
         Ok(())
     }
 
-    /// Goes back to where [`save`](Self::save) of an axis of the same scenario was called.
+    /// Restores the state that [`save`](Self::save) wrote for an axis of the same scenario.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this axis.
+    /// [`MechanicsError`] if the engine cannot restore it, or the numbers are not a state of this axis.
     pub(crate) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
         self.closed_loop.restore(from)?;
         self.external.restore(from)?;
@@ -153,20 +152,20 @@ impl Axis {
         Ok(self.watches.restore(from)?)
     }
 
-    /// The axis and its recording at the present tick, which is at `time` (s).
+    /// State of the axis and its recording at the current tick, which is at `time` (s).
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
+    /// [`MechanicsError`] if the engine cannot save its state.
     pub(crate) fn save_recorded(&mut self, time: f64) -> Result<Saved, MechanicsError> {
         let mut all = Vec::new();
         self.save(&mut words(|word| all.push(word)))?;
         Ok(Saved { words: all, mark: self.recorder.mark(time) })
     }
 
-    /// Goes back to `saved`; what was recorded since is forgotten.
+    /// Restores `saved` and discards everything recorded since.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
+    /// [`MechanicsError`] if the engine cannot restore it.
     pub(crate) fn restore_recorded(&mut self, saved: &Saved) -> Result<(), MechanicsError> {
         let mut from = Reader::new(&saved.words);
         self.restore(&mut from)?;
@@ -175,7 +174,7 @@ impl Axis {
         Ok(())
     }
 
-    /// Ends the mechanics at `present` (s) and gives the recording, which ends at `end` (s); and why it is not all, if it is not.
+    /// Ends the mechanics at `present` (s). Returns the recording, which ends at `end` (s), and the error if it is incomplete.
     pub(crate) fn finish(mut self, present: f64, end: f64) -> (Recording, Option<io::Error>) {
         self.closed_loop.mechanics.end();
         self.note_log(present);

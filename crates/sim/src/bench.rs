@@ -1,4 +1,4 @@
-//! From a scenario and an engine to everything that the loop needs.
+//! Construction of the loop from a scenario and an engine.
 
 pub(crate) mod fmu;
 mod objections;
@@ -27,10 +27,10 @@ use servobench_signals::{
 };
 use servobench_trace::{About, Event};
 
-/// How long a run goes on after its program, when the scenario does not say (s).
+/// Time for which a run continues after its program, if the scenario sets no duration (s).
 const TAIL: f64 = 0.5;
-/// What the recording of every tick may take (GB), in memory or in files. It is the same on every machine, since what is measured depends on it: a recording
-/// that needs more has `record.rate`.
+/// Largest size of a recording of every tick (GB), in memory or in files. It is the same on every machine, because the metrics
+/// depend on it: a larger recording has `record.rate`.
 pub const RECORDING_LIMIT: f64 = 4.0;
 
 /// Length of a run of `scenario` with `program` planned (s).
@@ -55,13 +55,13 @@ impl Bench {
     /// Builds the loop of `scenario` on `engine`.
     ///
     /// # Errors
-    /// [`BuildError`] says which part of the scenario cannot be built.
+    /// [`BuildError`] names the part of the scenario that cannot be built.
     pub fn new(scenario: &Scenario, engine: &dyn Engine) -> Result<Self, BuildError> {
         Self::with_fmus(scenario, engine, &NoFmus)
     }
 
-    /// How long a run of `scenario` has to last to see all of it (s): as long as it says, or half a second longer than its program, and
-    /// in any case as long as the program, in whole base ticks.
+    /// Duration of a run of `scenario` that covers all of it (s): as long as the scenario sets, or half a second longer than its program,
+    /// and in any case as long as the program, in whole base ticks.
     ///
     /// # Errors
     /// [`BuildError`] for a program that cannot be planned.
@@ -73,10 +73,10 @@ impl Bench {
         Ok(base_rate.time(ticks.max(end)))
     }
 
-    /// The lumped bodies of `scenario` as engines have them; `None` where a file of the user's describes the mechanics.
+    /// The lumped bodies of `scenario` as passed to engines; `None` if a user's file describes the mechanics.
     ///
     /// # Errors
-    /// [`BuildError::Parameter`] names what is out of its bound.
+    /// [`BuildError::Parameter`] names the parameter that is out of its bound.
     pub fn chain(scenario: &Scenario) -> Result<Option<Chain>, BuildError> {
         match &scenario.axis.mechanics {
             AxisMechanics::Bodies(chain) => plant::checked(chain).map(Some),
@@ -84,7 +84,7 @@ impl Bench {
         }
     }
 
-    /// How late what axis and FMUs exchange is; nothing where there are none.
+    /// Delays of the connections between axis and FMUs; empty without FMUs.
     #[must_use]
     pub fn delays(&self) -> &[ConnectionDelay] {
         match &self.closed_loop {
@@ -93,7 +93,7 @@ impl Bench {
         }
     }
 
-    /// What is doubtful about the FMUs beside the axis.
+    /// Doubts about the FMUs beside the axis.
     #[must_use]
     pub fn fmu_doubts(&self) -> &[FmuDoubt] {
         match &self.closed_loop {
@@ -102,7 +102,7 @@ impl Bench {
         }
     }
 
-    /// The same with somebody who opens the FMUs of `scenario`.
+    /// Builds the loop of `scenario` on `engine`, with `fmu_opener` to open its FMUs.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -164,7 +164,7 @@ impl Bench {
             (Some(_), None) => return Err(BuildError::NoDriveOnTheBus),
             (Some(bus), Some(control)) => {
                 let (network, delays) = Network::new(scenario, bus, program, &control.params, &mut recorder)?;
-                // What pulls the axis pulls a motor that is mounted the other way round in the other direction.
+                // A bias on the axis acts in the opposite direction on a motor mounted in reverse.
                 control.params.feedforward.bias *= direction;
                 Source::Network(Box::new(network), delays.sum() as f64 * base_rate.period())
             }
@@ -216,14 +216,14 @@ impl Control {
 }
 
 impl EncoderInput {
-    /// That of number `number` of the axis, in ticks of `h` (s).
+    /// Encoder number `number` of the axis, in ticks of `h` (s).
     pub(crate) fn new(encoder: Encoder, number: u32, h: f64) -> Result<Self, BuildError> {
         let range = encoder.errors.and_then(|errors| errors.range);
         Ok(Self { encoder: EncoderState::new(encoder, number, h)?, unwrap: range.map(Unwrap::new) })
     }
 }
 
-/// Whether the link can have the faults that are expected of it.
+/// Checks that the link can have the faults that are expected of it.
 fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
     let available = || LinkFault::ALL.map(LinkFault::name);
     for (index, expected) in scenario.requirements.expected.iter().enumerate() {
@@ -235,13 +235,13 @@ fn check_expectations(scenario: &Scenario) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Of `all` signals of the axis those `wanted`; all when the list is empty.
+/// The `wanted` signals among `all` signals of the axis; all when the list is empty.
 fn recorded(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError> {
     let available = || all.signals().to_vec();
     all.of(wanted).map_err(|NotRecorded { signal }| BuildError::UnknownChannel { signal, available: available() })
 }
 
-/// The same, and those that its run is judged by; where the current is wanted, its ripple, which is measured with it.
+/// The recorded signals with those by which the run is judged; with a current also its ripple, which is measured with it.
 fn measured(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError> {
     let is_current = |signal: &Signal| matches!(signal, Signal::CurrentD | Signal::CurrentQ);
     let ripple = [Signal::CurrentPeak, Signal::CurrentRms].into_iter().filter(|_| wanted.iter().any(is_current));
@@ -250,19 +250,19 @@ fn measured(all: &Selection, wanted: &[Signal]) -> Result<Selection, BuildError>
     recorded(all, &wanted.iter().copied().chain(besides).collect::<Vec<_>>())
 }
 
-/// True where it costs the motor's powers, of which the mean square of the current is one.
+/// True for a signal that needs the motor's powers, which include the mean square of the current.
 fn is_power(signal: Signal) -> bool {
     signal.unit() == Unit::Watt || signal == Signal::CurrentRms
 }
 
-/// How many channels the axis of `scenario` has at most: with a body between motor and load, which its engine may find.
+/// Largest number of channels of the axis of `scenario`: with a body between motor and load, which its engine may find.
 #[must_use]
 pub fn most_channels(scenario: &Scenario) -> usize {
     let equipment = equipment(scenario, true);
     Signal::ALL.iter().filter(|signal| signal.presence().holds(&equipment)).count()
 }
 
-/// Which channels the axis of `scenario` has; `table` is a body between motor and load.
+/// Equipment of the axis of `scenario`, which determines its channels; `table` is a body between motor and load.
 fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     let effort_unit = scenario.axis.motor_motion.effort_unit();
     let is_replaced = coupled::replaces_the_drive(scenario);
@@ -313,7 +313,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
     }
 }
 
-/// Which sensors of the drive err.
+/// Sensors of the drive that have errors.
 fn erring(actuator: &Actuator) -> Erring {
     let Some(drive) = actuator.drive() else { return Erring::default() };
     let motor = actuator.encoder().and_then(|encoder| encoder.errors);
@@ -322,14 +322,14 @@ fn erring(actuator: &Actuator) -> Erring {
             motor.is_some(),
             matches!(drive.position_feedback, Feedback::Load(encoder) if encoder.errors.is_some()),
         ],
-        // Sensors at the legs see another current than the motor's where its wires are swapped.
+        // Sensors at the legs measure another current than the motor's if its wires are swapped.
         current: matches!(actuator, Actuator::Pmsm { wiring, .. }
             if drive.current_sensor.is_some() || motor.is_some() || wiring.swapped.is_some()),
         velocity: drive.params.blocks.measurement.is_some(),
     }
 }
 
-/// Which sensors err where no firmware reads them: those that are not ideal.
+/// Sensors that are not ideal, where no firmware reads them.
 fn erring_alone(scenario: &Scenario) -> Erring {
     let is_ideal = |encoder: Encoder| encoder == Encoder::default();
     let Some(drive) = scenario.actuator.drive() else { return Erring::default() };
@@ -343,7 +343,7 @@ fn erring_alone(scenario: &Scenario) -> Erring {
     }
 }
 
-/// The sensors of an axis without firmware; `None` where they are ideal.
+/// The sensors of an axis without firmware; `None` if they are ideal.
 fn loose_sensors(scenario: &Scenario) -> Result<Option<LooseSensors>, BuildError> {
     let erring = erring_alone(scenario);
     if erring == Erring::default() {
@@ -359,12 +359,12 @@ fn loose_sensors(scenario: &Scenario) -> Result<Option<LooseSensors>, BuildError
     Ok(Some(LooseSensors::new(motor, load, erring.current)))
 }
 
-/// Whether an FMU gives `signal`.
+/// True if an FMU provides `signal`.
 fn gives(scenario: &Scenario, signal: LoopSignal) -> bool {
     scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, given)| *given == signal)
 }
 
-/// Whether the scenario or an FMU disturbs a body.
+/// True if the scenario or an FMU disturbs the body.
 fn is_disturbed(scenario: &Scenario, body: scenario::DisturbedBody) -> bool {
     let by_fmus = match body {
         scenario::DisturbedBody::Motor => LoopSignal::MotorEffort,
@@ -374,7 +374,7 @@ fn is_disturbed(scenario: &Scenario, body: scenario::DisturbedBody) -> bool {
         || scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| *signal == by_fmus)
 }
 
-/// How often each writer renews its channels.
+/// Rates at which each writer updates its channels.
 fn writer_rates(scenario: &Scenario) -> Rates {
     let base_rate = scenario.base_rate;
     let drive = scenario.actuator.drive().map(|drive| &drive.params);
@@ -390,11 +390,11 @@ fn writer_rates(scenario: &Scenario) -> Rates {
     }
 }
 
-/// The rate of the rows, and every how many ticks there is one: every tick, so that what is measured does not depend on
-/// `record.rate`; at `record.rate` where that would be too much.
+/// Rate of the rows, and base ticks per row: every tick, so that the metrics do not depend on
+/// `record.rate`; at `record.rate` where that would be too large.
 ///
 /// # Errors
-/// [`BuildError::RecordingTooLarge`] when that does not fit, either.
+/// [`BuildError::RecordingTooLarge`] if that is too large as well.
 fn recorded_rate(scenario: &Scenario, channels: usize, ticks: u64, duration: f64) -> Result<(Rate, u32), BuildError> {
     let (base_rate, rate) = (scenario.base_rate, scenario.record.rate);
     let gigabytes = |every: u32| channels as f64 * ticks.div_ceil(u64::from(every)) as f64 * 8e-9;

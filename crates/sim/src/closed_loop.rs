@@ -18,14 +18,14 @@ use servobench_scenario::DisturbedBody;
 use servobench_signals::{Instant, PerLimit};
 use servobench_trace::Recorder;
 
-/// All that a tick needs and leaves changed.
+/// Parameters and state of a tick.
 pub(crate) struct ClosedLoop {
     pub(crate) base_rate: Rate,
-    /// Whether the motor follows the set-point exactly.
+    /// True if the motor follows the set-point exactly.
     pub(crate) prescribed: bool,
     pub(crate) mounting: Mounting,
     pub(crate) disturbances: Disturbances,
-    /// What the load meets at the ends of its travel.
+    /// End stops of the load.
     pub(crate) end_stops: Option<EndStops>,
     /// Limit and home switches, index pulse.
     pub(crate) switches: Switches,
@@ -33,42 +33,42 @@ pub(crate) struct ClosedLoop {
     pub(crate) mechanics: Box<dyn Mechanics>,
 }
 
-/// What changes from tick to tick, the mechanics apart.
+/// State that changes from tick to tick, without the mechanics.
 #[derive(Stateful)]
 pub(crate) struct State {
     pub(crate) source: Source,
     /// The tick at which the program began.
     pub(crate) begun: Option<u64>,
-    /// The program's set-point of the tick that comes, if somebody has asked for it.
+    /// The program's set-point of the next tick, if it was looked up already.
     pub(crate) upcoming: Option<Setpoint>,
     #[state(fixed)]
     pub(crate) control: Option<Control>,
-    /// The sensors, where an FMU replaces the drive.
+    /// The sensors, if an FMU replaces the drive.
     #[state(fixed)]
     pub(crate) sensors: Option<LooseSensors>,
     pub(crate) power: PowerStage,
-    /// Where the motor was at the last tick.
+    /// Position of the motor at the last tick.
     pub(crate) motor_before: f64,
-    /// What the motor does to the mechanics in the tick under way.
+    /// Action of the motor on the mechanics in the current tick.
     pub(crate) shaft: Shaft,
 }
 
-/// The effort on the motor over a tick, and where the motor was when the tick began (its own coordinate).
+/// The effort on the motor over a tick, and the motor's position at its start (its own coordinate).
 #[derive(Clone, Copy, Stateful)]
 pub(crate) struct Shaft {
     pub(crate) effort: f64,
     pub(crate) position: f64,
 }
 
-/// Where the loops have their demand from.
+/// Source of the loops' demand.
 #[derive(Stateful)]
 #[state(fixed)]
 pub(crate) enum Source {
-    /// Every tick has its set-point.
+    /// A program, with a set-point at every tick.
     Program(Box<Program>),
-    /// A motion task sends it over a fieldbus; the loops follow so long after it (s).
+    /// A motion task sends it over a fieldbus; the loops follow after this delay (s).
     Network(Box<Network>, #[state(constant)] f64),
-    /// A master closes the position loop over a bus, and nothing moves: to make the loop linear.
+    /// A master closes the position loop over a bus, and nothing moves: for linearisation.
     Master(Box<MasterAtRest>),
 }
 
@@ -79,17 +79,17 @@ const fn numbers(&Setpoint { x, v, a, j, s }: &Setpoint) -> [f64; 5] {
 }
 
 impl ClosedLoop {
-    /// Everything of tick `k` but the mechanics' way to the next one:
+    /// Tick `k` without the mechanics' step to the next one:
     ///
     /// ```text
     /// sample → set-point → control → power stage → disturbances, end stops
     /// ```
     ///
-    /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop goes
-    /// out one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
+    /// Within control a slower loop's output reaches the faster loop in the same tick; the voltage of the current loop is
+    /// applied one period of that loop later. The power stage takes the motor's position and velocity at k, and its mean torque
     /// over the tick drives the mechanics; disturbances and the push of an end stop are held over the tick.
     ///
-    /// `now` is that of the tick before; what nobody writes in this loop stays as it was.
+    /// `now` is that of the previous tick; values that this loop does not write stay as they were.
     #[inline(always)]
     pub(crate) fn tick(&mut self, k: u64, external: &External, recorder: &mut Recorder, now: &mut Instant) {
         if external.start && self.state.begun.is_none() {
@@ -105,7 +105,7 @@ impl ClosedLoop {
             now.voltage_reference = voltage;
             command = PowerCommand::Voltage(self.state.power.in_the_stator(voltage, motor));
         }
-        // The mean effort over the coming tick belongs into the row of this one; the current is the one at k.
+        // The mean effort over the coming tick belongs to the row of this one; the current is the one at k.
         now.current = self.state.power.current();
         now.output = self.state.power.output(command);
         now.effort = match external.controller {
@@ -121,7 +121,7 @@ impl ClosedLoop {
         now.following_error = [now.motor_reference - now.motor.position, now.reference - now.load.position];
     }
 
-    /// sample(k): the bodies in the axis coordinate come to `now`; the motor in its own is returned.
+    /// sample(k): writes the bodies in the axis coordinate to `now`; returns the motor in its own.
     #[inline(always)]
     pub(crate) fn sample(&self, external: &External, now: &mut Instant) -> BodyState {
         let measured = external.measured.as_ref().map(<[BodyState; 2]>::as_slice);
@@ -134,7 +134,7 @@ impl ClosedLoop {
         own
     }
 
-    /// Brings the powers of the tick that has ended, with the motor at `position` now, to `now`. At tick 0 they are zero.
+    /// Writes the powers of the tick that has ended to `now`, with the motor at `position`. At tick 0 they are zero.
     #[inline(always)]
     fn account(&self, position: f64, now: &mut Instant) {
         let Shaft { effort, position: before } = self.state.shaft;
@@ -147,7 +147,7 @@ impl ClosedLoop {
         now.shaft_power = effort * (position - before) * f64::from(self.base_rate.hertz());
     }
 
-    /// set-point(k) and control(k): the firmware sees its sensors and what it is to do. `motor` is in the motor's own
+    /// set-point(k) and control(k): the firmware gets its sensors and its demand. `motor` is in the motor's own
     /// coordinate, as it is mounted.
     #[inline(always)]
     fn control(
@@ -158,7 +158,7 @@ impl ClosedLoop {
         now: &mut Instant,
         recorder: &mut Recorder,
     ) -> PowerCommand {
-        // Until the program begins it stays at its beginning.
+        // Until the program begins, it stays at its start.
         let since = self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)));
         let upcoming = self.state.upcoming.take();
         let bodies = [motor, self.mounting.seen(now.load)];
@@ -209,7 +209,7 @@ impl ClosedLoop {
         }
     }
 
-    /// request(k): what the task wants at tick `k` comes to `now`.
+    /// request(k): writes the request of the task at tick `k` to `now`.
     #[inline(always)]
     fn ask(&mut self, k: u64, external: &External, now: &mut Instant) {
         let begun = self.state.begun.unwrap_or(k);
@@ -225,7 +225,7 @@ impl ClosedLoop {
         }
     }
 
-    /// Reads the sensors of an FMU in place of the drive, at the bodies that `now` has of the tick that comes.
+    /// Reads the sensors for an FMU in place of the drive, with the bodies that `now` has of the next tick.
     pub(crate) fn look_at_sensors(&mut self, now: &mut Instant) {
         let [motor, load] = [self.mounting.seen(self.mechanics.bodies()[0]), self.mounting.seen(now.load)];
         let State { sensors, power, .. } = &mut self.state;
@@ -234,7 +234,7 @@ impl ClosedLoop {
         }
     }
 
-    /// The program's set-point of tick `k`, which comes next; `None` over a fieldbus.
+    /// The program's set-point of the next tick `k`; `None` over a fieldbus.
     pub(crate) fn look_ahead(&mut self, k: u64) -> Option<Setpoint> {
         if let (None, Source::Program(program)) = (self.state.upcoming, &mut self.state.source) {
             self.state.upcoming = Some(program.at(self.base_rate.time(Tick(k - self.state.begun.unwrap_or(k)))));
@@ -242,10 +242,10 @@ impl ClosedLoop {
         self.state.upcoming
     }
 
-    /// Integrates the mechanics to the next tick; where motor and load are measured outside there is nothing to integrate.
+    /// Integrates the mechanics to the next tick; does nothing if motor and load are measured outside.
     ///
     /// # Errors
-    /// [`Reason`] why the loop cannot go on.
+    /// [`Reason`] why the loop cannot continue.
     #[inline(always)]
     pub(crate) fn integrate(&mut self, external: &External, now: &Instant) -> Result<(), Reason> {
         self.check()?;
@@ -265,7 +265,7 @@ impl ClosedLoop {
         Ok(())
     }
 
-    /// Whether the motion task goes on.
+    /// Checks that the motion task is running.
     ///
     /// # Errors
     /// [`Reason::Program`] why it gave up.
@@ -277,19 +277,19 @@ impl ClosedLoop {
         }
     }
 
-    /// Writes the loop at the present tick, its mechanics included.
+    /// Writes the state of the loop at the current tick, including its mechanics.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
+    /// [`MechanicsError`] if the engine cannot save its state.
     pub(crate) fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         self.state.save(to);
         self.mechanics.save(to)
     }
 
-    /// Goes back to where [`save`](Self::save) of a loop of the same scenario was called.
+    /// Restores the state that [`save`](Self::save) wrote for a loop of the same scenario.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this loop.
+    /// [`MechanicsError`] if the engine cannot restore it, or the numbers are not a state of this loop.
     pub(crate) fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
         self.state.restore(from)?;
         self.mechanics.restore(from)

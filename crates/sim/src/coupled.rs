@@ -1,9 +1,9 @@
 //! FMUs beside the axis: the whole loop is one block of a co-simulation, each FMU another.
 //!
-//! The axis comes last. What it gives at an exchange are the bodies and the set-point of that tick, and what the loops said at
-//! the tick before, whose efforts have brought the bodies there. What it takes within a step is an input's mean over each tick
-//! for efforts, which are held over it, and its value at the tick for everything else. At the last tick of a run nothing is asked
-//! for any more: its row has what acted before.
+//! The axis comes last. At an exchange it gives the bodies and the set-point of that tick, and the outputs of the loops at
+//! the previous tick, whose efforts have moved the bodies there. Within a step it takes the mean of an input over each tick
+//! for efforts, which are held over it, and its value at the tick for everything else. At the last tick of a run no inputs
+//! are taken: its row has those that acted before.
 mod block;
 mod fit;
 mod wiring;
@@ -27,14 +27,14 @@ use wiring::Wiring;
 
 /// Opens the FMUs of a scenario.
 pub trait FmuOpener: Sync {
-    /// The FMU that is asked for.
+    /// Opens the requested FMU.
     ///
     /// # Errors
-    /// Everything that does not fit its file, or why it cannot be started.
+    /// All mismatches with its file, or the reason why it cannot be started.
     fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>>;
 }
 
-/// Nobody: for scenarios without FMUs.
+/// An opener for scenarios without FMUs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoFmus;
 
@@ -48,33 +48,33 @@ impl FmuOpener for NoFmus {
 pub(crate) struct Coupled {
     /// The axis is the last block.
     master: Master<Part>,
-    /// Of the FMUs.
+    /// Names of the FMUs.
     names: Vec<String>,
     delays: Vec<ConnectionDelay>,
     doubts: Vec<FmuDoubt>,
 }
 
-/// Something doubtful about an FMU beside the axis.
+/// A doubt about an FMU beside the axis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FmuDoubt {
-    /// Position among the scenario's FMUs.
+    /// Index among the scenario's FMUs.
     pub index: usize,
-    /// What is doubtful, and where.
+    /// The doubt, and its place.
     pub doubt: FmuMistake,
 }
 
-/// A connection and how late it is.
+/// A connection and its delay.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConnectionDelay {
-    /// Where from, as `name.variable` or a channel.
+    /// Source, as `name.variable` or a channel.
     pub from: String,
-    /// Where to.
+    /// Destination.
     pub to: String,
-    /// Age of the newest value that goes into a step, at its end and at most (s).
+    /// Age of the newest value that enters a step, at its end and at most (s).
     pub delay: f64,
-    /// The same in steps of the coupling.
+    /// The delay in steps of the coupling.
     pub steps: u64,
-    /// Whether what is not known yet is extrapolated.
+    /// True if unknown values are extrapolated.
     pub is_extrapolated: bool,
 }
 
@@ -172,23 +172,23 @@ impl Coupled {
                 self.note_logs();
                 failure = failure.or_else(|| self.lost());
             }
-            // An exchange may take long: how long is up to the FMUs.
+            // An exchange may take any time: that is up to the FMUs.
             if failure.is_none() && progress(self.master.tick().0 as f64 / ticks as f64).is_break() {
                 failure = Some(Failure { time: self.master.time(), reason: Reason::Stopped });
             }
         }
-        // It is over: there is nothing to break off.
+        // The run is over and cannot be stopped any more.
         let _: ControlFlow<()> = progress(1.0);
         self.finish(failure)
     }
 
-    /// That the recording of the axis cannot be kept, if so.
+    /// The failure to keep the recording of the axis, if any.
     fn lost(&mut self) -> Option<Failure> {
         let Part::Axis(block) = self.master.block_mut(self.names.len()) else { return None };
         block.machine.check_recording().err()
     }
 
-    /// Notes the new log lines of the FMUs. Those of a step that is repeated come again.
+    /// Records the new log lines of the FMUs. Those of a repeated step are logged again.
     fn note_logs(&mut self) {
         for (index, name) in self.names.iter().enumerate() {
             let Part::Fmu(AttachedFmu { slave, .. }) = self.master.block_mut(index) else { continue };
@@ -221,7 +221,7 @@ impl Coupled {
         outcome
     }
 
-    /// Error of the exchange so far, and the connection where it is largest.
+    /// Error of the exchange so far, and the connection with the largest error.
     fn estimate(&self) -> Option<CouplingEstimate> {
         let EstimatedError { connection, error } = self.master.estimated_error()?;
         let ConnectionDelay { from, to, .. } = &self.delays[connection];
@@ -238,18 +238,18 @@ impl Coupled {
         machine
     }
 
-    /// What is doubtful about the FMUs.
+    /// Doubts about the FMUs.
     pub(crate) fn doubts(&self) -> &[FmuDoubt] {
         &self.doubts
     }
 
-    /// Every connection with how late it is.
+    /// All connections with their delays.
     pub(crate) fn delays(&self) -> &[ConnectionDelay] {
         &self.delays
     }
 }
 
-/// Data that do not fit come before FMUs that did not get far enough to say so.
+/// Mistakes in the data take precedence over FMUs that failed before they could report any.
 fn refused(mut unusable: Vec<UnusableFmu>) -> BuildError {
     let is_conduct = |mistake: &FmuMistake| mistake.at == FmuEntry::Conduct;
     let wrong = |fmu: &UnusableFmu| !fmu.mistakes.iter().all(is_conduct);
@@ -260,7 +260,7 @@ fn refused(mut unusable: Vec<UnusableFmu>) -> BuildError {
     BuildError::Fmus(unusable)
 }
 
-/// Why there is no first exchange: what an FMU does then is nobody's data.
+/// Error of a failed first exchange: the conduct of an FMU in it is not a mistake in the data.
 fn not_begun(error: CouplingError<PartError>) -> BuildError {
     match error {
         CouplingError::Block { source: PartError::Axis(failure), .. } => BuildError::NotBegun(failure.to_string()),
@@ -275,7 +275,7 @@ fn not_begun(error: CouplingError<PartError>) -> BuildError {
 fn failed(error: CouplingError<PartError>, time: f64) -> Failure {
     match error {
         CouplingError::Block { source: PartError::Axis(failure), .. } => failure,
-        // It says itself when.
+        // The message states its own time.
         CouplingError::Block { block, source: PartError::Fmu(error), .. } => {
             Failure { time, reason: Reason::Coupling(format!("`{block}`: {error}")) }
         }
@@ -283,7 +283,7 @@ fn failed(error: CouplingError<PartError>, time: f64) -> Failure {
     }
 }
 
-/// Steps of the coupling in a step of a member; the scenario has seen to it that this is a whole number.
+/// Steps of the coupling in a step of a member; the scenario ensures a whole number.
 fn steps(every: u32, of: u32) -> NonZeroU32 {
     NonZeroU32::new(every / of).unwrap_or(NonZeroU32::MIN)
 }

@@ -13,13 +13,13 @@ pub(crate) struct Disturbances {
     on_load: Vec<Disturbing>,
 }
 
-/// One of them.
+/// A single disturbance.
 #[derive(Debug, Clone)]
 struct Disturbing {
-    /// The ticks from which it acts to the next one.
+    /// The ticks from each of which it acts until the next one.
     ticks: Range<u64>,
     effort: f64,
-    /// Of a sine that is zero at the first of them (Hz).
+    /// Frequency of a sine that is zero at the first of these ticks (Hz).
     frequency: Option<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Disturbances {
     /// [`BuildError::IdleDisturbance`] for one that acts on no tick.
     pub(crate) fn new(all: &[Disturbance], base_rate: Rate, ticks: u64) -> Result<Self, BuildError> {
         let mut placed = Self { base_rate, on_motor: Vec::new(), on_load: Vec::new() };
-        // What lasts to the end of the run lasts on where the axis runs longer than its program: stepped, or beside another axis.
+        // A disturbance to the end of the run lasts on if the axis runs longer than its program: stepped, or beside another axis.
         let tick_at = |time: f64| if time < LONGEST_RUN { base_rate.tick_at(time).0 } else { u64::MAX };
         for (index, one) in all.iter().enumerate() {
             let acting = tick_at(one.start)..tick_at(one.start + one.duration);

@@ -1,4 +1,4 @@
-//! Why a run could not be built.
+//! Errors while building a run.
 use servobench_base::{ParamError, Rate, RateError};
 use servobench_cia402::SdoError;
 use servobench_cia402::units::UnitError;
@@ -13,7 +13,7 @@ use servobench_signals::Signal;
 use std::fmt::Display;
 use thiserror::Error;
 
-/// Why a scenario could not be turned into a closed loop.
+/// Reasons why a scenario could not be turned into a closed loop.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum BuildError {
     /// A parameter is out of its bound.
@@ -22,10 +22,10 @@ pub enum BuildError {
     /// A parameter of the drive's firmware is out of its bound.
     #[error(transparent)]
     Drive(#[from] servobench_drive::ParameterError),
-    /// A switch is nowhere.
+    /// A switch without a valid place.
     #[error(transparent)]
     Switches(#[from] ParamError<SwitchPoint>),
-    /// The end stops are none, or none for these ticks.
+    /// The end stops are invalid, or do not suit these ticks.
     #[error(transparent)]
     EndStops(#[from] EndStopError),
     /// The value of a key of the scenario does not fit others; its name is the key.
@@ -39,10 +39,10 @@ pub enum BuildError {
     Plan {
         /// Number of the step, from 0.
         index: usize,
-        /// What the planner says.
+        /// Error of the planner.
         error: PlanError,
     },
-    /// A move is to be aborted that has ended by then.
+    /// A move to be aborted has already ended by then.
     #[error(
         "program step {}: `aborts_after` is {after} s, but the move before lasts {lasts} s: abort it earlier, or let this move \
          follow without `aborts_after`",
@@ -51,17 +51,17 @@ pub enum BuildError {
     NothingToAbort {
         /// Number of the step that aborts, from 0.
         index: usize,
-        /// When it would, after the start of the move before (s).
+        /// Time at which it would abort, after the start of the previous move (s).
         after: f64,
-        /// How long that lasts (s).
+        /// Duration of the previous move (s).
         lasts: f64,
     },
-    /// A value that an object of the drive does not take.
+    /// A value that an object of the drive rejects.
     #[error("`{key}`: {error}")]
     Object {
         /// Key of the scenario.
         key: String,
-        /// What the drive answers.
+        /// Answer of the drive.
         error: Box<SdoError>,
     },
     /// Settings that do not fit the objects of the drive.
@@ -70,56 +70,56 @@ pub enum BuildError {
     /// A table that cannot be sent to the buffer of the drive.
     #[error("{_0}{}", key_of(_0))]
     Points(#[from] Unsendable),
-    /// A fault of the link is expected that it does not have.
+    /// An expected fault that the link cannot have.
     #[error("the link has no fault \"{fault}\"; it has {}", available.join(", "))]
     NoSuchFault {
         /// Number of the expectation, from 0.
         index: usize,
-        /// What was expected.
+        /// Expected fault.
         fault: String,
-        /// The faults that there are.
+        /// Available faults.
         available: Vec<&'static str>,
     },
     /// A fieldbus without a drive at its end.
     #[error("a fieldbus leads to a drive, and this motor has none: give the motor a drive, or leave `bus` out")]
     NoDriveOnTheBus,
-    /// The units of the bus are none that a drive can count with.
+    /// Units of the bus that a drive cannot count in.
     #[error(transparent)]
     Units(#[from] UnitError),
     /// The link to the drive cannot be set up.
     #[error(transparent)]
     Link(#[from] FieldbusError),
-    /// FMUs beside the axis cannot be had, each for its reasons; at least one.
+    /// FMUs beside the axis that cannot be used, each with its reasons; at least one.
     #[error("{}", in_one_line(.0))]
     Fmus(Vec<UnusableFmu>),
-    /// FMUs beside the axis crashed, or did not come back, before the first tick.
+    /// FMUs beside the axis crashed, or did not return, before the first tick.
     #[error("{}", in_one_line(.0))]
     Broken(Vec<UnusableFmu>),
-    /// Axis and FMUs did not come to their first exchange: what one of them did.
+    /// Axis and FMUs failed before their first exchange, with the error of one of them.
     #[error("at 0 s: {0}")]
     NotBegun(String),
-    /// An input of an FMU is given a channel that the axis does not have.
+    /// An input of an FMU is connected to a channel that the axis does not have.
     #[error("this axis has no channel `{signal}` for the input `{variable}` of an FMU; it has {}", names(available))]
     NoSuchSignal {
-        /// Which of the scenario's FMUs, from 0.
+        /// Index of the scenario's FMU, from 0.
         index: usize,
         /// The input.
         variable: String,
-        /// What it was to be given.
+        /// Requested signal.
         signal: Signal,
-        /// Signals that there are.
+        /// Available signals.
         available: Vec<Signal>,
     },
-    /// What the FMUs are connected with cannot be run so.
+    /// The connections of the FMUs cannot be run.
     #[error("{0}")]
     Coupling(String),
-    /// An engine that simulates FMUs, and no FMU.
+    /// An engine that simulates FMUs, without an FMU.
     #[error("the engine `{engine}` has no mechanics: give `[axis.fmu]`")]
     NoFmu {
         /// The engine.
         engine: EngineName,
     },
-    /// There is nothing that this engine could simulate.
+    /// The engine has nothing to simulate.
     #[error(
         "the engine `{engine}` needs bodies or an MJCF file, and the axis has an FMU alone: choose the engine `fmu`"
     )]
@@ -130,7 +130,7 @@ pub enum BuildError {
     /// The engine refuses the mechanics.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// The program, or the run, lasts longer than a run can.
+    /// The program or the run exceeds the longest run.
     #[error(
         "{} would end at {end} s, a run lasts {limit} s at most; {}",
         step.map_or("the run".into(), |index| format!("program step {}", index + 1)),
@@ -139,26 +139,26 @@ pub enum BuildError {
     TooLong {
         /// Number of the step of the program, from 0; `None` for the run itself.
         step: Option<usize>,
-        /// When it would end (s).
+        /// End (s).
         end: f64,
         /// Longest run (s).
         limit: f64,
     },
-    /// The run has more ticks than anybody waits for.
+    /// The run has too many ticks.
     #[error(
         "the run has {ticks} ticks, at {rate} Hz, and may have {limit}: so many take half an hour on the fastest engine; shorten \
          `run.duration` or the program to {} s, or lower `run.base_rate`",
         limit / u64::from(*rate)
     )]
     TooManyTicks {
-        /// Its ticks.
+        /// Ticks of the run.
         ticks: u64,
         /// The base rate (Hz).
         rate: u32,
-        /// The most.
+        /// Largest number of ticks.
         limit: u64,
     },
-    /// A disturbance that nothing would be seen of.
+    /// A disturbance without any effect.
     #[error(
         "disturbance {} acts on no tick of the run, which ends at {end_of_run} s: it starts at {start} s and lasts \
          {duration} s",
@@ -169,34 +169,34 @@ pub enum BuildError {
         index: usize,
         /// First instant (s).
         start: f64,
-        /// How long (s).
+        /// Duration (s).
         duration: f64,
         /// Last instant of the run (s).
         end_of_run: f64,
     },
-    /// The recording would be larger than one may be.
+    /// The recording would be too large.
     #[error(
         "recording {channels} channels at {rate} Hz for {duration} s takes {gigabytes:.1} GB, more than {limit} GB; \
          lower `record.rate` or name fewer `record.channels`"
     )]
     RecordingTooLarge {
-        /// Channels.
+        /// Number of channels.
         channels: usize,
         /// Recording rate (Hz).
         rate: u32,
         /// Length of the run (s).
         duration: f64,
-        /// What it would take (GB).
+        /// Size of the recording (GB).
         gigabytes: f64,
-        /// What it may take (GB).
+        /// Largest size (GB).
         limit: f64,
     },
     /// A channel that the recording does not have.
     #[error("`record.channels` names `{signal}`, which this axis does not have; it has {}", names(available))]
     UnknownChannel {
-        /// What was asked for.
+        /// Requested channel.
         signal: Signal,
-        /// What there is.
+        /// Available channels.
         available: Vec<Signal>,
     },
 }
@@ -206,7 +206,7 @@ fn names(signals: &[Signal]) -> String {
     names.join(", ")
 }
 
-/// Whether the run, or the step of its program, ends at `end` (s) within the longest run.
+/// Checks that the run, or the step of its program, ends at `end` (s) within the longest run.
 ///
 /// # Errors
 /// [`BuildError::TooLong`] otherwise.
@@ -214,7 +214,7 @@ pub(crate) fn check_length(step: Option<usize>, end: f64) -> Result<(), BuildErr
     if end <= LONGEST_RUN { Ok(()) } else { Err(BuildError::TooLong { step, end, limit: LONGEST_RUN }) }
 }
 
-/// Whether a run has no more ticks than a run may have.
+/// Checks that a run does not exceed the largest number of ticks.
 ///
 /// # Errors
 /// [`BuildError::TooManyTicks`] otherwise.
@@ -225,15 +225,15 @@ pub(crate) fn check_ticks(ticks: u64, base_rate: Rate) -> Result<(), BuildError>
     Err(BuildError::TooManyTicks { ticks, rate: base_rate.hertz(), limit: MOST_TICKS })
 }
 
-/// An FMU that cannot be had.
+/// An FMU that cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("FMU `{name}`: {}", in_one_line(mistakes))]
 pub struct UnusableFmu {
-    /// Which of the scenario's FMUs, from 0.
+    /// Index of the scenario's FMU, from 0.
     pub index: usize,
-    /// Its name.
+    /// Name of the FMU.
     pub name: String,
-    /// What is wrong, at least one thing.
+    /// Mistakes, at least one.
     pub mistakes: Vec<FmuMistake>,
 }
 
@@ -253,7 +253,7 @@ impl From<SdoError> for BuildError {
     }
 }
 
-/// The key that helps, behind the message.
+/// The key that would help, appended to the message.
 const fn key_of(unsendable: &Unsendable) -> &'static str {
     match unsendable {
         Unsendable::Point { help: Help::CoarserUnit | Help::MorePoints, .. } => " (`bus.units`)",

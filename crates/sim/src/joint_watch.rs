@@ -1,4 +1,4 @@
-//! Watches the ends of the joints' ranges in a user's own model: what binds there is an event.
+//! Records the limits of the joints' ranges in a user's model as events while they bind.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::limit_watch::Watch;
 use servobench_base::Stateful;
@@ -6,19 +6,19 @@ use servobench_metrics::Incident;
 use servobench_plant::JointLimit;
 use servobench_trace::{Event, Recorder};
 
-/// Who says that a joint is at its end.
+/// Source of the events of joint limits.
 const MECHANICS: &str = "mechanics";
 
-/// All of them, in the order of the mechanics.
+/// The watches of all joint limits, in the order of the mechanics.
 #[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct JointWatch {
     watches: Vec<Watch>,
-    /// Whether one of them bound at the last tick.
+    /// True if one of them bound at the last tick.
     bound: bool,
 }
 
 impl JointWatch {
-    /// Takes which ends bind at tick `t` (s).
+    /// Records the limits that bind at tick `t` (s).
     #[inline(always)]
     pub(crate) fn tick(&mut self, t: f64, limits: &[JointLimit], recorder: &mut Recorder) {
         let bound = limits.iter().any(|limit| limit.binds);
@@ -28,7 +28,7 @@ impl JointWatch {
         }
     }
 
-    /// Ends what still binds at `t` (s).
+    /// Ends the limits that still bind at `t` (s).
     pub(crate) fn finish(&mut self, t: f64, limits: &[JointLimit], recorder: &mut Recorder) {
         self.note(t, limits, false, recorder);
     }

@@ -1,6 +1,6 @@
-//! The closed loop: builds it from a scenario and an engine, and runs it.
+//! The closed loop: construction from a scenario and an engine, and runs.
 //!
-//! `machine::Machine::tick` is the whole loop in one function, in execution order, whoever steps it: a run, a co-simulation, or an
+//! `machine::Machine::tick` is the whole loop in one function, in execution order, for every caller: a run, a co-simulation, or an
 //! external simulation through a [`Stepper`].
 
 mod alarm_watch;

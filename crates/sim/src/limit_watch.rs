@@ -1,21 +1,21 @@
-//! Watches the limits that bind: nothing is cut in silence, and what goes from limit to limit is noted.
+//! Records the limits of the loops as events while they bind, and reversals from one limit to the opposite one.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::Stateful;
 use servobench_signals::PerLimit;
 use servobench_trace::{Event, LimitReversals, Recorder};
 
-/// Events noted for one limit at most; one more says that there were others.
+/// Most events recorded for one limit; the last one notes that there were more.
 const MOST_EVENTS: usize = 100;
 
-/// One limit: whether it binds, since when, and how often it did since the last row.
+/// State of one limit: start of binding, number of bound ticks since the last row, and reversals.
 #[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct Watch {
     since: Option<f64>,
     bound_ticks: u32,
     events: usize,
-    /// Whether the positive limit was the one that bound last.
+    /// True if the positive limit bound last.
     bound_above: Option<bool>,
-    /// When it was the other one before (s).
+    /// Times at which it bound on the opposite side to before (s).
     reversals: Vec<f64>,
 }
 
@@ -23,12 +23,12 @@ pub(crate) struct Watch {
 #[derive(Debug, Clone, Default, Stateful)]
 pub(crate) struct LimitWatch {
     watches: PerLimit<Watch>,
-    /// Whether one of them bound at the last tick.
+    /// True if one of them bound at the last tick.
     bound: bool,
     ticks: u32,
 }
 
-/// Who keeps to a limit, and its name.
+/// The part that applies a limit, and the limit's name.
 type Limit = (&'static str, &'static str);
 const VOLTAGE: Limit = ("inverter", PerLimit::NAMES.voltage);
 const CURRENT: Limit = ("velocity loop", PerLimit::NAMES.current);
@@ -37,7 +37,7 @@ const SPEED: Limit = ("velocity loop", PerLimit::NAMES.speed);
 const MASTER: Limit = ("master", PerLimit::NAMES.master);
 
 impl LimitWatch {
-    /// Takes which limits bind at tick `t` (s), and what each of them cuts, of which the sign counts.
+    /// Records the limits that bind at tick `t` (s), and the values they cut, whose sign counts.
     #[inline(always)]
     #[expect(
         clippy::trivially_copy_pass_by_ref,
@@ -67,7 +67,7 @@ impl LimitWatch {
         PerLimit { voltage, current, effort, ..PerLimit::default() }
     }
 
-    /// Ends what still binds at `t` (s), and notes what went from limit to limit.
+    /// Ends the limits that still bind at `t` (s), and records the reversals.
     pub(crate) fn finish(&mut self, t: f64, recorder: &mut Recorder) {
         self.note(t, PerLimit::default(), PerLimit::default(), recorder);
         let PerLimit { voltage, current, effort, speed, master } = &mut self.watches;
@@ -95,8 +95,8 @@ impl LimitWatch {
 }
 
 impl Watch {
-    /// Takes what the limit cuts at `t` (s), if it binds. `event` makes the event of the time from start to end (s), which may be the
-    /// last that is noted.
+    /// Updates the watch with the value cut at `t` (s), if the limit binds. `event` makes the event from start to end (s); its last
+    /// argument is true for the last event recorded.
     pub(crate) fn tick(
         &mut self,
         t: f64,
@@ -139,7 +139,7 @@ mod tests {
         Recorder::new(About::default(), Rate::new(1).unwrap(), Vec::new(), 0)
     }
 
-    /// The events of a run in which `binds` says at each tick which limits bind; a tick is a second.
+    /// The events of a run in which `binds` gives the limits that bind at each tick; a tick is a second.
     fn events(binds: impl IntoIterator<Item = PerLimit<bool>>) -> Vec<Event> {
         let (mut recorder, mut watch, mut t) = (recorder(), LimitWatch::default(), 0.0);
         for binds in binds {
@@ -152,7 +152,7 @@ mod tests {
 
     const POSITIVE: PerLimit<f64> = PerLimit { voltage: 1.0, current: 1.0, effort: 1.0, speed: 1.0, master: 1.0 };
 
-    /// What is cut between is not a reversal, and neither is a limit that binds on the same side again.
+    /// A cut in between is not a reversal, and neither is a limit that binds on the same side again.
     #[test]
     fn a_reversal_is_a_cut_at_the_limit_opposite_to_the_last_one() {
         let (mut recorder, mut watch) = (recorder(), LimitWatch::default());

@@ -1,4 +1,4 @@
-//! The closed loop at rest, to be made linear: built of linearised parts, moved number by number, ticked by the tick of every run.
+//! The closed loop at rest, for linearisation: built of linearised parts, perturbed one number at a time, advanced by the usual tick.
 use crate::closed_loop::{ClosedLoop, Control, EncoderInput, Mounting, Shaft, Source, State};
 use crate::disturbance::Disturbances;
 use crate::error::BuildError;
@@ -16,23 +16,23 @@ use servobench_signals::Instant;
 use servobench_stability as stability;
 use servobench_trace::{About, Recorder};
 
-/// Sensors that the drive is wired to.
+/// Sensors wired to the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WiredSensors {
     /// The encoder of the motor.
     pub motor: Encoder,
-    /// The encoder on the load, where it closes the position loop.
+    /// The encoder on the load, if it closes the position loop.
     pub load: Option<Encoder>,
-    /// The current sensors, where they err.
+    /// The current sensors, if they have errors.
     pub current: Option<CurrentSensor>,
 }
 
 /// The loop at rest.
 pub struct AtRest {
     closed: ClosedLoop,
-    /// The drive with its gains as they are.
+    /// Parameters of the drive with unchanged gains.
     params: drive::Params,
-    /// Its state before the first tick, and where numbers are in it.
+    /// State before the first tick, and the places of its numbers.
     fresh: Vec<u64>,
     form: Form,
     /// Voltage that holds the current at rest (V), and the electrical angle per motor coordinate.
@@ -45,7 +45,7 @@ pub struct AtRest {
     recorder: Recorder,
 }
 
-/// A number at rest that is not zero.
+/// Numbers that are not zero at rest.
 const CURRENT: &str = "plant.power.0.0.state.current.d";
 const INTEGRAL: &str = "controllers.drive.current.integral.d";
 const VOLTAGES: [[&str; 2]; 2] = [
@@ -55,10 +55,10 @@ const VOLTAGES: [[&str; 2]; 2] = [
 const POSITION: &str = "mechanics.position";
 
 impl AtRest {
-    /// The loop that `model` describes, with these sensors.
+    /// The loop of `model` with these sensors.
     ///
     /// # Errors
-    /// [`BuildError`] says which part cannot be built.
+    /// [`BuildError`] names the part that cannot be built.
     pub fn new(
         model: &stability::Loop,
         sensors: &WiredSensors,
@@ -70,7 +70,7 @@ impl AtRest {
         if !sensors.motor.gives_velocity() {
             params.blocks.measurement.get_or_insert(measurement::Params::Difference);
         }
-        // A commutation that is off would turn the current at rest into torque.
+        // A misaligned commutation would turn the current at rest into torque.
         let turned = |encoder: Encoder| {
             let mut encoder = encoder.linearised();
             if let Some(errors) = encoder.errors.as_mut().filter(|_| model.d_current != 0.0) {
@@ -90,7 +90,7 @@ impl AtRest {
             }),
             stability::Source::Pmsm(motor) => {
                 if let Some(sensor) = sensor.as_mut().filter(|_| current != 0.0) {
-                    // Sensors that differ would turn the current at rest into torque.
+                    // Unequal sensors would turn the current at rest into torque.
                     let [a, b] = sensor.gain_error;
                     sensor.gain_error = [f64::midpoint(a, b); 2];
                     current /= 1.0 + sensor.gain_error[0];
@@ -238,7 +238,7 @@ impl Running for AtRest {
         Ok(())
     }
 
-    /// The mechanics first, with the effort that the tick before has left; then everything else, up to the effort.
+    /// Advances the mechanics with the effort of the previous tick, then everything else, up to the effort.
     fn tick(&mut self) -> Result<(), LinearError> {
         if self.has_begun {
             self.now.effort = self.closed.mounting.direction * self.closed.state.shaft.effort;

@@ -1,4 +1,4 @@
-//! The sensors of an axis whose drive an FMU replaces: they are read for the FMU.
+//! The sensors of an axis whose drive is replaced by an FMU, which reads them.
 use crate::closed_loop::{EncoderInput, Mounting};
 use servobench_base::Stateful;
 use servobench_plant::{BodyState, PowerStage};
@@ -10,10 +10,10 @@ pub(crate) struct LooseSensors {
     pub(crate) motor_encoder: EncoderInput,
     #[state(fixed)]
     pub(crate) load_encoder: Option<EncoderInput>,
-    /// Whether the currents are measured: by voltage control of a synchronous motor.
+    /// True if the currents are measured: with voltage control of a synchronous motor.
     #[state(constant)]
     pub(crate) has_current: bool,
-    /// Whether the tick that comes has been read already.
+    /// True if the next tick has been read already.
     is_read: bool,
 }
 
@@ -26,7 +26,7 @@ impl LooseSensors {
         Self { motor_encoder, load_encoder, has_current, is_read: false }
     }
 
-    /// Reads the tick that comes, if that has not been done: what the sensors say comes to `now`. `motor` (its own coordinate) and `load` are
+    /// Reads the next tick, if that has not been done, and writes the readings to `now`. `motor` (its own coordinate) and `load` are
     /// as mounted.
     pub(crate) fn look_ahead(
         &mut self,
@@ -48,7 +48,7 @@ impl LooseSensors {
         }
     }
 
-    /// The same at the tick itself, after which the next one comes.
+    /// Reads the sensors at the tick itself, after which the next one follows.
     pub(crate) fn read(
         &mut self,
         bodies: [BodyState; 2],

@@ -1,4 +1,4 @@
-//! An axis and its time, and the one tick that moves it.
+//! An axis and its time, with the tick that advances both.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::axis::Axis;
 use crate::run::{Failure, Outcome, Reason};
@@ -12,7 +12,7 @@ pub(crate) const LOG_EVERY: u64 = 64;
 pub(crate) struct Machine {
     pub(crate) axis: Axis,
     base_rate: Rate,
-    /// The tick that comes next.
+    /// The next tick.
     tick: u64,
 }
 
@@ -22,14 +22,14 @@ impl Machine {
         Self { axis, base_rate, tick: 0 }
     }
 
-    /// One tick, whoever steps it:
+    /// One tick, for every caller:
     ///
     /// ```text
     /// tick k:  sample → set-point → control → power stage → record → integrate to k+1
     /// ```
     ///
     /// # Errors
-    /// [`Failure`] says why the axis cannot go on.
+    /// [`Failure`] states why the axis cannot continue.
     #[inline(always)]
     pub(crate) fn tick(&mut self) -> Result<(), Failure> {
         self.observe();
@@ -42,17 +42,17 @@ impl Machine {
         Ok(())
     }
 
-    /// Tick k but for the mechanics: all of the last tick of a run.
+    /// Tick k without the mechanics: all of the last tick of a run.
     #[inline(always)]
     pub(crate) fn observe(&mut self) {
         self.axis.observe(self.tick, self.time());
     }
 
-    /// Runs `ticks` ticks, the last of which is observed only; `progress` is told the share that is done, from 0 to 1, and may break
-    /// the run off.
+    /// Runs `ticks` ticks, the last of which is only observed. `progress` gets the completed share, from 0 to 1, and may stop
+    /// the run.
     ///
     /// # Errors
-    /// [`Failure`] says why the axis cannot go on, or that the run was broken off.
+    /// [`Failure`] states why the axis cannot continue, or that the run was stopped.
     pub(crate) fn run(&mut self, ticks: u64, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), Failure> {
         wide_registers!(self.all_ticks(ticks, progress), Self::all_ticks_in_wide_registers, self, ticks, progress)
     }
@@ -85,12 +85,12 @@ impl Machine {
         if done.is_ok() {
             self.observe();
         }
-        // It is over: there is nothing to break off.
+        // The run is over and cannot be stopped any more.
         let _: ControlFlow<()> = progress(1.0);
         done
     }
 
-    /// Whether what happens is still recorded.
+    /// Checks that the recording still works.
     ///
     /// # Errors
     /// [`Reason::Recording`] if it is not.
@@ -103,22 +103,22 @@ impl Machine {
         self.base_rate
     }
 
-    /// The tick that comes next.
+    /// The next tick.
     pub(crate) const fn next(&self) -> Tick {
         Tick(self.tick)
     }
 
-    /// Its time (s).
+    /// Time of the next tick (s).
     pub(crate) fn time(&self) -> f64 {
         self.base_rate.time(self.next())
     }
 
-    /// Goes to `tick`, to which the axis has gone back.
+    /// Sets the next tick after the axis was restored to it.
     pub(crate) const fn go_back(&mut self, Tick(tick): Tick) {
         self.tick = tick;
     }
 
-    /// Ends the run at the present tick: what it leaves behind, up to `failure` if there was one.
+    /// Ends the run at the current tick. Returns its outcome, up to `failure` if there was one.
     pub(crate) fn finish(self, failure: Option<Failure>) -> Outcome {
         let present = self.time();
         let (recording, missing) = self.axis.finish(present, failure.as_ref().map_or(present, |failure| failure.time));
@@ -128,7 +128,7 @@ impl Machine {
     }
 }
 
-/// How often a run reports its progress, in ticks. With an FMU as mechanics a tick may take milliseconds.
+/// Ticks between progress reports of a run. With an FMU as mechanics a tick may take milliseconds.
 const PROGRESS_EVERY: u64 = 1 << 10;
 
 #[cfg(test)]
@@ -167,7 +167,7 @@ jerk = "6e4 rad/s3"
 move_to = "7 rad"
 "#;
 
-    /// A run on a processor with wide registers and one on any other are the same to the bit, limits that bind included.
+    /// A run on a processor with wide registers and one on any other are equal to the bit, including limits that bind.
     #[test]
     fn both_kinds_of_processors_give_the_same_run() {
         for axis in [AXIS.to_owned(), AXIS.replace("540 V", "90 V"), AXIS.replace("1500 rad", "90000 rad")] {

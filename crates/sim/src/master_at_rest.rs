@@ -1,5 +1,5 @@
-//! The position loop that a master closes over a bus (csv), at rest and in real numbers: frames without increments, as late as the bus
-//! makes them. Position loop and interpolation are those of every run; here is only the way between them.
+//! The position loop that a master closes over a bus (csv), at rest and in real numbers: frames without increments, with the delay of the
+//! bus. Position loop and interpolation are those of every run; this module has only the path between them.
 use servobench_base::{Countdown, Divider, Setpoint, Stateful};
 use servobench_drive::device::CycleEvent;
 use servobench_drive::modes::cyclic::velocity;
@@ -7,10 +7,10 @@ use servobench_drive::modes::{Actual, Moment, Targets};
 use servobench_drive::{self as drive, Demand};
 use servobench_fieldbus::link::{Law, PositionGains, PositionLoop};
 
-/// Positions or velocities under way in one direction, the newest first.
+/// Positions or velocities in transit in one direction, the newest first.
 type Frames = [f64; FRAMES];
 
-/// As many as a bus can have under way.
+/// Most frames in transit on a bus.
 const FRAMES: usize = 16;
 
 /// A position loop that a master closes over a bus.
@@ -20,7 +20,7 @@ pub struct MasterOverBus {
     pub gains: PositionGains,
     /// Base ticks of a cycle of the bus.
     pub cycle: Divider,
-    /// Cycles that a frame is under way, below 16.
+    /// Delay of a frame in cycles, below 16.
     pub delay: usize,
 }
 
@@ -29,13 +29,13 @@ pub struct MasterOverBus {
 pub(crate) struct MasterAtRest {
     #[state(constant)]
     law: Law,
-    /// Factor on all of what the loop puts out.
+    /// Factor on the output of the loop.
     #[state(constant)]
     factor: f64,
     /// Base ticks of a cycle of the bus and of a step of the drive, and a base tick (s).
     #[state(constant)]
     every: ([Divider; 2], f64),
-    /// Cycles that a frame is under way.
+    /// Delay of a frame in cycles.
     #[state(constant)]
     delay: usize,
     turns: [Countdown; 2],
@@ -50,7 +50,7 @@ pub(crate) struct MasterAtRest {
 }
 
 impl MasterAtRest {
-    /// This loop, to a drive with these parameters.
+    /// The loop over a bus to a drive with these parameters.
     pub(crate) fn new(&MasterOverBus { gains, cycle, delay }: &MasterOverBus, drive: &drive::Params) -> Self {
         let law = Law { gains, feedforward: 0.0, limit: f64::INFINITY };
         let mut master = Self {
@@ -76,7 +76,7 @@ impl MasterAtRest {
         self.factor = factor;
     }
 
-    /// A base tick with the axis at `position`.
+    /// One base tick with the axis at `position`.
     pub(crate) fn step(&mut self, position: f64) -> Demand {
         let ([cycle, drive], h) = self.every;
         let [bus_turn, drive_turn] = &mut self.turns;

@@ -17,41 +17,41 @@ use servobench_planner::{
 use servobench_scenario::{Bus, BusMode, MoveStep, Scenario, Step};
 use servobench_trace::Move;
 
-/// The part of its largest velocity that is rounding at the end of a move.
+/// Fraction of its largest velocity that counts as rounding at the end of a move.
 const ROUNDING: f64 = 1e-9;
 
-/// A planned move, and when it starts and ends: later than its plan where a velocity is held, earlier where it is aborted.
+/// A planned move with its start and end: later than its plan if a velocity is held, earlier if it is aborted.
 #[derive(Debug, Clone)]
 struct Planned {
     start: f64,
     end: f64,
     from: f64,
     plan: Plan,
-    /// Its request, where its target is a position of the axis and it can be planned anew on its way.
+    /// Its request, if its target is a position of the axis and it can be replanned on the way.
     request: Option<Request>,
-    /// How far the way through its points leads from the move (m or rad), where it is sent as points.
+    /// Deviation of the path through its points from the move (m or rad), if it is sent as points.
     deviation: Option<f64>,
-    /// Whether the next move takes over from it.
+    /// True if the next move takes over from it.
     is_aborted: bool,
-    /// True where its plan ends at rest.
+    /// True if its plan ends at rest.
     ends_at_rest: bool,
-    /// What it is, in a word or two.
+    /// Its kind, in a word or two.
     kind: &'static str,
 }
 
-/// Moves and pauses, one after the other, as the drive sees them.
+/// Moves and pauses, one after the other, as received by the drive.
 #[derive(Debug, Clone, Stateful)]
 pub struct Program {
     course: Course,
     #[state(constant)]
     end: f64,
-    /// Between the course and the drive.
+    /// Interpolation between the task and the drive.
     #[state(fixed)]
     fine: Option<Fine>,
-    /// The course as the task wants it: where the set-point is interpolated, so much later, and otherwise the set-point itself.
+    /// The moves as requested by the task, if the set-point is interpolated and thus delayed; otherwise the set-point is the request.
     #[state(fixed)]
     requested: Option<Course>,
-    /// In which its positions are told.
+    /// Unit in which its positions are shown.
     #[state(constant)]
     unit: DisplayUnit,
 }
@@ -64,15 +64,15 @@ struct Course {
     now: Now,
 }
 
-/// What the last query found; the next one is most likely the same.
+/// Result of the last query; the next one is most likely the same.
 #[derive(Debug, Clone, Stateful)]
 struct Now {
-    /// Index of the move, its start (s) and where it starts from; the move is over when the next one starts (s).
+    /// Index of the move, its start (s) and start position; the move is over when the next one starts (s).
     index: usize,
     start: f64,
     from: f64,
     next_start: f64,
-    /// When its plan ends (s), and the request from then on.
+    /// End of its plan (s), and the request from then on.
     plan_end: f64,
     then: RequestKind,
     reader: Reader,
@@ -104,12 +104,12 @@ impl Program {
         Ok(program)
     }
 
-    /// One without moves.
+    /// A program without moves.
     pub(crate) fn standing() -> Self {
         Self::of(Vec::new(), 0.0)
     }
 
-    /// That of `moves`, which ends at `end` (s).
+    /// A program of `moves`, which ends at `end` (s).
     fn of(moves: Vec<Planned>, end: f64) -> Self {
         let next_start = if moves.is_empty() { f64::INFINITY } else { f64::NEG_INFINITY };
         let (plan_end, then) = (f64::NEG_INFINITY, RequestKind::Stand);
@@ -117,7 +117,7 @@ impl Program {
         Self { course: Course { moves, now }, end, fine: None, requested: None, unit: DisplayUnit::plain("m", 0) }
     }
 
-    /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start, and moves that are no table as `points`.
+    /// Plans every move; velocity commands are sent in `cycle`, whose times count from the start, and all moves but tables as `points`.
     fn plan(steps: &[Step], cycle: Option<CommandCycle>, points: Option<PointTimes>) -> Result<Self, BuildError> {
         let (mut moves, mut end, mut state) = (Vec::<Planned>::new(), 0.0, Setpoint::default());
         for (index, step) in steps.iter().enumerate() {
@@ -164,8 +164,8 @@ impl Program {
         self.end
     }
 
-    /// Set-point at `t` (s), the time of a tick. Queries go from tick to tick where the program is interpolated, and must not
-    /// go back in time elsewhere.
+    /// Set-point at `t` (s), the time of a tick. Queries go from tick to tick if the program is interpolated, and otherwise must
+    /// not go back in time.
     #[inline(always)]
     pub fn at(&mut self, t: f64) -> Setpoint {
         let Self { course, fine, .. } = self;
@@ -175,7 +175,7 @@ impl Program {
         Setpoint { x, v, a, j, s }
     }
 
-    /// Request of the task at `t` (s), where the set-point is `setpoint`, and its kind. Queries must not go back
+    /// Request of the task at `t` (s), at which the set-point is `setpoint`, and its kind. Queries must not go back
     /// in time.
     #[inline(always)]
     pub(crate) fn request_at(&mut self, t: f64, setpoint: Setpoint) -> (Setpoint, RequestKind) {
@@ -188,13 +188,13 @@ impl Program {
         }
     }
 
-    /// How long each move lasts (s).
+    /// Duration of each move (s).
     pub fn durations(&self) -> impl Iterator<Item = f64> {
         self.course.moves.iter().map(|planned| planned.end - planned.start)
     }
 
-    /// What the position of each move will differ at most (m or rad), as [`PlanDetails::Commands`] announces it, or the way through the
-    /// points of a move leads from it; `None` of one that is sent neither as velocity commands nor as points of its own.
+    /// Largest deviation of each move in position (m or rad): that announced by [`PlanDetails::Commands`], or that of the path through its
+    /// points; `None` for a move that is sent neither as velocity commands nor as separate points.
     #[must_use]
     pub fn announced(&self) -> Vec<Option<f64>> {
         let error = |planned: &Planned| match planned.plan.details() {
@@ -204,19 +204,19 @@ impl Program {
         self.course.moves.iter().map(error).collect()
     }
 
-    /// When each move starts (s), where from, and its plan.
+    /// Start (s), start position and plan of each move.
     pub(crate) fn plans(&self) -> impl Iterator<Item = (f64, f64, &Plan)> {
         self.course.moves.iter().map(|planned| (planned.start, planned.from, &planned.plan))
     }
 
-    /// What a recording says of the moves, in words in the unit of the scenario.
+    /// The moves for a recording, with texts in the unit of the scenario.
     pub fn moves(&self) -> impl Iterator<Item = Move> {
         let delay = self.fine.as_ref().map_or(0.0, Fine::delay);
         self.course.moves.iter().map(move |planned| planned.describe(&self.unit, delay))
     }
 }
 
-/// What `fine` makes of the set-point at `t` (s): position and its derivatives.
+/// The set-point at `t` (s) interpolated by `fine`: position and its derivatives.
 #[inline(never)]
 fn interpolated(fine: &mut Fine, course: &mut Course, t: f64) -> [f64; 5] {
     let Setpoint { x, v, a, j, s } = fine.next(|| course.at(t));
@@ -235,13 +235,13 @@ impl Course {
         setpoint
     }
 
-    /// The kind of request at `t` (s), for which the set-point was asked last.
+    /// The kind of request at `t` (s), at which the set-point was queried last.
     #[inline(always)]
     fn kind(&self, t: f64) -> RequestKind {
         if t < self.now.plan_end { RequestKind::Follow } else { self.now.then }
     }
 
-    /// Finds what holds at `t` (s).
+    /// Finds the move that is active at `t` (s).
     #[cold]
     fn look_up(&mut self, t: f64) {
         let later = self.now.index + 1..self.moves.len();
@@ -263,14 +263,14 @@ impl Course {
 }
 
 impl Planned {
-    /// The rest of it after `after` (s), where `request` is its own and its target still ahead: a move that is commanded again keeps
-    /// its plan.
+    /// The rest of the plan from `after` (s) on, if `request` is that of this move and its target is still ahead: a move that is commanded
+    /// again keeps its plan.
     fn rest_for(&self, request: &Request, after: f64) -> Option<Plan> {
         let is_same = self.request.as_ref() == Some(request) && after < self.plan.duration();
         is_same.then(|| self.plan.rest(after))
     }
 
-    /// Ends the move so long after its start; the time then, and the state of motion. `index` is the step that aborts it.
+    /// Ends the move `after` (s) after its start. Returns that time and the state of motion. `index` is the step that aborts it.
     fn abort(&mut self, after: f64, index: usize) -> Result<(f64, Setpoint), BuildError> {
         let lasts = self.end - self.start;
         if after >= lasts {
@@ -283,13 +283,13 @@ impl Planned {
     }
 }
 
-/// The request of `step`, where its target is a position of the axis and it is planned from any state.
+/// The request of `step`, if its target is a position of the axis and it is planned from any state.
 fn begun_anywhere(step: &MoveStep) -> Option<&Request> {
     let is_absolute = step.positioning == Positioning::Absolute;
     (is_absolute && matches!(step.request.generator, Generator::Replanning(_))).then_some(&step.request)
 }
 
-/// True where a plan ends at rest: a sum of commanded velocities leaves its rounding.
+/// True if a plan ends at rest: a sum of commanded velocities leaves its rounding.
 fn ends_at_rest(plan: &Plan) -> bool {
     let velocity = plan.end().v.abs();
     // The peak of a long plan takes time.
@@ -299,20 +299,20 @@ fn ends_at_rest(plan: &Plan) -> bool {
 /// The interpolation sub-mode.
 const SUB_MODE: Object = Object { index: 0x60C0, subindex: 0 };
 
-/// When the points are that a move is sent as over `bus`, if it is.
+/// Times of the points of a move sent over `bus`; `None` if it is not sent as points.
 fn point_times(bus: &Bus) -> Option<PointTimes> {
     if bus.mode != BusMode::InterpolatedPosition {
         return None;
     }
     let times = PointTimes::every(bus.point_time);
-    // Drives with one time for all points follow them at that time to the last.
+    // Drives with one time for all points use that time up to the last point.
     let sub_mode = bus.objects.iter().rev().find(|write| write.object == SUB_MODE);
     let sub_mode = sub_mode.and_then(|write| SubMode::from_code(i16::try_from(write.value).ok()?).ok());
     let has_one = sub_mode.is_some_and(SubMode::has_constant_time);
     Some(PointTimes { unit: if has_one { bus.point_time } else { times.unit }, ..times })
 }
 
-/// What a drive follows of `plan`, sent as `points` unless it is a table, and how far that leads from it.
+/// The path that a drive follows for `plan`, sent as `points` unless it is a table, and its deviation from the plan.
 fn followed(plan: Plan, points: Option<PointTimes>) -> Result<(Plan, Option<f64>), PlanError> {
     match points {
         Some(times) if !matches!(plan.details(), PlanDetails::Table { .. }) => {
@@ -367,7 +367,7 @@ mod tests {
         assert_eq!(program.durations().count(), 2);
     }
 
-    /// Before, one that was repeated while it braked turned round behind its target.
+    /// Before, one that was repeated while it braked reversed beyond its target.
     #[test]
     fn a_move_repeated_on_its_way_arrives_when_it_would_have() {
         let mut random = Random::seeded(39);
@@ -409,7 +409,7 @@ mod tests {
         assert_eq!(labels, ends.map(|(from, to)| format!("move from {from} m to {to} m, order 4")));
     }
 
-    /// Oracle: each move's own set-point, looked up at every instant. Moves without a pause between them, one of no
+    /// Oracle: each move's own set-point, looked up at every instant. Moves without a pause between them, one of zero
     /// distance, and queries that skip whole moves.
     #[test]
     fn what_is_kept_from_query_to_query_is_what_a_look_up_finds() {
@@ -434,7 +434,7 @@ mod tests {
         assert!((program.end() - 0.5).abs() < 1e-15);
     }
 
-    /// The moves have no length in the scenario file: what they add up to is known here only.
+    /// The moves have no length in the scenario file: their sum is known only here.
     #[test]
     fn a_program_that_never_ends_is_refused_at_its_step() {
         let slow = step(1.0, Positioning::Relative, Limits { velocity: 1e-9, ..LAMBRECHTS });

@@ -1,4 +1,4 @@
-//! A run from the first tick to the last, and what it leaves behind.
+//! A run from the first tick to the last, and its outcome.
 use crate::bench::{Bench, Loop};
 use servobench_metrics::MEASURED_FROM;
 use servobench_plant::MechanicsError;
@@ -6,56 +6,56 @@ use servobench_trace::Recording;
 use std::io;
 use std::ops::ControlFlow;
 
-/// What a run leaves behind.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// Everything up to the end, or up to the failure: every tick, whatever `record.rate` says ([`thinned`](crate::thinned)),
-    /// unless that would be more than a recording may have.
+    /// Recording up to the end, or up to the failure: every tick, whatever `record.rate` is ([`thinned`](crate::thinned)),
+    /// unless that would exceed the largest size of a recording.
     pub recording: Recording,
-    /// Why the run ended early.
+    /// Reason for an early end of the run.
     pub failure: Option<Failure>,
 }
 
-/// Why a run ended early.
+/// An early end of a run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("at {time} s: {reason}")]
 pub struct Failure {
-    /// When (s).
+    /// Time (s).
     pub time: f64,
-    /// Why.
+    /// Reason.
     pub reason: Reason,
 }
 
-/// What ended a run early.
+/// Reasons for an early end of a run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Reason {
-    /// What the engine says.
+    /// Error of the engine.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// What the coupling with FMUs says.
+    /// Error of the coupling with FMUs.
     #[error("{0}")]
     Coupling(String),
-    /// What the program waited for in vain.
+    /// Condition that the program waited for in vain.
     #[error("{0}")]
     Program(String),
-    /// The disk, which takes no more of the recording.
+    /// Error of the disk, which takes no more of the recording.
     #[error("the recording cannot be kept: {0}")]
     Recording(String),
-    /// Whoever follows its progress.
+    /// Stopped by the caller through the progress callback.
     #[error("the run was told to stop")]
     Stopped,
 }
 
 impl Failure {
-    /// The recording cannot be kept from `time` (s) on.
+    /// The recording is incomplete from `time` (s) on.
     pub(crate) fn not_kept(time: f64, error: &io::Error) -> Self {
         Self { time, reason: Reason::Recording(error.to_string()) }
     }
 }
 
 impl Bench {
-    /// The same, but only signals that metrics are made of are recorded: for a run of which nothing else is wanted. With FMUs attached
-    /// everything is.
+    /// Records only the signals needed for metrics: for a run of which nothing else is used. With FMUs attached everything is
+    /// recorded.
     #[must_use]
     pub fn only_to_measure(mut self) -> Self {
         if let Loop::Alone(machine) = &mut self.closed_loop {
@@ -64,7 +64,7 @@ impl Bench {
         self
     }
 
-    /// Runs to the end; `progress` is told the share that is done, from 0 to 1.
+    /// Runs to the end; `progress` gets the completed share, from 0 to 1.
     #[must_use]
     pub fn run(self, progress: &mut dyn FnMut(f64)) -> Outcome {
         self.run_while(&mut |share| {
@@ -73,8 +73,8 @@ impl Bench {
         })
     }
 
-    /// The same; a break of `progress`, which is told every thousand ticks or so and after every exchange with FMUs, is a failure:
-    /// [`Reason::Stopped`].
+    /// Runs to the end, or until `progress` breaks, which is the failure [`Reason::Stopped`]. It is called about every thousand ticks,
+    /// and after every exchange with FMUs.
     #[must_use]
     pub fn run_while(self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Outcome {
         match self.closed_loop {

@@ -1,4 +1,4 @@
-//! The report of a loop, computed once for all runs that share it: what a sweep varies is mostly the set-point, which is not in the loop.
+//! The report of a loop, computed once for all runs that share it: a sweep mostly varies the set-point, which is not part of the loop.
 use crate::error::BuildError;
 use crate::linear::{AtRest, WiredSensors};
 use servobench_stability::{Depth, Loop, Report, StabilityError, analyse};
@@ -13,14 +13,14 @@ struct Analysed {
 }
 
 thread_local! {
-    /// The loop that this thread has analysed last.
+    /// The loop that this thread analysed last.
     static LAST: RefCell<Option<Analysed>> = const { RefCell::new(None) };
 }
 
 /// The report of the loop `model` with `sensors`.
 ///
 /// # Errors
-/// [`BuildError`] of a loop that cannot be built; inside, why it cannot be analysed.
+/// [`BuildError`] for a loop that cannot be built; inside, the reason why it cannot be analysed.
 pub(crate) fn report(
     model: &Loop,
     sensors: &WiredSensors,
@@ -50,7 +50,7 @@ mod tests {
         [drive.position]\nrate = \"4 kHz\"\ngain = \"60 1/s\"\n[setpoint]\norder = 2\nvelocity = \"1 m/s\"\nacceleration = \"1 m/s2\"\n\
         [[program]]\nmove_to = \"10 mm\"\n";
 
-    /// Whatever was analysed before: a loop has its own report, and a set-point is not part of the loop.
+    /// Independent of earlier analyses: a loop has its own report, and a set-point is not part of the loop.
     #[test]
     fn a_loop_has_the_report_that_it_has_alone() {
         let report = |settings: &[&str], depth| {
@@ -62,7 +62,7 @@ mod tests {
                 other => panic!("{other:?}"),
             }
         };
-        // A thread of its own has analysed nothing before.
+        // A new thread has analysed nothing before.
         let alone = |settings, depth| std::thread::spawn(move || report(settings, depth)).join().unwrap();
         let cases: [(&'static [&'static str], Depth); 6] = [
             (&[], Depth::Verdict),

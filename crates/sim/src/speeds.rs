@@ -1,4 +1,4 @@
-//! Speeds that the task asks of the motor, and how long it stays with them.
+//! Speeds of the motor that the task requests, and the time spent at them.
 use crate::bench::Bench;
 use crate::error::BuildError;
 use crate::program::Program;
@@ -7,27 +7,27 @@ use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
-/// Places in which a program is looked at, at most.
+/// Most instants at which a program is sampled.
 const MOST_PLACES: f64 = 1e6;
 
-/// Speeds of the motor (rad/s or m/s) that the task asks for, at even distances in time.
+/// Speeds of the motor (rad/s or m/s) requested by the task, at equal intervals in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Speeds {
-    /// From one to the next (s).
+    /// Time from one to the next (s).
     step: f64,
     values: Vec<f64>,
 }
 
 impl Speeds {
-    /// Those of the planned moves; `None` for a program of function blocks, whose moves only a run makes.
+    /// Speeds of the planned moves; `None` for a program of function blocks, whose moves are known only after a run.
     ///
     /// # Errors
-    /// [`BuildError`] of a program that cannot be planned.
+    /// [`BuildError`] for a program that cannot be planned.
     pub fn planned(scenario: &Scenario) -> Result<Option<Self>, BuildError> {
         if scenario.plc.is_some() {
             return Ok(None);
         }
-        // What is interpolated comes later; what was planned is what was asked for.
+        // Interpolated set-points are delayed; the plan has the request.
         let mut program = Program::new(&Scenario { interpolation: None, ..scenario.clone() })?;
         let base_rate = f64::from(scenario.base_rate.hertz());
         let ticks = (Bench::length(scenario)? * base_rate).floor();
@@ -40,7 +40,7 @@ impl Speeds {
         Ok(Some(Self { step: stride / base_rate, values }))
     }
 
-    /// Those of a run on an axis with so many axis coordinates per motor coordinate; `None` where they were not recorded.
+    /// Speeds of a run on an axis with `transmission` axis coordinates per motor coordinate; `None` if they were not recorded.
     #[must_use]
     pub fn recorded(recording: &Recording, transmission: f64) -> Option<Self> {
         let velocities = recording.channel(Signal::RequestVelocity)?;
@@ -48,7 +48,7 @@ impl Speeds {
         Some(Self { step: recording.time_of(1) - recording.time_of(0), values })
     }
 
-    /// The longest time (s) for which the speed is within `range`.
+    /// The longest continuous time (s) for which the speed is within `range`.
     #[must_use]
     pub fn longest_within(&self, range: &Range<f64>) -> f64 {
         let runs = self.values.split(|speed| !range.contains(speed));

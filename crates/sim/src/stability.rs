@@ -17,19 +17,19 @@ use servobench_stability::{
 };
 use std::fmt::{self, Display, Formatter};
 
-/// What the analysis of a scenario came to.
+/// Result of the analysis of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Analysis {
     /// The poles of the loop.
     Done {
-        /// What they say.
+        /// Report on the poles.
         report: Box<Report>,
         /// The position loop that the master closes over the bus.
         master: Option<MasterLoop>,
-        /// Parts of the scenario that are not in it.
+        /// Parts of the scenario that are not included.
         without: Vec<NotAnalysed>,
     },
-    /// There is no linear loop that is known here, and why.
+    /// A linear loop is not possible, for this reason.
     NotPossible(NotAnalysed),
 }
 
@@ -38,22 +38,22 @@ pub enum Analysis {
 pub struct MasterLoop {
     /// Its gain (1/s).
     pub gain: f64,
-    /// The largest gain with which it is stable (1/s); `None` where it is and nothing but the verdict was asked for, or the loops below it
-    /// are not.
+    /// The largest gain with which it is stable (1/s); `None` if it is stable and only the verdict was requested, or the loops below it
+    /// are unstable.
     pub largest: Option<f64>,
-    /// The poles that fade last; `None` where the loops below it are unstable.
+    /// The poles that decay last; `None` if the loops below it are unstable.
     pub slowest: Option<Slowest>,
 }
 
 impl MasterLoop {
-    /// True where the gain is beyond the largest one.
+    /// True if the gain exceeds the largest one.
     #[must_use]
     pub fn is_unstable(&self) -> bool {
         self.largest.is_some_and(|largest| self.gain > largest)
     }
 }
 
-/// Why it is unstable, in words.
+/// The reason why it is unstable, in words.
 impl Display for MasterLoop {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let gain = Quantity::new(self.gain, "1/s");
@@ -71,7 +71,7 @@ impl Display for MasterLoop {
     }
 }
 
-/// Linear model of an MJCF file around rest, or why there is none.
+/// Linear model of an MJCF file around rest, or the reason why there is none.
 pub type MechanicsAtRest = Result<LinearMechanics, String>;
 
 /// Linear model of the MJCF file of `scenario` around rest at its initial position, by `engine`; `None` without a file.
@@ -88,26 +88,26 @@ pub fn mechanics_at_rest(scenario: &Scenario, engine: &dyn Engine) -> Option<Mec
     }))
 }
 
-/// What is not analysed, and why.
+/// Parts that are not analysed, with the reason.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotAnalysed {
-    /// Nothing commands the motor by a loop.
+    /// The motor is not commanded by a loop.
     NoDrive,
-    /// The drive is an FMU, or an FMU gives what the drive would.
+    /// The drive is an FMU, or an FMU provides the output of the drive.
     ForeignDrive,
-    /// The mechanics is an FMU alone.
+    /// The mechanics are only an FMU.
     FmuMechanics,
-    /// The mechanics is an MJCF file without a linear model around rest, and why.
+    /// The mechanics are an MJCF file without a linear model around rest, for this reason.
     Mjcf(String),
-    /// FMUs beside the axis act on it: what is analysed is the axis without them.
+    /// FMUs beside the axis act on it: the axis without them is analysed.
     Fmus,
-    /// The commutation is off while a current flows at standstill: what is analysed is the loop around that current in its own axis.
+    /// The commutation is misaligned while a current flows at standstill: the loop with an aligned commutation is analysed.
     Commutation,
-    /// The commutation is off, and without magnets the current that it turns makes all of the torque.
+    /// The commutation is misaligned, and without magnets the current that it turns makes all of the torque.
     CommutationWithoutMagnets,
-    /// Function blocks make the program, so that only a run tells whether it stays at the speed at which the gain schedule is unstable.
+    /// Function blocks make the program: only a run shows if it stays at the speed at which the gain schedule is unstable.
     GainSchedule(Box<Instability>),
-    /// The motor is connected wrongly: what is analysed is the loop with a cable that is right.
+    /// The motor is connected wrongly: the loop with a correct cable is analysed.
     Wiring,
     /// The poles could not be computed.
     Failed(stability::StabilityError),
@@ -142,11 +142,11 @@ impl Display for NotAnalysed {
 }
 
 /// Analyses the sampled linear loop of `scenario`: at standstill and, with a gain schedule, at each speed at which `speeds` stay for
-/// longer than a period of its pole. Without `speeds` no one knows how long that is. `model` is what [`mechanics_at_rest`] said of an MJCF
+/// longer than a period of its pole. Without `speeds` that time is unknown. `model` is the result of [`mechanics_at_rest`] for an MJCF
 /// file.
 ///
 /// # Errors
-/// [`BuildError`] says which part of the scenario cannot be built.
+/// [`BuildError`] names the part of the scenario that cannot be built.
 pub fn analyse_stability(
     scenario: &Scenario,
     depth: Depth,
@@ -196,7 +196,7 @@ fn over_bus(bus: &Bus) -> Option<MasterOverBus> {
 
 type Found = Result<(Loop, WiredSensors, Vec<NotAnalysed>), NotAnalysed>;
 
-/// The linear loop of `scenario`, and what of it is not in that; or why there is none.
+/// The linear loop of `scenario` and the parts left out of it, or the reason why there is none.
 fn linear_loop(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Result<Found, BuildError> {
     if coupled::replaces_the_drive(scenario) {
         return Ok(Err(NotAnalysed::ForeignDrive));
@@ -258,9 +258,9 @@ fn linear_loop(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Result<F
     Ok(Ok((model, wired, without)))
 }
 
-/// The drive where it is linearised: without effort, with the d-axis current that it holds then. Where motor or estimate has no magnets,
-/// maximum torque per ampere has no slope there; around any effort it is that of the d-axis current of that effort, since both axes of the
-/// current loop answer alike, and the current of the largest effort is taken.
+/// The drive linearised without effort, at its d-axis current there. If motor or estimate has no magnets,
+/// maximum torque per ampere has no slope there; around any effort the loop is that at the d-axis current of that effort, since both
+/// axes of the current loop respond alike, and the current of the largest effort is used.
 fn operated(drive: &Drive, source: &Source) -> (servobench_drive::Params, f64) {
     let mut params = drive.params.clone();
     let Stage::Current { params: current, .. } = &mut params.stage else { return (params, 0.0) };

@@ -1,4 +1,4 @@
-//! The closed loop tick by tick, for somebody else's simulation: what acts on the axis comes from outside, and it can go back.
+//! The closed loop tick by tick, for an external simulation, which provides the influences on the axis and may restore earlier states.
 use crate::bench::{Bench, Loop};
 use crate::closed_loop::Source;
 use crate::external::External;
@@ -13,12 +13,12 @@ use servobench_plcopen::AxisState;
 use servobench_signals::{Selection, Signal};
 use servobench_trace::ChannelSpec;
 
-/// States of axis, link and drive; `None` where there is none.
+/// States of axis, link and drive; `None` for missing parts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct States {
     /// Power state of the drive on a fieldbus.
     pub drive: Option<PowerState>,
-    /// Its fault (603Fh), 0 for none.
+    /// Fault of the drive (603Fh), 0 for none.
     pub drive_fault: u16,
     /// Fault of the link.
     pub link_fault: Option<Fault>,
@@ -26,7 +26,7 @@ pub struct States {
     pub axis: Option<AxisState>,
 }
 
-/// A closed loop that goes a tick when it is told to.
+/// A closed loop that advances one tick per call.
 pub struct Stepper {
     machine: Machine,
     selection: Selection,
@@ -62,7 +62,7 @@ impl Stepper {
         self.machine.base_rate()
     }
 
-    /// The present tick: the one that comes next.
+    /// The current tick, which is the next to run.
     #[must_use]
     pub const fn tick(&self) -> Tick {
         self.machine.next()
@@ -89,31 +89,31 @@ impl Stepper {
         self.selection.specs()
     }
 
-    /// The signals that they are.
+    /// Signals of [`values`](Self::values).
     #[must_use]
     pub fn signals(&self) -> &[Signal] {
         self.selection.signals()
     }
 
-    /// What a recording would say: positions and velocities of the bodies at the present tick, everything else of the tick
-    /// before, whose efforts have brought the bodies there. Before the first tick that is zero.
+    /// Values for a recording: positions and velocities of the bodies at the current tick, everything else of the previous
+    /// tick, whose efforts have moved the bodies there. Before the first tick that is zero.
     pub fn values(&mut self) -> &[f64] {
         self.selection.values(&self.machine.axis.now)
     }
 
-    /// The motor in its own coordinate at the present tick, as its encoder and its effort have it.
+    /// The motor in its own coordinate at the current tick, in which its encoder and its effort are given.
     #[must_use]
     pub fn shaft(&self) -> BodyState {
         self.machine.axis.closed_loop.mechanics.bodies()[0]
     }
 
-    /// The set-point of the tick before.
+    /// The set-point of the previous tick.
     #[must_use]
     pub const fn setpoint(&self) -> Setpoint {
         self.machine.axis.now.setpoint
     }
 
-    /// The states that the tick before has left.
+    /// The states after the previous tick.
     #[must_use]
     pub fn states(&self) -> States {
         match &self.machine.axis.closed_loop.state.source {
@@ -122,10 +122,10 @@ impl Stepper {
         }
     }
 
-    /// One tick, exactly as [`Bench::run`] takes it.
+    /// Runs one tick, exactly as [`Bench::run`] does.
     ///
     /// # Errors
-    /// [`Failure`]; the loop must not be stepped again, but may go back.
+    /// [`Failure`]; the loop must not be stepped again, but may be restored.
     pub fn step(&mut self, external: &External) -> Result<(), Failure> {
         self.machine.axis.external = *external;
         self.machine.tick()?;
@@ -133,20 +133,20 @@ impl Stepper {
         Ok(())
     }
 
-    /// Writes the loop at the present tick.
+    /// Writes the state of the loop at the current tick.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot.
+    /// [`MechanicsError`] if the engine cannot save its state.
     pub fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         to.word(self.tick().0);
         self.machine.axis.save(to)
     }
 
-    /// Goes back to where [`save`](Self::save) of a stepper of the same scenario was called.
+    /// Restores the state that [`save`](Self::save) wrote for a stepper of the same scenario.
     ///
     /// # Errors
-    /// [`MechanicsError`] where the engine cannot, or the numbers are not a state of this loop. Then it must not be stepped, but may go
-    /// back to another state.
+    /// [`MechanicsError`] if the engine cannot restore it, or the numbers are not a state of this loop. Then it must not be stepped, but
+    /// another state may be restored.
     pub fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), MechanicsError> {
         let tick = Tick(from.word()?);
         self.machine.axis.restore(from)?;

@@ -1,14 +1,14 @@
-//! What is kept of a recording when it has been measured.
+//! Thinning of a recording after it has been measured.
 use servobench_base::Rate;
 use servobench_signals::Signal;
 use servobench_trace::{Channel, GrowingValues, Recording};
 use std::io;
 
-/// `recording` with rows at `rate` only: every n-th row, but of the shares of saturated ticks the mean since the last row
+/// `recording` with rows at `rate` only: every n-th row, but for shares of saturated ticks the mean since the last row
 /// that is kept. Unchanged when `rate` does not divide that of the rows.
 ///
 /// # Errors
-/// Those of the file that holds a long recording: the disk is full.
+/// Errors of the file that holds a long recording: the disk is full.
 pub fn thinned(recording: Recording, rate: Rate) -> io::Result<Recording> {
     let every = match recording.rate.divider(rate) {
         Ok(divider) if divider.ticks() > 1 => divider.ticks() as usize,
@@ -36,8 +36,8 @@ fn means(values: &[f64], every: usize) -> impl Iterator<Item = f64> {
     first.iter().copied().chain(later.chunks_exact(every).map(mean))
 }
 
-/// `recording` with the channels `wanted` only; all when the list is empty. What a run is judged by is recorded whatever is
-/// wanted of it.
+/// `recording` with only the `wanted` channels; all when the list is empty. The channels by which a run is judged are recorded in
+/// any case.
 #[must_use]
 pub fn selected(mut recording: Recording, wanted: &[Signal]) -> Recording {
     if !wanted.is_empty() {

@@ -1,10 +1,10 @@
-//! FMUs beside the axis as they are to be opened.
+//! Requests to open FMUs beside the axis.
 use servobench_base::Coordinate;
 use servobench_fmi::{FmuRequest, SiPort};
 use servobench_scenario::{Fmu, InputSource, LoopSignal, si_unit};
 use servobench_signals::Equipment;
 
-/// An FMU beside the axis, of whose outputs `outputs` are wanted, each with what it is if it goes to the axis. Its steps are `step` (s)
+/// Request for an FMU beside the axis. `outputs` are the ones wanted, each with its signal if it goes to the axis. Its steps are `step` (s)
 /// long, and the last one ends at `end` (s).
 pub(crate) fn request<'a>(
     fmu: &'a Fmu,

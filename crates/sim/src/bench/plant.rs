@@ -1,4 +1,4 @@
-//! The plant of a scenario: mechanics, power stage and sensors. Nothing here knows of the firmware.
+//! The plant of a scenario: mechanics, power stage and sensors, without the firmware.
 use crate::coupled::replaces_the_drive;
 use crate::error::BuildError;
 use servobench_drive::Stage;
@@ -51,7 +51,7 @@ pub(crate) fn mechanics(
     Ok((engine.build(&setup)?, names))
 }
 
-/// Largest effort that the drive asks for; 0 where there is none, or where FMUs are the drive and nobody can tell.
+/// Largest effort that the drive requests; 0 without a drive, or if FMUs replace it and the effort is unknown.
 fn max_effort(scenario: &Scenario) -> f64 {
     match scenario.actuator {
         Actuator::Prescribed | Actuator::Off(_) => 0.0,
@@ -60,13 +60,13 @@ fn max_effort(scenario: &Scenario) -> f64 {
     }
 }
 
-/// The chain, which may have been changed since it was made.
+/// The chain, checked again because it may have been changed since it was made.
 pub(crate) fn checked(chain: &Chain) -> Result<Chain, BuildError> {
     chain.check()?;
     Ok(chain.clone())
 }
 
-/// The stops at the ends of the travel, whose load is known where it is described here.
+/// The stops at the ends of the travel, checked with the inertia of the load where it is known.
 pub(super) fn end_stops(scenario: &Scenario) -> Result<Option<EndStops>, BuildError> {
     if let Some(stops) = &scenario.axis.end_stops {
         let inertia = match &scenario.axis.mechanics {
@@ -87,7 +87,7 @@ pub(super) fn switches(scenario: &Scenario) -> Result<Switches, BuildError> {
     Ok(switches)
 }
 
-/// What turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second), in
+/// The power stage that turns the drive's command into effort, with the motor at `speed` (its own coordinate, per second), in
 /// ticks of `h` (s).
 pub(super) fn power_stage(actuator: &Actuator, speed: f64, h: f64) -> Result<PowerStage, BuildError> {
     Ok(match actuator {

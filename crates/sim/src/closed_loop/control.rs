@@ -1,4 +1,4 @@
-//! The firmware with the sensors it is wired to.
+//! The firmware with the sensors wired to it.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::network::Measurement;
 use servobench_base::{PowerCommand, Stateful};
@@ -9,19 +9,19 @@ use servobench_drive::{self as drive, Demand, EffortLimits, Feedback, Sensors};
 use servobench_plant::{self as plant, BodyState, EncoderState, PowerStage, Reading, SwitchReading};
 use servobench_signals::{Instant, PerLimit};
 
-/// The firmware and the sensors it is wired to.
+/// The firmware and the sensors wired to it.
 #[derive(Stateful)]
 pub(crate) struct Control {
     #[state(constant)]
     pub(crate) params: drive::Params,
     pub(crate) state: drive::State,
     pub(crate) motor_encoder: EncoderInput,
-    /// The encoder on the load, when it closes the position loop.
+    /// The encoder on the load, if it closes the position loop.
     #[state(fixed)]
     pub(crate) load_encoder: Option<EncoderInput>,
 }
 
-/// An encoder, and how the drive counts it on where it begins again.
+/// An encoder, with the drive's unwrapping of its limited range.
 #[derive(Stateful)]
 pub(crate) struct EncoderInput {
     pub(crate) encoder: EncoderState,
@@ -40,18 +40,18 @@ impl EncoderInput {
     }
 }
 
-/// How the motor is mounted.
+/// Mounting of the motor.
 #[derive(Clone, Copy)]
 pub(crate) struct Mounting {
     /// Axis coordinate per motor coordinate.
     pub(crate) transmission: f64,
-    /// −1 for a motor that is mounted the other way round: motor, encoders and drive then have coordinates against those of the
+    /// −1 for a motor mounted in reverse: the coordinates of motor, encoders and drive are then opposite to those of the
     /// mechanics; otherwise 1.
     pub(crate) direction: f64,
 }
 
 impl Mounting {
-    /// A body of the mechanics as a motor, or an encoder, sees it that is mounted on it.
+    /// A body of the mechanics in the coordinate of a motor or encoder mounted on it.
     #[inline(always)]
     pub(crate) fn seen(self, BodyState { position, velocity }: BodyState) -> BodyState {
         BodyState { position: self.direction * position, velocity: self.direction * velocity }
@@ -59,7 +59,8 @@ impl Mounting {
 }
 
 impl Control {
-    /// Reads the sensors on `motor` and `load`, as they are mounted. Alarms and positions that differ from those of the bodies come to `now`.
+    /// Reads the sensors on `motor` and `load`, as they are mounted. Writes alarms, and positions that differ from those of the bodies,
+    /// to `now`.
     #[inline(always)]
     pub(super) fn measure(
         &mut self,
@@ -110,7 +111,7 @@ impl Control {
         }
     }
 
-    /// The drive as its bus interface sees it.
+    /// Measurement for the bus interface of the drive.
     pub(super) fn measurement(&self, sensors: &Sensors, now: &Instant, switches: SwitchReading) -> Measurement {
         let Self { params, state, .. } = self;
         Measurement {
@@ -126,8 +127,8 @@ impl Control {
         }
     }
 
-    /// References, currents and active limits of the loops come to `now`, in the `direction` of the axis; `cuts_velocity`: the drive
-    /// does, the master does.
+    /// Writes references, currents and active limits of the loops to `now`, in the `direction` of the axis. `cuts_velocity`: true if the
+    /// drive cuts it, true if the master does.
     #[inline(always)]
     pub(super) fn show(&self, direction: f64, cuts_velocity: [bool; 2], now: &mut Instant) {
         let Self { params, state, .. } = self;

@@ -10,13 +10,13 @@ use servobench_plant::MechanicsError;
 use servobench_scenario::LoopSignal;
 use servobench_signals::Selection;
 
-/// What the axis gives before channels of the recording.
+/// Outputs of the axis before the channels of the recording.
 pub(super) const OWN: [&str; 3] = ["time", "shaft.position", "shaft.velocity"];
 
-/// Part of a step that is a rounding of its times.
+/// Fraction of a step that counts as rounding of its times.
 const ROUNDING: f64 = 1e-9;
 
-/// One of those that are coupled.
+/// A part of the coupling.
 pub(super) enum Part {
     Axis(Box<AxisBlock>),
     Fmu(AttachedFmu),
@@ -25,11 +25,11 @@ pub(super) enum Part {
 /// An FMU beside the axis.
 pub(super) struct AttachedFmu {
     pub(super) slave: Box<dyn Slave>,
-    /// When the run ends (s): an FMU that wants to end then, or after it, keeps nobody from anything.
+    /// End of the run (s): an FMU that wants to end then or later does not stop it.
     pub(super) end: f64,
 }
 
-/// Why a part could not go on.
+/// Errors of a part that cannot continue.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PartError {
     #[error(transparent)]
@@ -43,12 +43,12 @@ pub(super) enum PartError {
 /// The axis as a block.
 pub(super) struct AxisBlock {
     pub(super) machine: Machine,
-    /// Ticks of the run: the last one is observed at the end.
+    /// Ticks of the run; the last one is observed at the end.
     ticks: u64,
     takes: Vec<LoopSignal>,
-    /// What others are given behind [`OWN`].
+    /// Channels given to others after [`OWN`].
     gives: Selection,
-    /// Whether it can go back.
+    /// True if its state can be saved and restored.
     saves: bool,
     saved: Option<(Tick, Saved)>,
 }
@@ -59,7 +59,7 @@ impl AxisBlock {
         Self { machine, ticks, takes, gives, saves, saved: None }
     }
 
-    /// What acts over a tick that begins `since` a step's start (s).
+    /// External influences over a tick that begins `since` (s) after the start of a step.
     fn external(&self, inputs: &[Input], since: f64, tick: f64) -> External {
         let mut external = External::default();
         let mut setpoint = None;
@@ -82,7 +82,7 @@ impl AxisBlock {
         external
     }
 
-    /// The steps of the machine within `length` (s), over which `inputs` act.
+    /// The ticks of the machine within `length` (s), with `inputs` acting over them.
     fn step(&mut self, length: f64, inputs: &[Input]) -> Result<(), Failure> {
         let rate = self.machine.base_rate();
         for tick in 0..rate.tick_at(length).0 {
@@ -96,7 +96,7 @@ impl AxisBlock {
         Ok(())
     }
 
-    /// Brings the bodies, what sensors without firmware say of them, and the set-point of the tick that comes next to what is given.
+    /// Updates the outputs to the next tick: the bodies, the readings of sensors without firmware, and the set-point.
     fn look_ahead(&mut self) {
         let next = self.machine.next();
         let axis = &mut self.machine.axis;

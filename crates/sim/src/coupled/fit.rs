@@ -1,20 +1,20 @@
-//! Units and types of what one FMU gives another.
+//! Units and types of values exchanged between FMUs.
 use super::block::Part;
 use servobench_coupling::{Connection, Member};
 use servobench_fmi::{Choice as _, DataType, DeclaredNumber, DeclaredUnit, FmuEntry, FmuMistake};
 use servobench_scenario::Scenario;
 
-/// What does not fit between FMUs, each at the index of the FMU whose input it is.
+/// Mismatches between FMUs, each at the index of the FMU with the input.
 #[derive(Debug, Default)]
 pub(super) struct Misfits {
-    /// What cannot be exchanged.
+    /// Values that cannot be exchanged.
     pub(super) mistakes: Vec<(usize, FmuMistake)>,
-    /// What may not be what is meant.
+    /// Values that may not be intended.
     pub(super) doubts: Vec<(usize, FmuMistake)>,
 }
 
 impl Misfits {
-    /// Of the connections between two FMUs of `scenario`, which are the `members`.
+    /// Mismatches of the connections between two FMUs of `scenario`, which are the `members`.
     pub(super) fn of(scenario: &Scenario, members: &[Member<Part>], connections: &[Connection]) -> Self {
         let mut found = Self::default();
         for Connection { from, to, .. } in connections {
@@ -51,7 +51,7 @@ fn types([from, to]: &[String; 2], output: &DeclaredNumber, input: &DeclaredNumb
     })
 }
 
-/// Units that measure different things.
+/// Units of different quantities.
 fn units([from, to]: &[String; 2], output: &DeclaredNumber, input: &DeclaredNumber) -> Option<(String, &'static str)> {
     let (Some(gives), Some(takes)) = (&output.unit, &input.unit) else { return None };
     (!gives.measures_the_same_as(takes)).then(|| {
@@ -61,7 +61,7 @@ fn units([from, to]: &[String; 2], output: &DeclaredNumber, input: &DeclaredNumb
     })
 }
 
-/// A number without a unit for one with a unit, or the other way round.
+/// A number without a unit for one with a unit, or the reverse.
 fn without_unit(
     [from, to]: &[String; 2],
     output: &DeclaredNumber,

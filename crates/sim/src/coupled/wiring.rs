@@ -1,4 +1,4 @@
-//! Who is connected with whom. The axis comes behind the FMUs.
+//! Connections between axis and FMUs. The axis comes after the FMUs.
 use super::ConnectionDelay;
 use super::block::OWN;
 use crate::bench::fmu::request;
@@ -9,14 +9,14 @@ use servobench_fmi::FmuRequest;
 use servobench_scenario::{InputSource, LoopSignal, Scenario};
 use servobench_signals::{Equipment, Rates, Selection};
 
-/// Which ports there are, and how they are connected.
+/// Ports and their connections.
 pub(super) struct Wiring<'a> {
     scenario: &'a Scenario,
-    /// By FMU: outputs that somebody wants, and what each is on the axis if it goes there.
+    /// Used outputs by FMU, each with its signal if it goes to the axis.
     outputs: Vec<Vec<(&'a str, Option<LoopSignal>)>>,
-    /// Channels that FMUs are given.
+    /// Channels given to FMUs.
     pub(super) gives: Selection,
-    /// What the axis takes.
+    /// Signals that the axis takes.
     pub(super) takes: Vec<LoopSignal>,
     pub(super) connections: Vec<Connection>,
 }
@@ -65,23 +65,23 @@ impl<'a> Wiring<'a> {
         Ok(Self { scenario, outputs, gives: all.only(&given), takes, connections })
     }
 
-    /// The FMU number `index` as it is to be opened for a run of `ticks`.
+    /// Request to open FMU number `index` for a run of `ticks`.
     pub(super) fn request(&self, index: usize, equipment: &Equipment, ticks: u64) -> FmuRequest<'a> {
         let (fmu, motion) = (&self.scenario.fmus[index], self.scenario.axis.motor_motion);
         let every = (self.scenario.coupling.step.ticks(), fmu.every);
         let (rate, [before, last]) = (self.scenario.base_rate, last_step(ticks, every));
         let step = rate.time(Tick(last - before));
-        // As it is stepped: a sum of times may be a rounding away from the time of the tick.
+        // As it is stepped: a sum of times may differ from the time of the tick by rounding.
         let end = rate.time(Tick(last)).max(rate.time(Tick(before)) + step);
         request(fmu, &self.outputs[index], (equipment, motion), (step, end))
     }
 
-    /// Names of what the axis gives.
+    /// Names of the axis outputs.
     pub(super) fn axis_outputs(&self) -> impl Iterator<Item = &str> {
         OWN.into_iter().chain(self.gives.signals().iter().map(|signal| signal.name()))
     }
 
-    /// A connection and how late it is.
+    /// A connection with its delay.
     pub(super) fn described(&self, delay: &Delay) -> ConnectionDelay {
         let Connection { from, to, .. } = self.connections[delay.connection];
         let of_fmu = |block: usize, variable: &str| format!("{}.{variable}", self.scenario.fmus[block].name);
@@ -102,7 +102,7 @@ impl<'a> Wiring<'a> {
 }
 
 /// Start and end (ticks) of the last step of an FMU in a run of `ticks`, the last of which is only recorded. Exchanges are whole steps
-/// of the `coupling`, and those of the FMU are `every`, a multiple of them: the last one may end after the run.
+/// of the `coupling`, and steps of the FMU are `every`, a multiple of them: the last one may end after the run.
 fn last_step(ticks: u64, (coupling, every): (u32, u32)) -> [u64; 2] {
     let (coupling, every) = (u64::from(coupling), u64::from(every.max(1)));
     let exchanged = ticks.saturating_sub(1).next_multiple_of(coupling);
@@ -110,18 +110,18 @@ fn last_step(ticks: u64, (coupling, every): (u32, u32)) -> [u64; 2] {
     [last - every, last]
 }
 
-/// Whether an FMU stands for the drive, whose firmware does not run then.
+/// True if an FMU replaces the drive, whose firmware then does not run.
 #[must_use]
 pub fn replaces_the_drive(scenario: &Scenario) -> bool {
     scenario.fmus.iter().any(|fmu| fmu.outputs.iter().any(|(_, signal)| is_of_a_controller(*signal)))
 }
 
-/// Whether a controller gives it, which samples at exchanges and holds what it gives.
+/// True for an output of a controller, which samples at exchanges and holds its outputs.
 const fn is_of_a_controller(signal: LoopSignal) -> bool {
     matches!(signal, LoopSignal::Effort | LoopSignal::VoltageD | LoopSignal::VoltageQ)
 }
 
-/// Where the output `variable` is among those that are wanted, to which it is added if need be.
+/// Index of the output `variable` among the `wanted` ones, to which it is added if it is missing.
 fn output<'a>(wanted: &mut Vec<(&'a str, Option<LoopSignal>)>, variable: &'a str, signal: Option<LoopSignal>) -> usize {
     let known = wanted.iter().position(|(name, _)| *name == variable);
     let at = known.unwrap_or_else(|| {
@@ -132,7 +132,7 @@ fn output<'a>(wanted: &mut Vec<(&'a str, Option<LoopSignal>)>, variable: &'a str
     at
 }
 
-/// Where `one` is among `all`, to which it is added if need be.
+/// Index of `one` in `all`, to which it is added if it is missing.
 fn place<T: PartialEq>(all: &mut Vec<T>, one: T) -> usize {
     all.iter().position(|known| *known == one).unwrap_or_else(|| {
         all.push(one);

@@ -1,4 +1,4 @@
-//! From a scenario to the network.
+//! Construction of the network of a scenario.
 use super::drive_profile::DriveProfile;
 use super::plc::{self, Plc};
 use super::program_cursor::ProgramCursor;
@@ -26,22 +26,22 @@ use servobench_motion::interpolate::Mode;
 use servobench_scenario::{self as scenario, Actuator, Bus, Feedback, Scenario};
 use servobench_trace::Recorder;
 
-/// Cycles that the bus lets the drive miss before it gives up.
+/// Most cycles that the drive bridges without a frame.
 const BRIDGED: u32 = 2;
-/// How much faster than any move of the program an axis may become.
+/// Factor by which an axis may exceed the velocity of all moves of the program.
 const RESERVE: f64 = 2.0;
 
-/// How much more jerk than any move of the program a difference to a prediction is led to zero with.
+/// Factor on the jerk of the moves for leading differences to a prediction to zero.
 const RECOVERY_JERK: f64 = 5.0;
 
-/// How long a set-point is under way (base ticks).
+/// Delays of a set-point (base ticks).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Delays {
-    /// In the link.
+    /// Delay in the link.
     pub(crate) link: u64,
-    /// From a cycle of the bus until its frame is at the drive.
+    /// Delay from a cycle of the bus until its frame is at the drive.
     pub(crate) frame: u64,
-    /// In the drive, from the arrival of a frame until its target is reached.
+    /// Delay in the drive, from the arrival of a frame until its target is reached.
     pub(crate) drive: u64,
 }
 
@@ -51,7 +51,7 @@ impl Delays {
     }
 }
 
-/// What an axis is to be capable of: the most of all its moves.
+/// Dynamics required of an axis: the largest values of all its moves.
 #[derive(Debug, Clone, Copy)]
 struct Dynamics {
     velocity: f64,
@@ -60,10 +60,10 @@ struct Dynamics {
 }
 
 impl Network {
-    /// The network of `scenario` in front of `loops`, and how much later than the motion task the loops are.
+    /// Builds the network of `scenario` in front of `loops`. Returns it with the delays from the motion task to the loops.
     ///
     /// # Errors
-    /// [`BuildError`] says which part of the scenario cannot be built.
+    /// [`BuildError`] names the part of the scenario that cannot be built.
     pub(crate) fn new(
         scenario: &Scenario,
         bus: &Bus,
@@ -85,7 +85,7 @@ impl Network {
 
         let rated_effort = rated_effort(scenario);
         let counted = counted(scenario, loops)?;
-        // The drive has its own direction; what is reversed is known to the master.
+        // The drive has its own direction; the master knows about the reversal.
         let of_drive = scenario::DriveUnits { axis: bus.units.axis.abs(), ..bus.units };
         let units = units(&counted, scenario.axis.motion, of_drive, rated_effort)?;
         let device = device_params(bus, loops, units.conversions, bus.cycle / drive_every.ticks(), &dynamics);
@@ -106,7 +106,7 @@ impl Network {
             sequencing: bus.sequencing,
             drive_timeout: base_rate.tick_at(bus.drive_timeout).0,
             round_trip: 2 * bus.delay + 1,
-            // What the master is told is of the drive's last step.
+            // The master gets the values of the drive's last step.
             answer_age: drive_every.ticks(),
             reverse_switches: bus.reverse_switches,
             units: link::Units {
@@ -188,7 +188,7 @@ fn requests(task: &MotionTask, period: f64, delay: f64) -> Requests {
     }
 }
 
-/// How long a set-point is under way, of a motion task with a cycle of its own to a drive that steps every so many ticks.
+/// Delays of a set-point from a motion task with `motion_cycle` to a drive that steps every `drive_every` ticks.
 fn delays(
     scenario: &Scenario,
     bus: &Bus,
@@ -203,14 +203,14 @@ fn delays(
     let in_drive = u64::from(device.cycle.shift * drive_every.ticks()) + steps * u64::from(bus.cycle);
     let (link, drive) = match (bus.mode.is_cyclic(), &scenario.plc) {
         (true, _) => (link.delay(), in_drive),
-        // A drive that blocks tell a velocity is there a cycle of theirs later.
+        // A velocity from function blocks reaches the drive one of their cycles later.
         (false, Some(_)) => (motion_cycle.ticks().into(), 0),
         (false, None) => (0, 0),
     };
     Delays { link, frame: u64::from(bus.delay) * u64::from(bus.cycle), drive }
 }
 
-/// How long a set-point of `mode` waits for the feedforward (s): in the drive's position loop, which a velocity goes past.
+/// Delay of a set-point of `mode` for the feedforward (s): in the drive's position loop, which a velocity bypasses.
 fn wait(mode: scenario::BusMode, loops: &drive::Params, drive_every: Divider) -> f64 {
     match mode {
         scenario::BusMode::CyclicPosition => loops.reference_delay.length(loops.period(drive_every)),
@@ -226,7 +226,7 @@ fn divider(key: &'static str, ticks: u32) -> Result<Divider, BuildError> {
     }))
 }
 
-/// The most of every move, with a jerk where no move has one: the acceleration within 10 ms.
+/// Largest values of all moves, with a default jerk if no move has one: the acceleration within 10 ms.
 fn dynamics(program: &Program) -> Dynamics {
     let most = |k: usize, otherwise: f64| {
         let peaks = program.moves().map(|made| made.peaks[k]).filter(|peak| peak.is_finite() && *peak > 0.0);
@@ -238,13 +238,13 @@ fn dynamics(program: &Program) -> Dynamics {
     Dynamics { velocity, acceleration, jerk: most(2, 100.0 * acceleration) }
 }
 
-/// The most of every call.
+/// Largest values of all calls.
 fn dynamics_of_calls(calls: &scenario::Plc) -> Dynamics {
     let Limits { velocity, acceleration, jerk, .. } = plc::limits(calls);
     Dynamics { velocity, acceleration, jerk: if jerk.is_finite() { jerk } else { 100.0 * acceleration } }
 }
 
-/// What a thousand of 6071h stands for: the largest effort of the drive, or one unit where it has no limit.
+/// Effort that 1000 in 6071h stands for: the largest effort of the drive, or one unit if it has no limit.
 fn rated_effort(scenario: &Scenario) -> f64 {
     scenario.actuator.rated_effort().unwrap_or(1.0)
 }
@@ -291,13 +291,13 @@ fn device_params(
             quick_stop_deceleration: RESERVE * dynamics.acceleration,
             ..device::Params::default().profile
         },
-        // Points with times and velocities of their own.
+        // Points with separate times and velocities.
         sub_mode: SubMode::Cubic,
         ..device::Params::default()
     }
 }
 
-/// The settings with what the master writes into the objects of the drive, and the rated effort after that.
+/// The settings after the master has written to the objects of the drive, and the rated effort after that.
 fn with_objects(
     settings: &device::Params,
     bus: &Bus,
@@ -331,20 +331,20 @@ fn with_objects(
         let name = "drive.objects.607Bh.2";
         return Err(BuildError::Key(ParamError { name, value: range.max().into(), bound }));
     }
-    // How many steps there are between two frames is a matter of the bus.
+    // The number of steps between two frames depends on the bus.
     let settings = device::Params { cycle: settings.cycle, ..written };
     Ok((settings, settings.units.rated_effort()))
 }
 
-/// What the motion task knows of the axis: the estimate of the drive, for the model that the torque offset carries.
+/// Model of the axis in the motion task: the estimate of the drive, for the model behind the torque offset.
 fn master_model(bus: &Bus, loops: &drive::Params, scenario: &Scenario) -> feedforward::Params {
     let model = scenario.actuator.drive().map(|drive| drive.estimate.model(bus.effort_offset));
     feedforward::Params { model: model.unwrap_or(feedforward::Model::Off), ..loops.feedforward }
 }
 
-/// What differences to the set-points are led to zero with.
+/// Limits for leading differences to the set-points to zero.
 fn recovery(bus: &Bus, dynamics: &Dynamics) -> Limits {
-    // What is predicted is put right in every cycle of the task: with the jerk of the moves alone it would never be.
+    // A prediction is corrected in every cycle of the task, which would never finish with the jerk of the moves alone.
     let jerk = if bus.run_ahead > 0 { RECOVERY_JERK * dynamics.jerk } else { dynamics.jerk };
     Limits { velocity: dynamics.velocity, acceleration: dynamics.acceleration, jerk, snap: f64::INFINITY }
 }

@@ -1,4 +1,4 @@
-//! Frames and cycles of the motion task that the faults of a scenario concern, as events.
+//! Frames and cycles of the motion task that are hit by the faults of a scenario, as events.
 use core::ops::Range;
 use servobench_config::Choice as _;
 use servobench_fieldbus::bus::{self, BusFault};
@@ -6,7 +6,7 @@ use servobench_fieldbus::task::{self, TaskFault};
 use servobench_metrics::Incident;
 use servobench_trace::{Event, Recorder};
 
-/// Notes each fault of the bus and of the motion task that concerned some of the cycles that came, in ticks of `tick` (s).
+/// Records each fault of the bus and of the motion task that hit some of the cycles run, in ticks of `tick` (s).
 pub(super) fn note(
     (bus, frames, bus_faults): (&bus::Params<'_>, &bus::State, &[BusFault]),
     (task, cycles, task_faults): (&task::Params<'_>, &task::State, &[TaskFault]),
@@ -21,7 +21,7 @@ pub(super) fn note(
     of_bus.chain(of_task).for_each(|event| recorder.note_event(event));
 }
 
-/// The fault `kind` in those of its cycles that were among the first `came`, one every `period` (s).
+/// The event of fault `kind` for those of its cycles that were among the first `came`, one every `period` (s).
 fn event((kind, cycles): (&str, &Range<u64>), came: u64, period: f64, [source, things]: [&str; 2]) -> Option<Event> {
     let (first, end) = (cycles.start, cycles.end.min(came));
     let count = end.checked_sub(first).filter(|count| *count > 0)?;

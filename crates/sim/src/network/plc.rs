@@ -1,4 +1,4 @@
-//! A PLC program, as a recording keeps it.
+//! A PLC program and its recording.
 use super::Step;
 use super::signals::{Watched, word};
 use crate::error::BuildError;
@@ -11,7 +11,7 @@ use servobench_plcopen::{AxisParams, AxisState, BlockName, MOST_BUFFERED, Output
 use servobench_scenario as scenario;
 use servobench_trace::{self as trace, CallFate, Event, Move, Recorder, SignalId};
 
-/// A program of function blocks and the axis that they command.
+/// A program of function blocks and the axis commanded by them.
 #[derive(Debug, Stateful)]
 pub(super) struct Plc {
     executor: Executor,
@@ -19,11 +19,11 @@ pub(super) struct Plc {
     calls: Vec<Call>,
     state: Watched<AxisState>,
     homed: Watched<bool>,
-    /// What is followed in this cycle, in the coordinate of the machine.
+    /// Set-point followed in this cycle, in the coordinate of the machine.
     followed: Setpoint,
 }
 
-/// What a recording says of a call.
+/// Recording of a call.
 #[derive(Debug, Clone)]
 struct Call {
     name: String,
@@ -49,7 +49,7 @@ impl Plc {
     /// The program `plc`, executed every `cycle` (s).
     ///
     /// # Errors
-    /// [`BuildError`] when the limits are none that an axis can have.
+    /// [`BuildError`] if no axis can have these limits.
     pub(super) fn new(
         plc: &scenario::Plc,
         axis: &scenario::Axis,
@@ -78,7 +78,7 @@ impl Plc {
     /// One cycle at `t` (s). The drive counts from `origin`, a position of the machine.
     ///
     /// # Errors
-    /// Says which call has waited for too long, and for what.
+    /// States the call that has waited too long, and the event it waited for.
     pub(super) fn cycle(
         &mut self,
         t: f64,
@@ -90,7 +90,7 @@ impl Plc {
         let mut notes = Notes { calls: &self.calls, recorder };
         let mut command = self.executor.cycle(t, feedback, &mut notes).map_err(|overdue| overdue.to_string())?;
         let axis = self.executor.axis();
-        // The axis counts from where the drive does; the program may have shifted its own zero.
+        // The axis counts from the zero of the drive; the program may have shifted its own zero.
         let (commanded, sent) = (axis.commanded(), axis.sent());
         let setpoint = match &mut command.task {
             Task::Follow(asked) => {
@@ -117,7 +117,7 @@ impl Plc {
         self.homed.note(t, axis.is_homed(), recorder, word);
     }
 
-    /// Notes at the end of the run, at `t` (s), what moved the axis and what was never executed; moves reach the axis
+    /// Records at the end of the run, at `t` (s), the motions of the axis and the calls that were never executed; moves reach the axis
     /// `delay` (s) later.
     pub(super) fn finish(&mut self, t: f64, delay: f64, recorder: &mut Recorder) {
         for motion in self.executor.end_motions(t, self.followed) {
@@ -136,7 +136,7 @@ impl Plc {
     }
 }
 
-/// Notes what happens in a program.
+/// Recorder of the events in a program.
 struct Notes<'a> {
     calls: &'a [Call],
     recorder: &'a mut Recorder,
@@ -188,7 +188,7 @@ fn as_recorded(fate: &Fate) -> CallFate {
     }
 }
 
-/// What the axis may do: what `[setpoint]` says, or the most that any call asks for.
+/// Limits of the axis: those of `[setpoint]`, or the largest that any call requests.
 pub(super) fn limits(plc: &scenario::Plc) -> Limits {
     program::limits(&plc.limits, &plc.calls)
 }

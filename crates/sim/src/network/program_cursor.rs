@@ -1,10 +1,10 @@
-//! How far a program of moves is: its time begins with the cycle in which the axis is powered.
+//! Progress of a program of moves: its time begins with the cycle in which the axis is powered.
 use crate::program::Program;
 use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::{AxisFeedback, Power};
 use servobench_trace::Move;
 
-/// A program, and how far it is.
+/// A program and its progress.
 #[derive(Debug, Stateful)]
 pub(super) struct ProgramCursor {
     program: Program,
@@ -40,12 +40,12 @@ impl ProgramCursor {
         self.passed.checked_sub(1).map(|passed| passed as f64 * self.period)
     }
 
-    /// Set-point at a time of the program (s), which does not go back.
+    /// Set-point at time `t` of the program (s), which must not decrease.
     pub(super) fn at(&mut self, t: f64) -> Setpoint {
         self.program.at(t)
     }
 
-    /// What a recording says of the moves; they reach the axis `delay` (s) later.
+    /// Moves for the recording; they reach the axis `delay` (s) later.
     pub(super) fn moves(&self, delay: f64) -> impl Iterator<Item = Move> {
         let begun = self.waited as f64 * self.period + delay;
         self.program.moves().map(move |made| made.later(begun))

@@ -1,39 +1,39 @@
-//! What the axis is measured against: the set-points of the motion task, as much later as the way to the loops takes.
+//! Reference for the following error: the set-points of the motion task, delayed by the path to the loops.
 //!
-//! The link, the bus and the drive each hold a set-point for a time that is known beforehand. An axis that follows what it is
-//! sent without an error is where the motion task wanted it that much earlier; an error against the undelayed set-point would
-//! be velocity × delay, and one against what arrived would not show a frame that was lost.
+//! The link, the bus and the drive each delay a set-point by a time that is known beforehand. An axis that follows the set-points sent
+//! to it without an error is where the motion task wanted it that much earlier. An error against the undelayed set-point would
+//! be velocity × delay, and one against the received set-points would hide a lost frame.
 use crate::program::Program;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 use std::collections::VecDeque;
 
-/// Cycles of the motion task for which the link goes on without a set-point.
+/// Cycles of the motion task for which the link continues without a set-point.
 const PREDICTED: f64 = 2.0;
-/// For the rounding of differences of times (s).
+/// Rounding of differences of times (s).
 const ROUNDING: f64 = 5e-10;
 
-/// What the motion task will ask for, where that is known beforehand.
+/// Future set-points of the motion task, if they are known beforehand.
 #[derive(Debug, Stateful)]
 #[state(fixed)]
 struct Known {
     program: Program,
-    /// When it began (s).
+    /// Start of the program (s).
     begun: Option<f64>,
 }
 
-/// The set-points of the motion task and the way between them.
+/// The set-points of the motion task, interpolated.
 #[derive(Debug, Stateful)]
 pub(super) struct DelayedReference {
-    /// Time from one set-point to the next (s), when nothing goes wrong.
+    /// Time from one set-point to the next in normal operation (s).
     #[state(constant)]
     period: f64,
-    /// How much later the loops follow (s).
+    /// Delay of the loops (s).
     #[state(constant)]
     delay: f64,
     /// Set-points and their times (s), the oldest first.
     kept: VecDeque<(f64, Setpoint)>,
-    /// Between the first two of them.
+    /// Interval between the first two set-points.
     interval: Option<Interval>,
     /// For a delay below the period, with which the next set-point is followed before it is there.
     #[state(fixed)]
@@ -41,7 +41,7 @@ pub(super) struct DelayedReference {
 }
 
 impl DelayedReference {
-    /// A motion task that gives a set-point every `period` (s), followed `delay` (s) later.
+    /// Reference for a motion task that gives a set-point every `period` (s), followed `delay` (s) later.
     pub(super) fn new(period: f64, delay: f64) -> Self {
         // One interval is read, those of the delay wait, and one is being filled.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
@@ -49,21 +49,21 @@ impl DelayedReference {
         Self { period, delay, kept: VecDeque::with_capacity(room), interval: None, known: None }
     }
 
-    /// The same for a motion task that goes through `program`. Only a delay below the period needs to know it.
+    /// Reference for a motion task that runs `program`. It is only needed for a delay below the period.
     pub(super) fn of_program(period: f64, delay: f64, program: &Program) -> Self {
         let known = (delay < period).then(|| Box::new(Known { program: program.clone(), begun: None }));
         Self { known, ..Self::new(period, delay) }
     }
 
-    /// The program has begun at `t` (s).
+    /// Sets the start of the program to `t` (s).
     pub(super) fn begin(&mut self, t: f64) {
         if let Some(known) = &mut self.known {
             known.begun = Some(t);
         }
     }
 
-    /// Takes the set-point of the time `t` (s), later than the last one. A motion task that was away for longer than the link
-    /// goes on without it begins anew.
+    /// Adds the set-point of time `t` (s), later than the last one. Starts anew after a gap that is longer than the link
+    /// bridges.
     pub(super) fn push(&mut self, t: f64, setpoint: Setpoint) {
         let most = (PREDICTED + 1.0) * self.period + ROUNDING;
         if self.kept.back().is_some_and(|(last, _)| t - last > most) {
@@ -72,15 +72,15 @@ impl DelayedReference {
         self.kept.push_back((t, setpoint));
     }
 
-    /// Forgets what was asked: nothing is followed until there are set-points again.
+    /// Discards all set-points: nothing is followed until there are new ones.
     pub(super) fn restart(&mut self) {
         self.kept.clear();
         self.interval = None;
     }
 
-    /// What is followed at `t` (s), which does not go back; `None` before the first set-point has arrived, and when none has
-    /// come for so long that the link has stopped the axis. Set-points that are late, or followed ahead of the motion task, are those of
-    /// its program, or predicted as the link does it where there is none.
+    /// Set-point followed at `t` (s), which must not decrease; `None` before the first set-point has arrived, and after a gap so
+    /// long that the link has stopped the axis. Set-points that are late, or followed ahead of the motion task, are taken from
+    /// its program, or predicted as the link does without one.
     pub(super) fn at(&mut self, t: f64) -> Option<Setpoint> {
         let wanted = t - self.delay;
         while self.kept.len() > 2 && self.kept.get(1).is_some_and(|(end, _)| wanted - end >= -ROUNDING) {
@@ -110,7 +110,7 @@ impl DelayedReference {
     }
 }
 
-/// The quintic polynomial by the positions, velocities and accelerations at both ends.
+/// The quintic polynomial with the positions, velocities and accelerations at both ends.
 pub(super) fn between(period: f64, from: &Setpoint, to: &Setpoint) -> Option<Interval> {
     let sample = |Setpoint { x, v, a, .. }: Setpoint| Sample { x, v, a, torque: 0.0 };
     Interval::new(Mode::Quintic, period, &[sample(*from), sample(*to)]).ok()
@@ -120,7 +120,7 @@ pub(super) fn between(period: f64, from: &Setpoint, to: &Setpoint) -> Option<Int
 mod tests {
     use super::*;
 
-    /// Oracle: a quintic itself, which the interpolation meets, at the delayed time.
+    /// Oracle: a quintic itself, which the interpolation reproduces, at the delayed time.
     #[test]
     fn the_reference_is_the_set_point_of_the_delayed_time() {
         let at = |t: f64| Setpoint { x: t.powi(5), v: 5.0 * t.powi(4), a: 20.0 * t.powi(3), ..Setpoint::default() };

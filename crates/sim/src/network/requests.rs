@@ -1,7 +1,7 @@
-//! The request of the motion task, as much later as the way to the loops takes.
+//! Requests of the motion task, delayed by the path to the loops.
 //!
-//! A program of moves is known beforehand and is asked at every tick. Function blocks give a request per cycle of theirs; a path
-//! between two cycles is the quintic polynomial through both, and before the second one is there the first one goes on.
+//! A program of moves is known beforehand and is evaluated at every tick. Function blocks give one request per cycle; a path
+//! between two cycles is the quintic polynomial through both, and before the second one is there the first one continues.
 use super::reference::between;
 use super::tables::Tables;
 use super::targets::Targets;
@@ -10,16 +10,16 @@ use servobench_base::{Request, RequestKind, Setpoint, Stateful};
 use servobench_motion::interpolate::Interval;
 use std::collections::VecDeque;
 
-/// Cycles of a motion task without a request after which it requests nothing any more.
+/// Cycles without a request after which a motion task counts as requesting nothing.
 const MISSED: f64 = 3.0;
-/// For the rounding of differences of times (s).
+/// Rounding of differences of times (s).
 const ROUNDING: f64 = 5e-10;
 
 /// Requests on their way to the loops.
 #[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) enum Requests {
-    /// Those of a program that began at some time (s), `delay` seconds later.
+    /// Requests of a program that began at some time (s), `delay` seconds later.
     Program {
         course: Course,
         #[state(constant)]
@@ -28,63 +28,63 @@ pub(super) enum Requests {
         delay: f64,
         running: Option<Running>,
     },
-    /// Those of function blocks.
+    /// Requests of function blocks.
     Cycles(Box<Cycles>),
 }
 
-/// The way that a program asks for.
+/// Path requested by a program.
 #[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) enum Course {
-    /// That of its moves.
+    /// Path of its moves.
     Moves(Box<Program>),
-    /// That of a drive which is told targets.
+    /// Path of a drive that gets targets.
     Targets(#[state(constant)] Targets),
-    /// That of a drive which follows points.
+    /// Path of a drive that follows points.
     Tables(Box<Tables>),
 }
 
-/// A program under way.
+/// A running program.
 #[derive(Debug, Clone, Copy, Stateful)]
 pub(super) struct Running {
-    /// When it began (s), as its last cycle has it: later where its task was held up.
+    /// Start (s) derived from its last cycle: later if its task was held up.
     begun: f64,
-    /// When its last cycle was (s).
+    /// Time of its last cycle (s).
     last: f64,
 }
 
-/// A request per cycle.
+/// One request per cycle.
 #[derive(Debug, Stateful)]
 pub(super) struct Cycles {
-    /// From one cycle to the next (s).
+    /// Time from one cycle to the next (s).
     #[state(constant)]
     period: f64,
-    /// How much later the loops are (s).
+    /// Delay of the loops (s).
     #[state(constant)]
     delay: f64,
     /// Requests with their times (s), the oldest first.
     kept: VecDeque<(f64, Request)>,
-    /// Between the first two of them, where both are paths.
+    /// Interval between the first two of them, if both are paths.
     interval: Option<Interval>,
 }
 
 impl Requests {
-    /// Those of `program`, whose task has cycles of `period` (s), and which reach the loops `delay` (s) later.
+    /// Requests of `program`, whose task has cycles of `period` (s), and which reach the loops `delay` (s) later.
     pub(super) fn of_program(program: &Program, period: f64, delay: f64) -> Self {
         Self::Program { course: Course::Moves(Box::new(program.clone())), period, delay, running: None }
     }
 
-    /// Those of a program whose drive is told `targets`.
+    /// Requests of a program whose drive gets `targets`.
     pub(super) const fn of_targets(targets: Targets, period: f64, delay: f64) -> Self {
         Self::Program { course: Course::Targets(targets), period, delay, running: None }
     }
 
-    /// Those of a program whose drive follows `tables`.
+    /// Requests of a program whose drive follows `tables`.
     pub(super) fn of_tables(tables: Tables, period: f64, delay: f64) -> Self {
         Self::Program { course: Course::Tables(Box::new(tables)), period, delay, running: None }
     }
 
-    /// Those of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
+    /// Requests of a motion task with cycles of `period` (s), which reach the loops `delay` (s) later.
     pub(super) fn of_cycles(period: f64, delay: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
         let room = (delay / period) as usize + 4;
@@ -92,21 +92,21 @@ impl Requests {
         Self::Cycles(Box::new(Cycles { period, delay, kept, interval: None }))
     }
 
-    /// The program has a cycle at `t` (s), `passed` seconds after its beginning.
+    /// Notes a cycle of the program at `t` (s), `passed` seconds after its start.
     pub(super) fn goes_on(&mut self, t: f64, passed: f64) {
         if let Self::Program { running, .. } = self {
             *running = Some(Running { begun: t - passed, last: t });
         }
     }
 
-    /// Takes the request of the cycle at `t` (s).
+    /// Adds the request of the cycle at `t` (s).
     pub(super) fn push(&mut self, t: f64, request: Request) {
         if let Self::Cycles(cycles) = self {
             cycles.kept.push_back((t, request));
         }
     }
 
-    /// The request at `t` (s), which does not go back.
+    /// The request at `t` (s), which must not decrease.
     pub(super) fn at(&mut self, t: f64) -> Request {
         match self {
             Self::Program { course, period, delay, running } => {
@@ -130,7 +130,7 @@ impl Requests {
     }
 }
 
-/// The request of a program `passed` seconds after its beginning.
+/// The request of a program `passed` seconds after its start.
 pub(super) fn of_moves(program: &mut Program, passed: f64) -> Request {
     let setpoint = program.at(passed);
     match program.request_at(passed, setpoint) {
@@ -167,7 +167,7 @@ impl Cycles {
     }
 }
 
-/// The set-point that a path goes through at a request; `None` where it has none.
+/// The set-point of a path at a request; `None` if the request is not a path.
 const fn path(request: &Request) -> Option<Setpoint> {
     match request {
         Request::Follow(setpoint) => Some(*setpoint),
@@ -180,7 +180,7 @@ const fn path(request: &Request) -> Option<Setpoint> {
 mod tests {
     use super::*;
 
-    /// Oracle: a quintic itself, which the path through two requests is, at the delayed time.
+    /// Oracle: a quintic itself, which is the path through two requests, at the delayed time.
     #[test]
     fn a_path_between_two_cycles_is_the_quintic_through_both() {
         let at = |t: f64| Setpoint { x: t.powi(5), v: 5.0 * t.powi(4), a: 20.0 * t.powi(3), ..Setpoint::default() };

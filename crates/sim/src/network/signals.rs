@@ -1,4 +1,4 @@
-//! States of drive and link, noted when they change.
+//! States of drive and link, recorded when they change.
 use servobench_base::Stateful;
 use servobench_cia402::interpolated::BufferError;
 use servobench_cia402::{Mode, PowerState};
@@ -7,7 +7,7 @@ use servobench_fieldbus::link;
 use servobench_fieldbus::{Fault, Interpolation};
 use servobench_trace::{Recorder, SignalId};
 
-/// A state of which only the changes are noted.
+/// A state that is recorded only when it changes.
 #[derive(Debug, Stateful)]
 pub(super) struct Watched<T> {
     #[state(constant)]
@@ -20,7 +20,7 @@ impl<T: Copy + PartialEq> Watched<T> {
         Self { id: recorder.add_signal(source, name), last: None }
     }
 
-    /// Notes `value` where it is another one, and says whether it is.
+    /// Records `value` if it has changed, and returns true if it has.
     #[inline]
     pub(super) fn note(&mut self, t: f64, value: T, recorder: &mut Recorder, words: impl FnOnce(T) -> String) -> bool {
         let is_other = self.last != Some(value);
@@ -32,7 +32,7 @@ impl<T: Copy + PartialEq> Watched<T> {
     }
 }
 
-/// How a recording writes a BOOL.
+/// Text of a BOOL in a recording.
 pub(super) fn word(value: bool) -> String {
     if value { "TRUE" } else { "FALSE" }.into()
 }
@@ -40,7 +40,7 @@ pub(super) fn word(value: bool) -> String {
 /// The errors that a trajectory buffer latches, in the highest byte of its status (2012h).
 const ERRORS: u32 = BufferError::Sequence as u32 | BufferError::Overflow as u32 | BufferError::Underflow as u32;
 
-/// What the buffer has latched.
+/// Latched errors of the buffer.
 fn latched(errors: u32) -> String {
     let names = [
         (BufferError::Sequence, "point missing"),
@@ -51,7 +51,7 @@ fn latched(errors: u32) -> String {
     if found.is_empty() { "none".into() } else { found.join(", ") }
 }
 
-/// What there is to say of drive and link.
+/// Recorded signals of drive and link.
 #[derive(Debug, Stateful)]
 #[state(fixed)]
 pub(super) struct Signals {
@@ -60,7 +60,7 @@ pub(super) struct Signals {
     drive_fault: Watched<Option<device::Fault>>,
     internal_limit: Watched<bool>,
     buffer: Watched<u32>,
-    /// The words in which a master reads the buffer, where it sends points: 2011h and 2012h.
+    /// The words through which a master reads the buffer, if it sends points: 2011h and 2012h.
     #[state(fixed)]
     words: Option<(Watched<usize>, Watched<u32>)>,
     interpolation: Watched<Interpolation>,
@@ -68,7 +68,7 @@ pub(super) struct Signals {
 }
 
 impl Signals {
-    /// With the words of the trajectory buffer where the master `sends_points`.
+    /// Signals with the words of the trajectory buffer if the master `sends_points`.
     pub(super) fn new(sends_points: bool, recorder: &mut Recorder) -> Self {
         Self {
             power: Watched::new("drive", "state", recorder),

@@ -1,31 +1,31 @@
-//! The way of a drive that follows points: a program whose moves begin when their points wait in the buffer of the drive.
+//! Path of a drive that follows points: a program whose moves begin when their points wait in the buffer of the drive.
 use super::requests::of_moves;
 use crate::program::Program;
 use servobench_base::{Request, Stateful};
 
-/// A program, each of whose moves begins later.
+/// A program with moves that begin late.
 #[derive(Debug, Stateful)]
 pub(super) struct Tables {
     program: Program,
     #[state(constant)]
     moves: Vec<Later>,
-    /// The move that was begun last, if one was.
+    /// The move that began last, if any.
     now: Option<usize>,
 }
 
-/// A move of it.
+/// A move of the program, begun late by the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Later {
-    /// When the drive begins it (s), and by how much later than the program that is.
+    /// Start of the move in the drive (s), and its lag behind the program.
     begun: f64,
     lag: f64,
-    /// When it ends, by the program, and where.
+    /// End of the move in the program, and its target.
     end: f64,
     target: f64,
 }
 
 impl Tables {
-    /// The moves of `program`, which the drive begins by `lags` (s) later than it.
+    /// The moves of `program`, which the drive begins with `lags` (s).
     pub(super) fn of(program: &Program, lags: &[f64]) -> Self {
         let moves = program.plans().zip(lags).map(|((start, from, plan), lag)| Later {
             begun: start + lag,
@@ -36,7 +36,7 @@ impl Tables {
         Self { program: program.clone(), moves: moves.collect(), now: None }
     }
 
-    /// The request `passed` seconds after the beginning of the program, which does not go back.
+    /// The request `passed` seconds after the start of the program, which must not decrease.
     pub(super) fn at(&mut self, passed: f64) -> Request {
         let next = self.now.map_or(0, |now| now + 1);
         if self.moves.get(next).is_some_and(|later| later.begun <= passed) {
@@ -44,7 +44,7 @@ impl Tables {
         }
         let Some(now) = self.now else { return Request::Stand };
         let Later { lag, end, target, .. } = self.moves[now];
-        // The next move of the program may have begun, but not that of the drive.
+        // The next move may have begun in the program, but not in the drive.
         if passed - lag >= end && now + 1 < self.moves.len() {
             return Request::Rest(target);
         }

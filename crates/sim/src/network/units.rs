@@ -1,8 +1,8 @@
 //! The drive units of a scenario as the objects of the factor group.
 //!
-//! A drive holds whole numbers (608Fh: increments per revolution, 6092h: units per revolution); a scenario says lengths and
-//! angles. What is no fraction of whole numbers to 13 digits is refused: a unit that is off by a rounding would drift away from
-//! the axis with every revolution.
+//! A drive holds whole numbers (608Fh: increments per revolution, 6092h: units per revolution); a scenario gives lengths and
+//! angles. A value that is not a fraction of whole numbers to 13 digits is refused: a unit with a rounding error would drift away
+//! from the axis with every revolution.
 use crate::error::BuildError;
 use core::f64::consts::TAU;
 use servobench_base::Coordinate;
@@ -11,7 +11,7 @@ use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_drive::device::Units;
 use servobench_scenario as scenario;
 
-/// What closes the position loop, and the way from it to the axis.
+/// The encoder that closes the position loop, and its ratio to the axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Counted {
     /// Coordinate of the encoder.
@@ -42,7 +42,7 @@ pub(super) fn units(
     unit: scenario::DriveUnits,
     rated_effort: f64,
 ) -> Result<DriveUnits, BuildError> {
-    // What a linear encoder does in a metre stands for a revolution.
+    // For a linear encoder a metre stands for a revolution.
     let revolution = match counted.motion {
         Coordinate::Rotary => TAU,
         Coordinate::Linear => 1.0,
@@ -70,7 +70,7 @@ pub(super) fn units(
     Ok(DriveUnits { factors, unit, conversions: Units::new(&factors, unit, rated_effort)?, increment })
 }
 
-/// How many increments of an ideal encoder there are in a unit.
+/// Increments of an ideal encoder per unit.
 const FINER: u32 = 64;
 
 /// `value` as a fraction of whole numbers of 32 bits, by its continued fraction.
@@ -78,7 +78,7 @@ fn fraction(name: &'static str, value: f64) -> Result<[u32; 2], ParamError> {
     let refused = ParamError { name, value, bound: "a ratio of whole numbers below 2³²" };
     let (mut before, mut last) = ([0.0, 1.0], [1.0, 0.0]);
     let mut rest = value;
-    // The denominators grow at least as Fibonacci's numbers: 2³² is passed after 47 terms.
+    // The denominators grow at least as fast as the Fibonacci numbers: 2³² is passed after 47 terms.
     for _ in 0..48 {
         let whole = rest.floor();
         let next = [whole * last[0] + before[0], whole * last[1] + before[1]];

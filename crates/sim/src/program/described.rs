@@ -1,4 +1,4 @@
-//! The moves of a program as a recording describes them.
+//! Descriptions of the moves of a program for a recording.
 use super::{Planned, Program};
 use servobench_metrics::DisplayUnit;
 use servobench_motion::online::Effort;
@@ -14,15 +14,15 @@ impl Program {
 }
 
 impl Planned {
-    /// Its description in a recording, `delay` (s) later at its end than it is planned.
+    /// Description of the move for a recording, with its end `delay` (s) later than planned.
     pub(super) fn describe(&self, unit: &DisplayUnit, delay: f64) -> Move {
         let (plan, order) = (&self.plan, self.plan.order());
         let length = self.end - self.start;
-        // The difference of start and end is rounded: it alone says nothing.
+        // The difference of start and end is rounded: it alone proves nothing.
         let is_aborted = self.is_aborted && length < plan.duration();
         let (from, to) = (self.from, self.from + plan.at(length.max(plan.duration())).x);
         let (cruise_start, cruise) = match plan.end().v {
-            // A velocity that is held.
+            // A held velocity.
             v if v != 0.0 && length > plan.duration() => (plan.duration(), length - plan.duration()),
             _ => plan.cruise(),
         };
@@ -60,7 +60,7 @@ fn label(unit: &DisplayUnit, ends: [f64; 2], order: &str) -> String {
     format!("move from {from} to {to}, order {order}")
 }
 
-/// Words of a label for the kind of a move, besides its order.
+/// Kind of the move for a label, in words, besides its order.
 pub(super) const fn kind(generator: &Generator) -> &'static str {
     match generator {
         Generator::PointToPoint(asked) => match asked.method {
@@ -83,7 +83,7 @@ pub(super) const fn kind(generator: &Generator) -> &'static str {
     }
 }
 
-/// A position (m or rad) to a picounit: a sum of targets shows its rounding otherwise.
+/// A position (m or rad) rounded to a picounit: a sum of targets would show its rounding error.
 fn without_rounding(position: f64) -> f64 {
     libm::round(position * 1e12) / 1e12
 }

@@ -1,9 +1,9 @@
-//! Between a slow task that commands and a drive that has a set-point at every tick.
+//! Interpolation between a slow task that commands and a drive with a set-point at every tick.
 use servobench_base::{ParamError, Rate, Setpoint, Stateful, Tick};
 use servobench_motion::interpolate::{Interpolator, Sample};
 use servobench_scenario::Interpolation;
 
-/// The commands of a slow task, interpolated. Before the first command the axis rested where that begins.
+/// The commands of a slow task, interpolated. Before the first command the axis rested at its start.
 #[derive(Debug, Clone, Stateful)]
 pub(super) struct Fine {
     interpolator: Interpolator,
@@ -26,12 +26,12 @@ impl Fine {
         Ok(Self { interpolator, every, passed: 0 })
     }
 
-    /// By how much the drive is later than the command (s).
+    /// Delay of the drive behind the command (s).
     pub(super) fn delay(&self) -> f64 {
         self.interpolator.mode().delay_samples() as f64 * self.interpolator.period()
     }
 
-    /// The set-point of the next tick; `command` is what the slow task would command now.
+    /// The set-point of the next tick; `command` gives the current command of the slow task.
     #[inline]
     pub(super) fn next(&mut self, command: impl FnOnce() -> Setpoint) -> Setpoint {
         if self.passed == 0 {
@@ -39,7 +39,7 @@ impl Fine {
         }
         let fraction = self.passed as f64 / self.every as f64;
         self.passed = if self.passed + 1 < self.every { self.passed + 1 } else { 0 };
-        // A plan has no number that is refused, and the window is full from the first command on.
+        // A plan has no invalid numbers, and the window is full from the first command on.
         self.interpolator.at(fraction).map(|command| command.setpoint).unwrap_or_default()
     }
 
