@@ -1,4 +1,4 @@
-//! The way to a fixed point x = G(x) that is known by its evaluations only.
+//! Iteration to a fixed point x = G(x) that is known only by its evaluations.
 //!
 //! With r = G(x) − x, and the changes of x and r from one evaluation to the next in the columns of ΔX and ΔR:
 //!
@@ -9,7 +9,7 @@
 //! ```
 //! Norms are weighted by the tolerance of each signal, so that metres and newtons can be added. The least squares are solved by
 //! modified Gram–Schmidt from the newest column to the oldest; a column that adds no direction is dropped. For a linear G with n
-//! signals, n columns make the step exact. The columns of the steps before are used again and dropped as soon as the residual
+//! signals, n columns make the step exact. Columns of previous steps are used again and dropped as soon as the residual
 //! grows with them.
 //!
 //! Sources: Irons & Tuck, Int. J. Numer. Methods Eng. 1 (1969) 275; Küttler & Wall, Comput. Mech. 43 (2008) 61; Degroote, Bathe &
@@ -18,27 +18,27 @@
 //! (2011) 1715, with β = ω.
 use crate::settings::Acceleration;
 
-/// Most columns that are kept; loops with more signals converge with what these span.
+/// Most columns kept; loops with more signals converge within the span of these.
 const MOST_COLUMNS: usize = 16;
-/// A column that keeps less than this of its length beside the newer ones is rounding.
+/// A column that keeps less than this fraction of its length beside the newer ones is rounding.
 const INDEPENDENT: f64 = 1e-7;
-/// Bounds of Aitken's factor: beyond them two residuals were nearly the same.
+/// Bounds of Aitken's factor: beyond them two residuals were nearly equal.
 const AITKEN: [f64; 2] = [1e-3, 1e3];
 
-/// State of the way to the fixed point of one loop.
+/// State of the iteration to the fixed point of one loop.
 pub(crate) struct Accelerator {
     kind: Acceleration,
     signals: usize,
     /// Newest first.
     columns: Vec<Column>,
-    /// Columns that are not in use.
+    /// Unused columns.
     spare: Vec<Column>,
-    /// How many of the columns are of this step.
+    /// Number of columns from this step.
     own: usize,
     x: Vec<f64>,
     r: Vec<f64>,
     omega: f64,
-    /// Whether `x` and `r` are of this step.
+    /// True if `x` and `r` are of this step.
     begun: bool,
     remainder: Vec<f64>,
 }
@@ -47,9 +47,9 @@ pub(crate) struct Accelerator {
 struct Column {
     dx: Vec<f64>,
     dr: Vec<f64>,
-    /// Weighted and orthogonal to the newer ones.
+    /// Weighted, and orthogonal to the newer ones.
     q: Vec<f64>,
-    /// What of `q` each column is made of: its triangular factor.
+    /// Components of `q` along each column: its triangular factor.
     along: [f64; MOST_COLUMNS],
     coefficient: f64,
 }
@@ -78,13 +78,13 @@ impl Accelerator {
         }
     }
 
-    /// A new fixed point is looked for.
+    /// Starts the search for a new fixed point.
     pub(crate) fn begin(&mut self) {
         self.begun = false;
         self.own = 0;
     }
 
-    /// From x and its residual to the next x, in place. A weight is the inverse of a signal's tolerance.
+    /// Advances x with its residual to the next x, in place. A weight is the inverse of a signal's tolerance.
     pub(crate) fn advance(&mut self, x: &mut [f64], r: &[f64], weights: &[f64]) {
         match self.kind {
             Acceleration::Relaxed(omega) => relax(x, r, omega),
@@ -120,7 +120,7 @@ impl Accelerator {
         omega.abs().clamp(AITKEN[0], AITKEN[1]).copysign(omega)
     }
 
-    /// Keeps what the last two evaluations have shown.
+    /// Adds the column of the last two evaluations.
     fn learn(&mut self, x: &[f64], r: &[f64], weights: &[f64]) {
         if norm(r, weights) > norm(&self.r, weights) {
             self.spare.extend(self.columns.drain(self.own..));
@@ -157,7 +157,7 @@ impl Accelerator {
         }
     }
 
-    /// Factors the weighted ΔR, and drops what adds no direction.
+    /// Factors the weighted ΔR, and drops columns that add no direction.
     fn orthogonalise(&mut self, weights: &[f64]) {
         let mut i = 0;
         while i < self.columns.len() {
@@ -207,7 +207,7 @@ mod tests {
 
     const TOLERANCE: f64 = 1e-10;
 
-    /// How many evaluations of `g` it takes to meet x = G(x) to the tolerance; `None` after 200.
+    /// Number of evaluations of `g` until x = G(x) is met to the tolerance; `None` after 200.
     fn evaluations<const N: usize>(kind: Acceleration, g: impl Fn(&[f64; N]) -> [f64; N]) -> Option<(u32, [f64; N])> {
         let mut accelerator = Accelerator::new(kind, N);
         let (mut x, weights) = ([0.0; N], [1.0 / TOLERANCE; N]);
@@ -223,7 +223,7 @@ mod tests {
         None
     }
 
-    /// G(x) = −3·x + 8 has the fixed point 2; its factor of −3 makes the plain way diverge. Two evaluations show the slope, the
+    /// G(x) = −3·x + 8 has the fixed point 2; its factor of −3 makes the plain iteration diverge. Two evaluations show the slope, the
     /// third is at the fixed point.
     #[test]
     fn one_signal_takes_three_evaluations_whatever_its_gain() {
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// What one step has shown serves the next: a linear loop whose constant has changed takes two evaluations.
+    /// Columns of one step serve the next: a linear loop with a changed constant takes two evaluations.
     #[test]
     fn what_was_learnt_is_used_again() {
         let mut accelerator = Accelerator::new(Acceleration::QuasiNewton(1.0), 2);

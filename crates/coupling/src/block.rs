@@ -1,73 +1,73 @@
-//! What is coupled.
+//! Blocks that can be coupled.
 use servobench_base::StepEnd;
 
 /// An input over a step: its value at the start and its first two derivatives to the time there.
 pub type Input = [f64; 3];
 
-/// A part of a simulation that is stepped for itself: an FMU, or the axis.
+/// A part of a simulation that is stepped separately: an FMU, or the axis.
 pub trait Block {
-    /// Why it could not go on.
+    /// Error of a block that cannot continue.
     type Error;
 
-    /// Whether its state can be saved and restored.
+    /// True if its state can be saved and restored.
     fn saves_state(&self) -> bool;
 
-    /// Whether `output` follows `input` without a step (direct feedthrough); true where that is not known.
+    /// True if `output` follows `input` without a step (direct feedthrough), or if that is unknown.
     fn feeds_through(&self, output: usize, input: usize) -> bool;
 
-    /// Whether `output` changes at events only, as integers, booleans and what is sampled do: between two of its values it has the
-    /// older one, and nothing leads on from it.
+    /// True if `output` changes only at events, like integers, booleans and sampled values: between two of its values it has the
+    /// older one, without extrapolation.
     fn is_discrete(&self, _output: usize) -> bool {
         false
     }
 
-    /// True where it exchanges numbers of single precision: a loop that it is in agrees to that.
+    /// True if it exchanges numbers of single precision, to which a loop with it can agree.
     fn is_single_precision(&self) -> bool {
         false
     }
 
-    /// Whether it is initialised by [`start`](Self::start): until then its outputs are those of its initial equations, which may
-    /// be read with one input after the other.
+    /// True if it is initialised by [`start`](Self::start): until then its outputs are those of its initial equations, which may
+    /// be read with one set of inputs after another.
     fn has_initial_equations(&self) -> bool {
         false
     }
 
-    /// Whether `output` follows `input` by the initial equations; true where that is not known.
+    /// True if `output` follows `input` by the initial equations, or if that is unknown.
     fn follows_at_start(&self, output: usize, input: usize) -> bool {
         self.feeds_through(output, input)
     }
 
-    /// Ends the initialisation with the inputs at time 0. It is called once, and only where there are initial equations.
+    /// Ends the initialisation with the inputs at time 0. Called once, and only if there are initial equations.
     ///
     /// # Errors
-    /// The block's own; the simulation does not begin.
+    /// Error of the block; the simulation does not begin.
     fn start(&mut self, _inputs: &[f64]) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Goes from `time` to `time + length` (s).
+    /// Steps from `time` to `time + length` (s).
     ///
     /// # Errors
-    /// The block's own; the simulation ends.
+    /// Error of the block; the simulation ends.
     fn step(&mut self, time: f64, length: f64, inputs: &[Input]) -> Result<StepEnd, Self::Error>;
 
-    /// Reads all outputs. `inputs`, if given, are the present ones, for outputs that follow them without a step (direct
+    /// Reads all outputs. `inputs`, if given, are the current ones, for outputs that follow them without a step (direct
     /// feedthrough).
     ///
     /// # Errors
-    /// The block's own.
+    /// Error of the block.
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), Self::Error>;
 
-    /// Saves its state, in place of the one saved before.
+    /// Saves its state, replacing the one saved before.
     ///
     /// # Errors
-    /// The block's own.
+    /// Error of the block.
     fn save(&mut self) -> Result<(), Self::Error>;
 
-    /// Goes back to the saved state; it can do so again.
+    /// Restores the saved state; this may be repeated.
     ///
     /// # Errors
-    /// The block's own.
+    /// Error of the block.
     fn restore(&mut self) -> Result<(), Self::Error>;
 }
 

@@ -1,6 +1,6 @@
 //! Cycles of a directed graph.
 
-/// The strongly connected components in topological order (a component comes after all that lead to it), each ascending.
+/// The strongly connected components in topological order (a component comes after all its predecessors), each ascending.
 ///
 /// Source: Kosaraju's algorithm as in Aho, Hopcroft & Ullman, *Data Structures and Algorithms*, 1983, §6.7.
 pub(crate) fn components(successors: &[Vec<usize>]) -> Vec<Vec<usize>> {
@@ -29,12 +29,12 @@ pub(crate) fn components(successors: &[Vec<usize>]) -> Vec<Vec<usize>> {
     found
 }
 
-/// Whether a component is a cycle: it has several nodes, or an edge to itself.
+/// True if a component is a cycle: it has several nodes, or an edge to itself.
 pub(crate) fn is_cycle(component: &[usize], successors: &[Vec<usize>]) -> bool {
     component.len() > 1 || component.iter().any(|node| successors[*node].contains(node))
 }
 
-/// The nodes of a component from its first one along a shortest way back to it.
+/// The nodes of a shortest cycle through the first node of a component.
 pub(crate) fn shortest_way_round(component: &[usize], successors: &[Vec<usize>]) -> Vec<usize> {
     let start = component[0];
     let mut before = vec![None; successors.len()];
@@ -58,7 +58,7 @@ pub(crate) fn shortest_way_round(component: &[usize], successors: &[Vec<usize>])
     component.to_vec()
 }
 
-/// Appends what can be reached from `root` and was not visited, each node after all that it leads to.
+/// Appends the nodes that are reachable from `root` and not yet visited, each after all its successors.
 fn depth_first(root: usize, next: &[Vec<usize>], visited: &mut [bool], finished: &mut Vec<usize>) {
     if std::mem::replace(&mut visited[root], true) {
         return;

@@ -1,26 +1,26 @@
-//! How old what a block knows of another one is.
+//! Age of the values that a block has from another one.
 use crate::polynomial::Order;
 
-/// How late a connection is.
+/// Delay of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Delay {
     /// Index of the connection.
     pub connection: usize,
-    /// Age of the newest value that goes into a step, at the end of that step and at most (base ticks). 0: its end is known.
+    /// Age of the newest value that enters a step, at the end of that step and at most (base ticks). 0: its end is known.
     pub ticks: u64,
-    /// The same in communication steps.
+    /// The age in communication steps.
     pub steps: u64,
-    /// What leads on from that value to the end of the step: with `Constant` the input is late by `ticks`, with a higher order
-    /// its error is of higher order, but what could not be foreseen is still as late. `None` if nothing has to.
+    /// Extrapolation from that value to the end of the step: with `Constant` the input is late by `ticks`, with a higher order
+    /// its error is of higher order, but unforeseen changes are still as late. `None` without extrapolation.
     pub extrapolated: Option<Order>,
 }
 
-/// Age of the newest value of a source at the end of a step of its destination, at most (communication steps). The source is
-/// stepped every `source` steps and the destination every `destination`, both at the beginning of theirs.
+/// Largest age of the newest value of a source at the end of a step of its destination (communication steps). The source is
+/// stepped every `source` steps and the destination every `destination`, both at the beginning of their steps.
 ///
-/// At a start t of the destination's step the source has just stepped at the multiple of its own step at or before t. Where its
+/// At a start t of the destination's step the source has just stepped at the multiple of its own step at or before t. If its
 /// new values count at once (`ahead`), the newest is of the first multiple beyond t, at least the greatest common divisor g away;
-/// where only values of the past count, it is of the last multiple up to t, at most `source` − g ago.
+/// if only values of the past count, it is of the last multiple up to t, at most `source` − g ago.
 pub(crate) fn oldest(source: u32, destination: u32, ahead: bool, exchanged: bool) -> u64 {
     let (source, destination) = (u64::from(source), u64::from(destination));
     let common = greatest_common_divisor(source, destination);

@@ -1,52 +1,52 @@
-//! Why a coupled simulation ended.
+//! Errors of a coupled simulation.
 use crate::network::NetworkError;
 use thiserror::Error;
 
-/// Why a coupled simulation could not begin or go on; `E` is the error of its blocks.
+/// Reasons why a coupled simulation could not begin or continue; `E` is the error of its blocks.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CouplingError<E> {
-    /// The network cannot be run as it was asked for.
+    /// The network cannot be run as requested.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// A block could not go on.
+    /// A block could not continue.
     #[error("`{block}` failed at {time} s: {source}")]
     Block {
         /// Name of the block.
         block: String,
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// Its own reason.
+        /// Error of the block.
         source: E,
     },
     /// An output is not a finite number.
     #[error("`{output}` is {value} at {time} s, after communication step {step}")]
     NotFinite {
-        /// The output.
+        /// Name of the output.
         output: String,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// When (s).
+        /// Time (s).
         time: f64,
         /// Number of the communication step.
         step: u64,
     },
-    /// A block came back from a step at a time where it cannot be.
+    /// A block returned from a step at an impossible time.
     #[error(
         "`{block}` was asked to go from {from} s to {to} s and says that it is at {at} s, after {parts} parts of the step"
     )]
     Astray {
         /// Name of the block.
         block: String,
-        /// Where it was (s).
+        /// Start of the step (s).
         from: f64,
-        /// Where it should have gone (s).
+        /// End of the step (s).
         to: f64,
-        /// Where it says that it is (s).
+        /// Time reported by the block (s).
         at: f64,
-        /// How often it came back early in this step.
+        /// Number of early returns in this step.
         parts: u32,
     },
-    /// An iteration did not come to its end.
+    /// An iteration did not converge.
     #[error(
         "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; let them be more (`iterations`), let the loop agree less well (`tolerance`), or take a smaller step than {length} s"
     )]
@@ -57,13 +57,13 @@ pub enum CouplingError<E> {
         output: String,
         /// Its last change (its own unit).
         change: f64,
-        /// What it may change (its own unit).
+        /// Its tolerance (its own unit).
         allowed: f64,
-        /// How many evaluations there were.
+        /// Number of evaluations.
         iterations: u32,
         /// Number of the communication step.
         step: u64,
-        /// When (s).
+        /// Time (s).
         time: f64,
         /// The communication step (s).
         length: f64,
@@ -77,15 +77,15 @@ pub enum CouplingError<E> {
         connection: String,
         /// Number of the communication step.
         step: u64,
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// How much its defect has grown.
+        /// Factor by which its defect has grown.
         growth: f64,
-        /// In how many exchanges.
+        /// Number of exchanges in which it has grown.
         exchanges: u32,
         /// The communication step (s).
         length: f64,
-        /// What else may help with this method.
+        /// Further remedy with this method.
         help: &'static str,
     },
 }

@@ -1,36 +1,36 @@
-//! The error of the coupling, estimated from what is exchanged anyway.
+//! The error of the coupling, estimated from the exchanged values.
 //!
-//! Within a step a block has the polynomial p as input where the signal is y. At the end of the step the defect d = p − y is known.
-//! The block feels the mean of p − y over the step, to leading order
+//! Within a step a block has the polynomial p as input in place of the signal y. At the end of the step the defect d = p − y is known.
+//! The block sees the mean of p − y over the step, to leading order
 //!
 //! ```text
 //! extrapolated, order 0, 1, 2    d/2, 5·d/12, 3·d/8      the error grows as σ, σ(σ+1), σ(σ+1)(σ+2) over the step, σ = 0 … 1
 //! its end announced              d/2 + ∇²y/12            a line to the announced value; ∇³y/24 for a parabola
 //! ```
-//! so that a mode of ωH per exchange has the relative error ωH/2 with inputs that are held, 5·(ωH)²/12 with order 1 and (ωH)²/12 where
-//! the end is known: with order 1, 1 % is about 40 exchanges per period.
+//! so that a mode of ωH per exchange has the relative error ωH/2 with inputs that are held, 5·(ωH)²/12 with order 1 and (ωH)²/12 if
+//! the end is known: with order 1, 1 % takes about 40 exchanges per period.
 //!
-//! The errors of [`WINDOW`] exchanges are taken apart into their median and what is left. What is left is held against the standard
-//! deviation of the signal in these exchanges, by the mean of its square roots, squared: a single jump, which is late by a step whatever
-//! the method, hardly counts, and a mode that is not resolved does. The median is held against the greatest value of the signal so far: a constant acceleration gives a constant error, of
-//! a force that is nearly constant itself.
+//! The errors of [`WINDOW`] exchanges are split into their median and the remainder. The remainder is compared with the standard
+//! deviation of the signal in these exchanges, by the mean of its square roots, squared: a single jump, which is late by a step with any
+//! method, hardly counts, and an unresolved mode does. The median is compared with the greatest value of the signal so far: a
+//! constant acceleration gives a constant error of a force that is nearly constant itself.
 //!
-//! The worst window of the worst connection is the error of the coupling; a window in which the signal does less than
-//! [`LEAST`] of what it does in another, or of rounding, has no say.
+//! The worst window of the worst connection is the error of the coupling; a window in which the signal varies less than
+//! [`LEAST`] of its variation in another, or less than rounding, does not count.
 use crate::delay::Delay;
 use crate::network::{Wire, Wiring};
 use crate::polynomial::Order;
 use crate::settings::{Method, Settings};
 
-/// Exchanges to a window: six periods of a mode with 40 exchanges each. The delay of half a step that a held ramp has is 0.8 % of it.
+/// Exchanges in a window: six periods of a mode with 40 exchanges each. The delay of half a step of a held ramp is 0.8 % of it.
 const WINDOW: usize = 256;
-/// Exchanges that a shorter run must have.
+/// Fewest exchanges of a shorter run.
 const FEWEST: usize = 20;
-/// Mean of the errors by the standard deviation of the signal, to the ratio of their amplitudes in a sine: ((1/π)·∫√sin)² is 0.5818.
+/// Factor from the mean of the errors by the standard deviation to the ratio of amplitudes in a sine: ((1/π)·∫√sin)² is 0.5818.
 const OF_A_SINE: f64 = 1.0 / (0.5818 * std::f64::consts::SQRT_2);
-/// Powers of two from the liveliest window down to those that have no say: 2⁻¹⁰.
+/// Powers of two from the liveliest window down to windows that do not count: 2⁻¹⁰.
 const LEAST: usize = 10;
-/// Part of the greatest value that counts as rounding; signals may be of single precision.
+/// Fraction of the greatest value that counts as rounding; signals may be of single precision.
 const ROUNDING: f64 = 1e-6;
 
 /// Estimated error of a coupling.
@@ -38,12 +38,12 @@ const ROUNDING: f64 = 1e-6;
 pub struct EstimatedError {
     /// Index of the connection with the largest error.
     pub connection: usize,
-    /// Error of its input within a step, as a part of what the signal does.
+    /// Error of its input within a step, relative to the variation of the signal.
     pub error: f64,
 }
 
 impl Settings {
-    /// Error of an input that carries a mode, as a part of it, to leading order; `angle` is by how much the mode turns in a step, ωH (rad).
+    /// Relative error of an input that carries a mode, to leading order; `angle` is the phase of the mode per step, ωH (rad).
     #[must_use]
     pub fn error_of_a_mode(&self, angle: f64) -> f64 {
         match (&self.method, self.order) {
@@ -59,7 +59,7 @@ impl Settings {
 /// Errors of all connections whose signal is continuous.
 pub(crate) struct Estimates {
     all: Vec<Estimate>,
-    /// By input: its value at the end of the last step, as its block took it.
+    /// Value of each input at the end of the last step, as taken by its block.
     ends: Vec<f64>,
 }
 
@@ -69,9 +69,9 @@ struct Estimate {
     to: usize,
     output: usize,
     input: usize,
-    /// Mean error by the defect at the end.
+    /// Mean error per defect at the end.
     share: f64,
-    /// Mean error by the difference of the signal between known values.
+    /// Mean error from the difference of the signal between known values.
     between: Between,
     /// Last values of the signal, the newest first.
     last: [f64; 3],
@@ -91,7 +91,7 @@ enum Between {
     Parabola,
 }
 
-/// The exchanges of a window so far.
+/// The exchanges of the current window.
 struct Window {
     exchanges: usize,
     first: f64,
@@ -100,7 +100,7 @@ struct Window {
     errors: [f64; WINDOW],
 }
 
-/// The worst ratios by what the signal does, in powers of two from the liveliest window down.
+/// The worst ratios by variation of the signal, in powers of two from the liveliest window down.
 #[derive(Default)]
 struct Worst {
     ratios: [f64; LEAST],
@@ -142,15 +142,15 @@ impl Estimates {
         Self { all: delays.iter().filter_map(estimate).collect(), ends: vec![0.0; wiring.wires.len()] }
     }
 
-    /// Notes what an input is at the end of a step.
+    /// Notes the value of an input at the end of a step.
     pub(crate) fn note_end(&mut self, input: usize, value: f64) {
         self.ends[input] = value;
     }
 
-    /// Looks at the exchange `now`: `reached` are the steps that the blocks have come to, `newest` gives the values of outputs.
+    /// Evaluates the exchange `now`: `reached` are the steps that the blocks have reached, `newest` gives the values of outputs.
     pub(crate) fn judge(&mut self, now: u64, reached: &[u64], wires: &[Wire], newest: impl Fn(usize) -> f64) {
         for estimate in &mut self.all {
-            // Blocks of different steps are compared where both have come to the end of one.
+            // Blocks of different steps are compared where both have reached the end of one.
             if reached[estimate.from] == now && reached[estimate.to] == now {
                 let Wire { gain, offset, .. } = wires[estimate.input];
                 let value = gain * newest(estimate.output) + offset;
@@ -159,7 +159,7 @@ impl Estimates {
         }
     }
 
-    /// The largest error so far; `None` where no signal that leads on within a step was exchanged often enough.
+    /// The largest error so far; `None` if no continuous signal was exchanged often enough.
     pub(crate) fn largest(&self) -> Option<EstimatedError> {
         let errors = self
             .all
@@ -170,7 +170,7 @@ impl Estimates {
 }
 
 impl Estimate {
-    /// A value with the defect of the input.
+    /// Adds a value with the defect of the input.
     fn push(&mut self, value: f64, defect: f64) {
         let [y1, y2, y3] = self.last;
         let between = match self.between {
@@ -187,7 +187,7 @@ impl Estimate {
         }
     }
 
-    /// The error; that of a run shorter than a window is of what there is.
+    /// The error; for a run shorter than a window that of its exchanges.
     fn error(&self) -> Option<f64> {
         if self.worst.windows > 0 {
             return Some(self.worst.ratio());
@@ -224,7 +224,7 @@ impl Window {
         ((self.squares - self.sum * self.sum / count).max(0.0) / count).sqrt()
     }
 
-    /// Error as a part of what the signal does, whose standard deviation is `deviation`, and whose greatest value so far `greatest`.
+    /// Error relative to the variation of the signal, given its standard `deviation` and its `greatest` value so far.
     fn ratio(&self, deviation: f64, greatest: f64) -> f64 {
         let count = self.exchanges as f64;
         let mut sorted = self.errors;
@@ -248,7 +248,7 @@ impl Worst {
             self.liveliest = exponent;
         }
         if exponent > self.liveliest {
-            // Beyond the last place nothing has a say any more.
+            // Beyond the last place nothing counts any more.
             let by = usize::try_from(exponent - self.liveliest).unwrap_or(LEAST).min(LEAST);
             self.ratios.copy_within(..LEAST - by, by);
             self.ratios[..by].fill(0.0);

@@ -1,14 +1,14 @@
-//! A loop whose signals have to agree: what an evaluation starts from, and whether it came back to the same.
+//! A loop whose signals must agree: start and result of its evaluations.
 //!
-//! The blocks of a loop are evaluated one after the other. Unknown are only the signals that an earlier block (or the block
-//! itself) takes from a later one; all others follow from these in the course of an evaluation.
+//! The blocks of a loop are evaluated one after the other. Only the signals that an earlier block (or the block
+//! itself) takes from a later one are unknown; all others follow from these during an evaluation.
 use crate::Block;
 use crate::acceleration::Accelerator;
 use crate::network::Wiring;
 use crate::settings::Iteration;
 use crate::signals::Signals;
 
-/// Part of a number of single precision that an evaluation may be off by: eight of its roundings.
+/// Relative error of an evaluation in single precision: eight of its roundings.
 const SINGLE: f64 = 1.0 / (1_u32 << 20) as f64;
 
 /// A loop of blocks.
@@ -19,18 +19,18 @@ pub(crate) struct FixedPoint {
     pub(crate) cycle: String,
     pub(crate) iteration: Iteration,
     unknowns: Vec<Unknown>,
-    /// Those that change at events only: they are taken as they come, and agree when they are the same.
+    /// Unknowns that change only at events: they are taken as they come, and agree when they are equal.
     discrete: Vec<Unknown>,
     accelerator: Accelerator,
     x: Vec<f64>,
     r: Vec<f64>,
     weights: Vec<f64>,
-    /// What the discrete ones were at the start of the evaluation.
+    /// Values of the discrete unknowns at the start of the evaluation.
     before: Vec<f64>,
-    /// Part of the greatest value of a signal, where the loop agreed, that counts as rounding; 0 for double precision.
+    /// Fraction of the greatest value of a signal, where the loop agreed, that counts as rounding; 0 for double precision.
     rounding: f64,
     greatest: Vec<f64>,
-    /// Where the last evaluation began, and whether the discrete ones agreed in it.
+    /// Start of the last evaluation; true if the discrete unknowns agreed in it.
     from: Vec<f64>,
     discrete_agree: bool,
 }
@@ -41,7 +41,7 @@ struct Unknown {
     output: usize,
 }
 
-/// Two values of an output that should be the same.
+/// Change of an output that should have stayed the same.
 pub(crate) struct Disagreement {
     pub(crate) output: usize,
     pub(crate) change: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Disagreement {
 }
 
 impl FixedPoint {
-    /// A loop of `blocks`, some of `all`, in which the outputs `unknowns` are looked for.
+    /// A loop of `blocks`, some of `all`, with the outputs `unknowns` to be solved for.
     pub(crate) fn new<B: Block>(
         wiring: &Wiring,
         (all, blocks): (&[B], Vec<usize>),
@@ -79,12 +79,12 @@ impl FixedPoint {
         }
     }
 
-    /// Another fixed point is looked for.
+    /// Starts the search for another fixed point.
     pub(crate) fn begin(&mut self) {
         self.accelerator.begin();
     }
 
-    /// What the next evaluation starts from.
+    /// Notes the start of the next evaluation.
     pub(crate) fn note(&mut self, signals: &Signals) {
         for (x, unknown) in self.x.iter_mut().zip(&self.unknowns) {
             *x = signals.newest(unknown.output);
@@ -94,7 +94,7 @@ impl FixedPoint {
         }
     }
 
-    /// Where the evaluation came back farthest from its start, as parts of what is allowed; `None` if it agrees.
+    /// The largest deviation of the result of the evaluation from its start, relative to the tolerance; `None` if it agrees.
     pub(crate) fn disagreement(&mut self, signals: &Signals) -> Option<Disagreement> {
         let changed = |(unknown, before): (&Unknown, &f64)| {
             let change = signals.newest(unknown.output) - before;
@@ -127,7 +127,7 @@ impl FixedPoint {
         }
     }
 
-    /// Leads the signals to where the next evaluation should start. True where that is where the last one started, to the rounding of
+    /// Sets the signals to the start of the next evaluation. True if that equals the start of the last one, to the rounding of
     /// single precision: signals that a loop amplifies never agree better.
     pub(crate) fn correct(&mut self, signals: &mut Signals) -> bool {
         self.from.copy_from_slice(&self.x);

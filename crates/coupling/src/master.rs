@@ -1,4 +1,4 @@
-//! The master: builds the run from a network, and leads it from exchange to exchange.
+//! The master: sets up the run of a network, and advances it from exchange to exchange.
 use crate::cycles::{components, is_cycle};
 use crate::delay::Delay;
 use crate::error::CouplingError;
@@ -13,21 +13,21 @@ use crate::watch::Watch;
 use crate::{Block, Input};
 use servobench_base::{Rate, Tick};
 
-/// How far a communication step has come.
+/// Result of a communication step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Advance {
-    /// To its end.
+    /// Completed.
     Done,
-    /// A block wants the simulation to end, also one that is in an iteration; there is no exchange any more.
+    /// A block ends the simulation, possibly within an iteration; there are no more exchanges.
     Terminated {
-        /// Which block.
+        /// Index of the block.
         block: usize,
-        /// When (s).
+        /// Time (s).
         time: f64,
     },
 }
 
-/// A coupled simulation under way.
+/// A running coupled simulation.
 pub struct Master<B> {
     pub(crate) blocks: Vec<B>,
     pub(crate) wiring: Wiring,
@@ -36,11 +36,11 @@ pub struct Master<B> {
     plan: Plan,
     delays: Vec<Delay>,
     pub(crate) clock: Clock,
-    /// By block: the communication step that it has come to.
+    /// Communication step that each block has reached.
     pub(crate) reached: Vec<u64>,
-    /// By block: whether its outputs have been read since its step.
+    /// True for blocks whose outputs have been read since their step.
     pub(crate) fresh: Vec<bool>,
-    /// By block: whether it came back early in its last step.
+    /// True for blocks that returned early in their last step.
     pub(crate) is_interrupted: Vec<bool>,
     watches: Vec<Watched>,
     pub(crate) estimates: Estimates,
@@ -48,7 +48,7 @@ pub struct Master<B> {
     pub(crate) present: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
     ended: Option<Advance>,
-    /// What may help an unstable coupling.
+    /// Possible remedy for an unstable coupling.
     help: &'static str,
 }
 
@@ -60,7 +60,7 @@ struct Watched {
     watch: Watch,
 }
 
-/// Counts communication steps; seconds are made of base ticks.
+/// Counter of communication steps; seconds are computed from base ticks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Clock {
     rate: Rate,
@@ -82,7 +82,7 @@ impl<B: Block> Master<B> {
     /// Couples the blocks of `network`, which are at time 0, and makes their first exchange.
     ///
     /// # Errors
-    /// [`CouplingError::Network`] for a network that cannot be run so; the others if the first exchange fails.
+    /// [`CouplingError::Network`] for a network that cannot be run this way; the others if the first exchange fails.
     pub fn new(network: Network<B>, settings: &Settings) -> Result<Self, CouplingError<B::Error>> {
         let wiring = Wiring::new(&network)?;
         let blocks: Vec<B> = network.members.into_iter().map(|member| member.block).collect();
@@ -115,7 +115,7 @@ impl<B: Block> Master<B> {
         Ok(master)
     }
 
-    /// The first exchange: a loop is looked for from what its outputs are without inputs.
+    /// The first exchange: the search for a loop's solution starts from its outputs without inputs.
     fn start(&mut self, settings: &Settings) -> Result<(), CouplingError<B::Error>> {
         if self.blocks.iter().any(Block::has_initial_equations) {
             self.initialise(settings)?;
@@ -124,7 +124,7 @@ impl<B: Block> Master<B> {
         self.settle(0)
     }
 
-    /// All outputs as they are without inputs.
+    /// Reads all outputs without inputs.
     fn read_all(&mut self) -> Result<(), CouplingError<B::Error>> {
         for block in 0..self.blocks.len() {
             self.signals.open(block, 0);
@@ -133,7 +133,7 @@ impl<B: Block> Master<B> {
         Ok(())
     }
 
-    /// Solves the initial equations of all blocks together, and starts with what they have come to those that wait for it.
+    /// Solves the initial equations of all blocks together, and starts the blocks that have them with the result.
     fn initialise(&mut self, settings: &Settings) -> Result<(), CouplingError<B::Error>> {
         let start = Plan::of_start(&self.wiring, &self.blocks, settings.algebraic)?;
         let plan = std::mem::replace(&mut self.plan, start);
@@ -149,10 +149,10 @@ impl<B: Block> Master<B> {
         Ok(())
     }
 
-    /// Goes through one communication step, to the next exchange. Does nothing once a block has ended the simulation.
+    /// Performs one communication step, up to the next exchange. Does nothing once a block has ended the simulation.
     ///
     /// # Errors
-    /// [`CouplingError`]; the simulation cannot go on then.
+    /// [`CouplingError`]; the simulation cannot continue then.
     pub fn advance(&mut self) -> Result<Advance, CouplingError<B::Error>> {
         if let Some(ended) = self.ended {
             return Ok(ended);
@@ -171,7 +171,7 @@ impl<B: Block> Master<B> {
         Ok(Advance::Done)
     }
 
-    /// All blocks whose turn it is.
+    /// Steps all blocks that are due.
     fn take(&mut self, turns: &mut [Turn]) -> Result<Option<Advance>, CouplingError<B::Error>> {
         for turn in turns {
             let ended = match turn {
@@ -196,12 +196,12 @@ impl<B: Block> Master<B> {
         Ok(ended)
     }
 
-    /// Whether outputs of `block` follow inputs without a step.
+    /// True if outputs of `block` follow inputs without a step.
     pub(crate) fn follows(&self, block: usize) -> bool {
         self.plan.follows[block]
     }
 
-    /// Reads what is due at the exchange `now`, in the order of the plan.
+    /// Reads the outputs that are due at the exchange `now`, in the order of the plan.
     fn settle(&mut self, now: u64) -> Result<(), CouplingError<B::Error>> {
         let mut readings = std::mem::take(&mut self.plan.readings);
         let outcome = readings.iter_mut().try_for_each(|reading| match reading {
@@ -217,7 +217,7 @@ impl<B: Block> Master<B> {
         outcome
     }
 
-    /// Looks at what has been exchanged.
+    /// Checks the exchange for growth, and updates the estimates.
     fn judge(&mut self, now: u64) -> Result<(), CouplingError<B::Error>> {
         for Watched { block, output, connection, watch } in &mut self.watches {
             if self.reached[*block] == now
@@ -255,7 +255,7 @@ impl<B: Block> Master<B> {
         self.clock.time(self.clock.now)
     }
 
-    /// An output at the last exchange; between two steps of its block what stands for it there.
+    /// An output at the last exchange; between two steps of its block its polynomial there.
     ///
     /// # Errors
     /// [`NetworkError::NoPort`]
@@ -264,13 +264,13 @@ impl<B: Block> Master<B> {
         Ok(self.signals.value(output.block, number, self.clock.now))
     }
 
-    /// The delay of each connection, in their order.
+    /// The delay of each connection, in the order of the connections.
     #[must_use]
     pub fn delays(&self) -> &[Delay] {
         &self.delays
     }
 
-    /// Error of the inputs within a step, estimated from the exchanges so far, of the connection where it is largest; `None` where no
+    /// Error of the inputs within a step, estimated from the exchanges so far, for the connection with the largest; `None` if no
     /// continuous signal was exchanged often enough.
     #[must_use]
     pub fn estimated_error(&self) -> Option<EstimatedError> {
@@ -283,20 +283,20 @@ impl<B: Block> Master<B> {
         &self.blocks[block]
     }
 
-    /// A block, to look into; it is stepped by the master alone.
+    /// A block, for inspection; only the master may step it.
     #[must_use]
     pub fn block_mut(&mut self, block: usize) -> &mut B {
         &mut self.blocks[block]
     }
 
-    /// The blocks, as they have been left.
+    /// The blocks in their last state.
     #[must_use]
     pub fn into_blocks(self) -> Vec<B> {
         self.blocks
     }
 }
 
-/// What may help an unstable coupling, beside a smaller step.
+/// Possible remedies for an unstable coupling, besides a smaller step.
 fn help(settings: &Settings) -> &'static str {
     match (&settings.method, settings.order) {
         (Method::Iterated(_), Order::Quadratic) => "a lower order, or cut the loop elsewhere",
@@ -305,8 +305,8 @@ fn help(settings: &Settings) -> &'static str {
     }
 }
 
-/// The outputs that lead from a loop of blocks back into it, each by one of its connections. A signal that changes at exchanges
-/// only is left out: what is sampled and held there is what a controller does, no approximation of it.
+/// The outputs that lead from a loop of blocks back into it, each by one of its connections. A signal that changes only at exchanges
+/// is left out: sampling and holding there is the task of a controller, not an approximation of it.
 fn watched(wiring: &Wiring) -> Vec<Watched> {
     let successors = successors(wiring);
     let mut found: Vec<Watched> = Vec::new();

@@ -1,4 +1,4 @@
-//! What is connected with what.
+//! Blocks and their connections.
 use crate::Block;
 use std::collections::HashSet;
 use std::num::NonZeroU32;
@@ -7,22 +7,22 @@ use thiserror::Error;
 /// An input of a member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InputPort {
-    /// Its name, for messages.
+    /// Name for messages.
     pub name: String,
-    /// What it is held at while nothing is connected to it.
+    /// Value while nothing is connected.
     pub held: f64,
 }
 
-/// A block in its place.
+/// A block in a network.
 #[derive(Debug, Clone)]
 pub struct Member<B> {
-    /// Its name, for messages.
+    /// Name for messages.
     pub name: String,
-    /// Its inputs, in the block's order.
+    /// Inputs, in the block's order.
     pub inputs: Vec<InputPort>,
-    /// Names of its outputs, in the block's order.
+    /// Names of the outputs, in the block's order.
     pub outputs: Vec<String>,
-    /// How many communication steps one step of it lasts.
+    /// Communication steps per step of the block.
     pub every: NonZeroU32,
     /// The block, initialised.
     pub block: B,
@@ -31,9 +31,9 @@ pub struct Member<B> {
 /// An input or an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Port {
-    /// Which member.
+    /// Index of the member.
     pub block: usize,
-    /// Which of its inputs or of its outputs.
+    /// Index among its inputs or its outputs.
     pub port: usize,
 }
 
@@ -42,14 +42,14 @@ pub struct Port {
 pub struct Connection {
     /// The output.
     pub from: Port,
-    /// The input. One connection can lead to it.
+    /// The input, to which only one connection may lead.
     pub to: Port,
     /// Factor, for units and signs; finite.
     pub gain: f64,
     /// Summand in the input's unit; finite.
     pub offset: f64,
-    /// Whether it changes at exchanges only, as what a controller samples or gives: the newest value holds through a step, also one
-    /// that lies ahead. An output that its block calls discrete is held without that.
+    /// True if it changes only at exchanges, as the inputs and outputs of a controller do: the newest value holds through a step, even one
+    /// that lies ahead. An output that its block declares discrete is held in any case.
     pub is_discrete: bool,
 }
 
@@ -62,10 +62,10 @@ pub struct Network<B> {
     pub connections: Vec<Connection>,
 }
 
-/// Why a network cannot be run as it was asked for.
+/// Reasons why a network cannot be run as requested.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NetworkError {
-    /// A connection or a held input names a port that is not there.
+    /// A connection or a held input names a missing port.
     #[error("{what} {port} of block {block} does not exist: there are {blocks} blocks, and it has {ports} of them")]
     NoPort {
         /// `input` or `output`.
@@ -74,9 +74,9 @@ pub enum NetworkError {
         block: usize,
         /// Index of the port.
         port: usize,
-        /// How many blocks there are.
+        /// Number of blocks.
         blocks: usize,
-        /// How many such ports it has.
+        /// Number of its ports of this kind.
         ports: usize,
     },
     /// Two connections lead to one input.
@@ -88,11 +88,11 @@ pub enum NetworkError {
     /// A gain, an offset or a held value is not finite.
     #[error("`{field}` of `{of}` must be finite, got {value}")]
     NotFinite {
-        /// What is not finite.
+        /// Field that is not finite.
         field: &'static str,
         /// Connection or input.
         of: String,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
     /// A setting of the iteration is out of its range.
@@ -100,17 +100,17 @@ pub enum NetworkError {
     Setting {
         /// Field.
         field: &'static str,
-        /// What it has to be.
+        /// Required range.
         bound: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
     /// The order of blocks does not name each of them once.
     #[error("the order of blocks must name each of the {blocks} blocks once, got {order:?}")]
     BadOrder {
-        /// How many blocks there are.
+        /// Number of blocks.
         blocks: usize,
-        /// The order that was asked for.
+        /// The requested order.
         order: Vec<usize>,
     },
     /// A block in an iterated loop cannot repeat a step.
@@ -123,7 +123,7 @@ pub enum NetworkError {
         /// The blocks of the loop.
         cycle: String,
     },
-    /// Blocks of different step in an iterated loop.
+    /// Blocks with different steps in an iterated loop.
     #[error(
         "the blocks of the loop {cycle} have different steps, so it cannot be iterated: give them one, or couple by Gauss-Seidel"
     )]
@@ -141,7 +141,7 @@ pub enum NetworkError {
     },
 }
 
-/// Where the ports of a block are among those of all blocks.
+/// Places of the ports of a block among those of all blocks.
 #[derive(Debug, Clone)]
 pub(crate) struct Shape {
     pub(crate) first_input: usize,
@@ -152,15 +152,15 @@ pub(crate) struct Shape {
     pub(crate) every: u32,
 }
 
-/// Where an input gets its value from.
+/// Source of an input's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wire {
-    /// Block and number of the output among those of all blocks; a constant without.
+    /// Block of the output and number among those of all blocks; `None` for a constant.
     pub(crate) source: Option<Source>,
     pub(crate) gain: f64,
     /// The constant, if there is no source.
     pub(crate) offset: f64,
-    /// Whether the newest value holds.
+    /// True if the newest value holds.
     pub(crate) is_discrete: bool,
 }
 
@@ -174,10 +174,10 @@ pub(crate) struct Source {
 #[derive(Debug, Clone)]
 pub(crate) struct Wiring {
     pub(crate) shapes: Vec<Shape>,
-    /// By input.
+    /// Wires by input.
     pub(crate) wires: Vec<Wire>,
     pub(crate) connections: Vec<Connection>,
-    /// By output: whether it changes at events only.
+    /// True for outputs that change only at events.
     pub(crate) discrete: Vec<bool>,
     block_names: Vec<String>,
     input_names: Vec<String>,
@@ -254,7 +254,7 @@ impl Wiring {
         NetworkError::NoPort { what, block: at.block, port: at.port, blocks: self.shapes.len(), ports }
     }
 
-    /// How many outputs there are in all.
+    /// Number of all outputs.
     pub(crate) fn outputs(&self) -> usize {
         self.output_names.len()
     }
@@ -274,7 +274,7 @@ impl Wiring {
         format!("{} -> {}", self.output_names[output + from.port], self.input_names[input + to.port])
     }
 
-    /// Which block an output belongs to.
+    /// Block of an output.
     pub(crate) fn block_of(&self, output: usize) -> usize {
         self.shapes.partition_point(|shape| shape.first_output + shape.outputs <= output)
     }

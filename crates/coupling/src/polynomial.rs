@@ -11,7 +11,7 @@
 //! Busch, *Zur effizienten Kopplung von Simulationsprogrammen*, Kassel 2012, ch. 2.
 use crate::Input;
 
-/// Degree of the polynomial that stands for a signal between two exchanges.
+/// Degree of the polynomial that approximates a signal between two exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Order {
     /// The newest value is held.
@@ -63,13 +63,13 @@ pub fn value(input: &Input, after: f64) -> f64 {
     input[0] + after * (input[1] + 0.5 * after * input[2])
 }
 
-/// Mean of `input` over a step of `length` (s), u + u'·H/2 + u''·H²/6: what a block gets that takes no derivatives.
+/// Mean of `input` over a step of `length` (s), u + u'·H/2 + u''·H²/6, for blocks that take no derivatives.
 #[must_use]
 pub fn mean(input: &Input, length: f64) -> f64 {
     input[0] + length * (input[1] / 2.0 + length * input[2] / 6.0)
 }
 
-/// `input` seen from `after` the start of the step (s).
+/// `input` relative to a time `after` the start of the step (s).
 #[must_use]
 pub fn later(input: &Input, after: f64) -> Input {
     [value(input, after), input[1] + after * input[2], input[2]]

@@ -1,9 +1,9 @@
-//! Levels that rise from window to window without a break.
+//! Levels that rise from window to window without interruption.
 
-/// Fewest windows in a row; two rises among noise of one level are one in six, so the growth asked for has to do the rest.
+/// Fewest windows in a row; two rises among noise of one level are one in six, so the required growth has to do the rest.
 const WINDOWS: u32 = 3;
 
-/// A rise as far as it has come.
+/// State of a rise.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Rise {
     first: f64,
@@ -11,24 +11,24 @@ pub(crate) struct Rise {
     windows: u32,
 }
 
-/// What a window did to a rise.
+/// Effect of a window on a rise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Risen {
-    /// It ended one: a rise can begin with it.
+    /// End of a rise: a new one can begin with this window.
     Anew,
-    /// It went on.
+    /// Continuation of the rise.
     On,
-    /// It went on, long enough to tell: the level now is so many times the first.
+    /// Continuation of the rise, long enough to judge it by its growth.
     For {
-        /// Last level by the first.
+        /// Ratio of the last level to the first.
         growth: f64,
-        /// How many windows it has gone on.
+        /// Number of windows in the rise.
         windows: u32,
     },
 }
 
 impl Rise {
-    /// The level of a window; it counts if it `qualifies`.
+    /// Adds the level of a window; it counts if it `qualifies`.
     pub(crate) fn push(&mut self, level: f64, qualifies: bool) -> Risen {
         let on = qualifies && self.windows > 0 && level > self.last;
         self.last = level;

@@ -1,4 +1,4 @@
-//! In which order blocks are stepped, and what is known of each when its turn comes.
+//! Order in which blocks are stepped, and the values known to each at its turn.
 use crate::Block;
 use crate::cycles::{components, is_cycle, shortest_way_round};
 use crate::delay::{Delay, oldest};
@@ -19,11 +19,11 @@ pub(crate) enum Turn {
 /// The turns of a communication step.
 pub(crate) struct Schedule {
     pub(crate) turns: Vec<Turn>,
-    /// Whether a block's new values count as soon as it has been stepped.
+    /// True if a block's new values count as soon as it has been stepped.
     pub(crate) announced: bool,
     /// Number of each block's turn.
     place: Vec<usize>,
-    /// Whether the block's turn is one of a loop.
+    /// True if the block's turn is that of a loop.
     repeated: Vec<bool>,
 }
 
@@ -58,7 +58,7 @@ impl Schedule {
         Ok(Self { turns, announced: *method != Method::Jacobi, place, repeated })
     }
 
-    /// Whether `to` knows the end of its step from `from`, if both have the same step.
+    /// True if `to` knows the end of its step from `from`, if both have the same step.
     fn is_known(&self, from: usize, to: usize) -> bool {
         let together = self.place[from] == self.place[to] && self.repeated[from];
         self.announced && (self.place[from] < self.place[to] || together)
@@ -68,12 +68,12 @@ impl Schedule {
     pub(crate) fn delays(&self, wiring: &Wiring, settings: &Settings) -> Vec<Delay> {
         let delay = |(connection, wire): (usize, &crate::network::Connection)| {
             let (from, to) = (wire.from.block, wire.to.block);
-            // What changes at events is not known before its time, whoever has been stepped first.
+            // A signal that changes at events is not known before its time, whichever block is stepped first.
             let is_held = wiring.discrete[wiring.shapes[from].first_output + wire.from.port] && !wire.is_discrete;
             let ahead = self.is_known(from, to) && !is_held;
             let steps = oldest(wiring.shapes[from].every, wiring.shapes[to].every, ahead, !self.announced || is_held);
             let ticks = steps * u64::from(Divider::ticks(settings.step));
-            // What lies partly ahead is a line at least.
+            // A signal that lies partly ahead is at least a line.
             let order = match (is_held, ahead) {
                 _ if wire.is_discrete => Order::Constant,
                 (true, _) => Order::Constant,
@@ -86,7 +86,7 @@ impl Schedule {
     }
 }
 
-/// Which blocks each block leads to.
+/// Successors of each block.
 pub(crate) fn successors(wiring: &Wiring) -> Vec<Vec<usize>> {
     let mut successors = vec![Vec::new(); wiring.shapes.len()];
     for connection in &wiring.connections {
@@ -95,7 +95,7 @@ pub(crate) fn successors(wiring: &Wiring) -> Vec<Vec<usize>> {
     successors
 }
 
-/// Blocks in no loop by themselves, the others in their loops, each after its sources.
+/// Turns: blocks outside of loops by themselves, the others in their loops, each after its sources.
 fn loops<B: Block>(wiring: &Wiring, blocks: &[B], iteration: Iteration) -> Result<Vec<Turn>, NetworkError> {
     let successors = successors(wiring);
     let mut turns = Vec::new();

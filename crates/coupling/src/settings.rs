@@ -1,31 +1,31 @@
-//! How blocks are coupled.
+//! Settings of a coupling.
 use crate::network::NetworkError;
 use crate::polynomial::Order;
 use servobench_base::{Divider, Rate};
 use servobench_config::choices;
 
-/// How the fixed point of an iteration is approached. With the residual r = G(x) − x:
+/// Acceleration of the fixed-point iteration. With the residual r = G(x) − x:
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Acceleration {
     /// x ← x + ω·r. Converges where |1 − ω·(1 − λ)| < 1 for each eigenvalue λ of G'; ω = 1 is the plain fixed point.
     Relaxed(f64),
     /// ω from the last two residuals; the first is given. For loops with one signal it is the secant method.
     Aitken(f64),
-    /// Interface quasi-Newton: the inverse of the Jacobian by least squares from what the iterations have shown, those of the
-    /// steps before too. Directions not seen yet are relaxed by ω.
+    /// Interface quasi-Newton: the inverse of the Jacobian by least squares from the iterations so far, including those of
+    /// previous steps. Directions not seen yet are relaxed by ω.
     QuasiNewton(f64),
 }
 
-/// When an iteration is over.
+/// Criteria for the end of an iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
-    /// Each signal is met to `absolute` (its own unit) …
+    /// Tolerance of each signal (its own unit) …
     pub absolute: f64,
-    /// … plus this part of its greatest magnitude among its last exchanges.
+    /// … plus this fraction of its greatest magnitude among its last exchanges.
     pub relative: f64,
     /// Most evaluations of a step; at least 1.
     pub most: u32,
-    /// The way to the fixed point.
+    /// Acceleration of the iteration.
     pub acceleration: Acceleration,
 }
 
@@ -67,18 +67,18 @@ choices! {
     }
 }
 
-/// In which order blocks go through a communication step, and what they know of each other then.
+/// Order in which blocks perform a communication step, and the values they have from each other.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Method {
-    /// All with the values of its start.
+    /// All with the values at its start.
     Jacobi,
-    /// One after the other, in this order of all blocks; a later one sees what an earlier one has just come to.
+    /// One after the other, in this order of all blocks; a later one sees the new values of an earlier one.
     GaussSeidel(Vec<usize>),
-    /// Loops of blocks are repeated until what they exchange at the end agrees; what is in no loop follows its sources.
+    /// Loops of blocks are repeated until the values exchanged at the end agree; blocks outside of loops follow their sources.
     Iterated(Iteration),
 }
 
-/// How a network is run.
+/// Settings for running a network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Base ticks per second.
@@ -87,11 +87,11 @@ pub struct Settings {
     pub step: Divider,
     /// The method.
     pub method: Method,
-    /// Degree of the polynomial that stands for a signal beyond its newest value. Where its value at the end of the step is known,
-    /// the degree is at least 1: a signal that is held at what it will be is ahead of its time.
+    /// Degree of the polynomial that approximates a signal beyond its newest value. If its value at the end of the step is known,
+    /// the degree is at least 1: a signal held at its future value would be ahead of its time.
     pub order: Order,
-    /// How outputs that follow each other without a step are solved for; they are refused without.
+    /// Iteration that solves outputs that follow each other without a step; without it they are refused.
     pub algebraic: Option<Iteration>,
-    /// Whether a coupling that grows by itself ends the run.
+    /// True to end the run when a coupling grows by itself.
     pub watch: bool,
 }

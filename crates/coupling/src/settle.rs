@@ -1,7 +1,7 @@
-//! In which order outputs are read at an exchange, when some of them follow inputs without a step.
+//! Order in which outputs are read at an exchange, if some of them follow inputs without a step.
 //!
 //! The outputs are nodes of a graph; an edge leads from an output to each output that follows it through a connection and the
-//! feedthrough of a block. Outputs that follow nothing are read first, the others after what they follow; a cycle is an algebraic
+//! feedthrough of a block. Outputs that follow nothing are read first, the others after their sources; a cycle is an algebraic
 //! loop and is solved as a whole, or refused. Breaking it by a delay instead would make the coupled simulation unstable wherever
 //! the loop's gain exceeds 1, whatever the step (Kübler & Schiehlen 2000, §4; Arnold & Günther, BIT 41 (2001) 1).
 use crate::Block;
@@ -14,19 +14,19 @@ use crate::settings::Iteration;
 pub(crate) enum Reading {
     /// Outputs that follow no input.
     Plain(usize),
-    /// Outputs that follow inputs, which are known by then.
+    /// Outputs that follow inputs, which are then known.
     Following(usize),
     /// Outputs that follow each other.
     Loop(Box<FixedPoint>),
 }
 
-/// The readings of an exchange. Whether a block has outputs that follow inputs is in `follows`.
+/// The readings of an exchange. `follows` is true for blocks with outputs that follow inputs.
 pub(crate) struct Plan {
     pub(crate) readings: Vec<Reading>,
     pub(crate) follows: Vec<bool>,
 }
 
-/// How late in the plan an output comes, and whether it is one of a loop.
+/// Level of an output in the plan; true if it is in a loop.
 #[derive(Clone, Copy, Default)]
 struct Level {
     level: usize,
@@ -77,7 +77,7 @@ impl Plan {
     }
 }
 
-/// Readings by level; several outputs of a block on a level are one.
+/// Readings by level; several outputs of a block on a level are one reading.
 fn readings(wiring: &Wiring, levels: &[Level], loops: Vec<(usize, FixedPoint)>) -> Vec<Reading> {
     let mut readings: Vec<(usize, Reading)> =
         loops.into_iter().map(|(level, fixed_point)| (level, Reading::Loop(Box::new(fixed_point)))).collect();
@@ -96,11 +96,11 @@ fn readings(wiring: &Wiring, levels: &[Level], loops: Vec<(usize, FixedPoint)>) 
     readings.into_iter().map(|(_, reading)| reading).collect()
 }
 
-/// Which outputs follow which without a step.
+/// Outputs that follow each other without a step.
 struct Feedthrough {
     successors: Vec<Vec<usize>>,
     predecessors: Vec<Vec<usize>>,
-    /// By output: whether it follows any input of its block.
+    /// True for outputs that follow any input of their block.
     follows: Vec<bool>,
 }
 
@@ -127,7 +127,7 @@ impl Feedthrough {
         found
     }
 
-    /// The loop of the outputs `component`: its blocks ascending, unknown what goes to the same block or an earlier one.
+    /// The loop of the outputs `component`: its blocks ascending, the outputs to the same block or an earlier one unknown.
     fn fixed_point<B: Block>(
         &self,
         (wiring, all): (&Wiring, &[B]),

@@ -1,8 +1,8 @@
-//! What has been exchanged: the last values of each output, and the inputs that follow from them.
+//! Exchanged signals: the last values of each output, and the inputs computed from them.
 //!
 //! The values of an output are those at the ends of its own block's steps, the newest first. The newest may lie ahead of the
-//! present: a block that has gone through its step before others is known to them, and a slow one is known to faster ones. Of an
-//! output that changes at events only nobody knows before its time: it is held at what it was.
+//! present: a block that has completed its step is known to later ones, and a slow one to faster ones. An
+//! output that changes only at events is not known ahead of time: it is held at its previous value.
 use crate::Input;
 use crate::network::{Wire, Wiring};
 use crate::polynomial::{Order, later, through};
@@ -10,9 +10,9 @@ use crate::polynomial::{Order, later, through};
 /// The exchanged values of all outputs.
 pub(crate) struct Signals {
     samples: Vec<[f64; 3]>,
-    /// What the newest value was expected to be by the values before it.
+    /// Newest value as predicted from the values before it.
     expected: Vec<f64>,
-    /// By output: whether it changes at events only, and is held between them.
+    /// True for outputs that change only at events, and are held between them.
     discrete: Vec<bool>,
     tracks: Vec<Track>,
     order: Order,
@@ -20,12 +20,12 @@ pub(crate) struct Signals {
     step: f64,
 }
 
-/// What the outputs of a block have in common.
+/// Common data of the outputs of a block.
 #[derive(Debug, Clone, Copy)]
 struct Track {
     /// Communication step of the newest value.
     at: u64,
-    /// How many values there are, at most 3.
+    /// Number of known values, at most 3.
     count: u8,
     /// Communication steps between two values.
     every: u32,
@@ -68,14 +68,14 @@ impl Signals {
         if self.discrete[output] {
             return [self.held(block, output, now), 0.0, 0.0];
         }
-        // A value that lies ahead is not held: the signal would be ahead of its time, and push what it moves.
+        // A value that lies ahead is not held: the signal would be ahead of its time, and drive the blocks after it.
         let order = if track.at <= now { self.order } else { self.order.max(Order::Linear) };
         let degree = order.degree().min(track.count.saturating_sub(1));
         let since = if track.at <= now { (now - track.at) as f64 } else { -((track.at - now) as f64) };
         through(&self.samples[output], degree, f64::from(track.every) * self.step, since * self.step)
     }
 
-    /// The newest value of an output that does not lie ahead of `now`; the oldest that is known, if all of them do.
+    /// The newest value of an output that does not lie ahead of `now`; the oldest known, if all of them do.
     fn held(&self, block: usize, output: usize, now: u64) -> f64 {
         let track = &self.tracks[block];
         let ahead = track.at.saturating_sub(now).div_ceil(u64::from(track.every));
@@ -98,7 +98,7 @@ impl Signals {
         }
     }
 
-    /// Makes room for the values of `block` at `at`, filled with what they are expected to be. Does nothing if it is there.
+    /// Makes room for the values of `block` at `at`, filled with their predictions. Does nothing if it is there.
     pub(crate) fn open(&mut self, block: usize, at: u64) {
         let track = self.tracks[block];
         if track.count > 0 && track.at >= at {
@@ -116,7 +116,7 @@ impl Signals {
         self.tracks[block] = Track { at, count: (track.count + 1).min(3), ..track };
     }
 
-    /// Sets the newest values of `block`, for which room has been made. Returns the number of one that is not finite.
+    /// Sets the newest values of `block`, for which room has been made. On failure returns the number of an output that is not finite.
     pub(crate) fn set(&mut self, block: usize, values: &[f64]) -> Result<(), usize> {
         let track = &self.tracks[block];
         for (output, value) in (track.first..).zip(values) {
@@ -128,7 +128,7 @@ impl Signals {
         Ok(())
     }
 
-    /// Forgets what was before the newest values of `block`: after an event its signals need not go on as before.
+    /// Forgets all but the newest values of `block`: after an event its signals may change abruptly.
     pub(crate) fn restart(&mut self, block: usize) {
         self.tracks[block].count = self.tracks[block].count.min(1);
     }
@@ -143,7 +143,7 @@ impl Signals {
         self.samples[output][0] = value;
     }
 
-    /// Newest value less what it was expected to be.
+    /// Newest value minus its prediction.
     pub(crate) fn defect(&self, output: usize) -> f64 {
         self.samples[output][0] - self.expected[output]
     }

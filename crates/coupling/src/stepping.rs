@@ -1,17 +1,17 @@
-//! What the master does with blocks: step, read, repeat.
+//! Operations of the master on blocks: step, read, repeat.
 use crate::error::CouplingError;
 use crate::fixed_point::{Disagreement, FixedPoint};
 use crate::master::{Advance, Master};
 use crate::polynomial::{later, value};
 use crate::{Block, StepEnd};
 
-/// Part of a step that is left out at its end: the rounding of a time in seconds.
+/// Fraction of a step that is left out at its end: the rounding of a time in seconds.
 const ROUNDING: f64 = 1e-9;
-/// Most parts of a step; more are a block that does not get on.
+/// Most parts of a step; a block that needs more makes no progress.
 const MOST_PARTS: u32 = 1000;
 
 impl<B: Block> Master<B> {
-    /// Takes a block through its step, in as many parts as it comes back early.
+    /// Steps a block, again after each early return.
     pub(crate) fn step(&mut self, block: usize) -> Result<Option<Advance>, CouplingError<B::Error>> {
         let shape = &self.wiring.shapes[block];
         let (now, until) = (self.clock.now, self.clock.now + u64::from(shape.every));
@@ -19,7 +19,7 @@ impl<B: Block> Master<B> {
         for (input, wire) in inputs.iter_mut().zip(&self.wiring.wires[shape.first_input..]) {
             *input = self.signals.input(wire, now);
         }
-        // The length is made of ticks and so the same in each step, which a difference of times is not.
+        // The length is computed from ticks and thus the same in each step, unlike a difference of times.
         let whole = self.clock.time(u64::from(shape.every));
         for (number, input) in (shape.first_input..).zip(inputs.iter()) {
             self.estimates.note_end(number, value(input, whole));
@@ -53,7 +53,7 @@ impl<B: Block> Master<B> {
         Ok(None)
     }
 
-    /// Reads a block and takes down what it says, for the time that room has been made for.
+    /// Reads a block and stores its outputs at the time for which room has been made.
     pub(crate) fn read(&mut self, block: usize, inputs: Option<usize>) -> Result<(), CouplingError<B::Error>> {
         let shape = &self.wiring.shapes[block];
         let outputs = &mut self.outputs[..shape.outputs];
@@ -81,14 +81,14 @@ impl<B: Block> Master<B> {
         self.read(block, Some(inputs))
     }
 
-    /// Ends the initialisation of a block with the inputs that it has come to.
+    /// Ends the initialisation of a block with its inputs at the start.
     pub(crate) fn begin(&mut self, block: usize) -> Result<(), CouplingError<B::Error>> {
         let inputs = self.present_inputs(block, 0);
         let started = self.blocks[block].start(&self.present[..inputs]);
         started.map_err(|source| self.failed(block, 0, source))
     }
 
-    /// Takes down the inputs of a block at the exchange `now`; how many there are.
+    /// Stores the inputs of a block at the exchange `now`; returns their number.
     fn present_inputs(&mut self, block: usize, now: u64) -> usize {
         let shape = &self.wiring.shapes[block];
         for (value, wire) in self.present.iter_mut().zip(&self.wiring.wires[shape.first_input..][..shape.inputs]) {
@@ -97,7 +97,7 @@ impl<B: Block> Master<B> {
         shape.inputs
     }
 
-    /// Makes known what a block has come to before the exchange, outputs that follow inputs with these as they were stepped with.
+    /// Announces the outputs of a block before the exchange; those that follow inputs are read with the inputs at the end of its step.
     pub(crate) fn announce(&mut self, block: usize, follows: bool) -> Result<(), CouplingError<B::Error>> {
         let shape = &self.wiring.shapes[block];
         let (inputs, until) = (shape.inputs, self.reached[block]);
@@ -110,7 +110,7 @@ impl<B: Block> Master<B> {
         self.read(block, follows.then_some(inputs))
     }
 
-    /// Takes the blocks of a loop through their step until what they exchange at its end agrees.
+    /// Steps the blocks of a loop repeatedly until the values exchanged at the end of the step agree.
     pub(crate) fn repeat(&mut self, fixed_point: &mut FixedPoint) -> Result<Option<Advance>, CouplingError<B::Error>> {
         let now = self.clock.now;
         if self.reached[fixed_point.blocks[0]] > now {
@@ -197,7 +197,7 @@ fn failed<E>(wiring: &crate::network::Wiring, block: usize, time: f64, source: E
     CouplingError::Block { block: wiring.block_name(block), time, source }
 }
 
-/// A number that overflows after the first evaluation is the iteration's doing.
+/// A number that overflows after the first evaluation is due to the iteration.
 fn diverged<E>(
     error: CouplingError<E>,
     of: &FixedPoint,

@@ -1,49 +1,49 @@
-//! Whether a signal grows because its exchange cannot follow it.
+//! Detection of a signal that grows because its exchange cannot follow it.
 //!
-//! The defect e of an exchange is what came less what was expected by the values before, with an extrapolation of order k. For a
+//! The defect e of an exchange is the new value minus its prediction from the values before, extrapolated with order k. For a
 //! signal that goes as zⁿ (a mode of the coupled simulation, z complex) it is
 //!
 //! ```text
 //! e = (1 − 1/z)^(k+1)·y        so  Σe² ≥ ½·Σ(y − ȳ)²  ⇔  |1 − 1/z| ≥ 2^(−1/(2·(k+1))) = 0.71, 0.84, 0.89
 //! ```
 //!
-//! where less than half of what the signal does could be expected. A mode that grows so, |z| > 1, turns by more than 41° (50°, 53°) in
-//! each exchange, fewer than nine values to the turn (or grows more than 3.4-fold, which overflows soon): whatever the model says, it is not
-//! resolved. A signal that grows and *is* resolved has z = e^(λH) near 1 and does not come near; a ramp or a jump has defects that do
+//! if less than half of the variation of the signal was predicted. A mode that grows like this, |z| > 1, turns by more than 41° (50°, 53°)
+//! in each exchange, fewer than nine values per turn (or grows more than 3.4-fold, which overflows soon): in any model it is not
+//! resolved. A signal that grows and *is* resolved has z = e^(λH) near 1 and stays far below; a ramp or a jump has defects that do
 //! not grow; noise and chatter qualify and do not grow either.
 //!
-//! Windows of [`WINDOW`] exchanges are judged, with weights that take the growth from the window before out of them, and together with a
-//! part of the windows before, so that the phase at which a short window meets a mode averages out. The signal has to come
-//! back in each of them: a mode that turns by θ = 41° or more in each exchange comes forward by at most sin 3θ/sin ½θ of a way of 6·2/π,
-//! 0.63. A staircase, which a sampled controller or a slower block makes of a motion, is not expected either, but goes one way. The coupling counts as unstable when three or more
-//! of them in a row qualify and the mean square of their defects rises, [`GROWTH`]-fold (in amplitude) in all. For noise of one level
-//! the mean square of six values would have to be 10⁻⁴ of its expectation in one of them: (10⁻⁴·6)³/48, 10⁻¹². Defects below 10⁻⁹ of
-//! the greatest value so far are rounding.
+//! Windows of [`WINDOW`] exchanges are judged, with weights that remove the growth since the previous window, and together with a
+//! part of the windows before, so that the phase at which a short window meets a mode averages out. The signal has to reverse
+//! in each of them: a mode that turns by θ = 41° or more in each exchange advances by at most sin 3θ/sin ½θ of a path of 6·2/π,
+//! 0.63. A staircase, into which a sampled controller or a slower block turns a motion, is not predicted either, but goes in one
+//! direction. The coupling counts as unstable when three or more windows in a row qualify and the mean square of their defects rises,
+//! [`GROWTH`]-fold (in amplitude) in all. For noise of one level the mean square of six values would have to be 10⁻⁴ of its expectation
+//! in one of them: (10⁻⁴·6)³/48, 10⁻¹². Defects below 10⁻⁹ of the greatest value so far are rounding.
 use crate::rise::{Rise, Risen};
 
-/// Exchanges to a window: most of a turn of a mode at the bound.
+/// Exchanges in a window: most of a turn of a mode at the bound.
 const WINDOW: usize = 6;
-/// The same as the number of a step.
+/// [`WINDOW`] as the number of a step.
 const EXCHANGES: u32 = 6;
-/// Part of a signal's variance that its defects have to be.
+/// Smallest share of a signal's variance in its defects.
 const UNEXPECTED: f64 = 0.5;
-/// What a window counts of the windows before it.
+/// Weight of the previous windows in a window.
 const FADING: f64 = 0.5;
-/// What a signal comes forward of its way in a window, if it goes one way.
+/// Net advance of a signal in a window relative to its path, from which it counts as going in one direction.
 const ONE_WAY: f64 = 0.7;
-/// By how much the amplitude of the defects has to grow.
+/// Required growth of the amplitude of the defects.
 const GROWTH: f64 = 100.0;
-/// Part of the greatest value that counts as rounding.
+/// Fraction of the greatest value that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What is known of one output.
+/// State of the watch on one output.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Watch {
     /// Values and defects of the window.
     values: [f64; WINDOW],
     defects: [f64; WINDOW],
     exchanges: usize,
-    /// Mean square of the defects of the window before.
+    /// Mean square of the defects of the previous window.
     level: f64,
     /// Shares of the defects and of the signal in the last windows.
     recent: [f64; 2],
@@ -61,7 +61,7 @@ pub(crate) struct Growth {
 }
 
 impl Watch {
-    /// An exchanged value with its defect.
+    /// Adds an exchanged value with its defect.
     pub(crate) fn push(&mut self, value: f64, defect: f64) -> Option<Growth> {
         self.values[self.exchanges] = value;
         self.defects[self.exchanges] = defect;
@@ -92,7 +92,7 @@ impl Watch {
         }
     }
 
-    /// Whether the signal comes back in the window: |Σg·Δy| ≤ [`ONE_WAY`]·Σg·|Δy|, with a weight g that changes by `ratio`.
+    /// True if the signal reverses in the window: |Σg·Δy| ≤ [`ONE_WAY`]·Σg·|Δy|, with a weight g that changes by `ratio`.
     fn turns(&self, ratio: f64) -> bool {
         let (mut before, mut weight, mut net, mut total) = (self.before, 1.0, 0.0, 0.0);
         for value in &self.values {
@@ -133,7 +133,7 @@ mod tests {
         }
     }
 
-    /// After how many exchanges of `y` a growth is found.
+    /// Number of exchanges of `y` after which a growth is found.
     fn found(y: impl Fn(f64) -> f64, k: u8, exchanges: u32) -> Option<u32> {
         let mut watch = Watch::default();
         (0..exchanges).find(|n| watch.push(y(f64::from(*n)), defect(&y, f64::from(*n), k)).is_some())
@@ -171,20 +171,20 @@ mod tests {
             assert_eq!(found(|n| if n % 2.0 < 1.0 { 1.0 } else { -1.0 }, k, 1000), None);
             // The start of a move from rest.
             assert_eq!(found(|n| 1e-6 * n.max(0.0).powi(4), k, 1000), None);
-            // What a sampled controller or a slow block makes of a motion.
+            // A sampled or held motion, as by a controller or a slow block.
             for hold in 2..=8 {
                 let hold = f64::from(hold);
                 for power in 1..=6 {
                     assert_eq!(found(|n| 1e-6 * ((n / hold).floor() * hold).max(0.0).powi(power), k, 1000), None);
                 }
             }
-            // A mode that turns fast and dies out, and one that just keeps up.
+            // A mode that turns fast and decays, and one that just keeps its amplitude.
             assert_eq!(found(mode(0.9, 120.0), k, 1000), None);
             assert_eq!(found(mode(1.0, 120.0), k, 1000), None);
         }
     }
 
-    /// Noise is not resolved, and its level stays; also where it begins within a window. A million values from a generator of Knuth
+    /// Noise is not resolved, and its level is constant, even if it begins within a window. A million values from a generator of Knuth
     /// (TAOCP vol. 2, §3.3.4, table 1, line 26).
     #[test]
     fn noise_is_not() {
