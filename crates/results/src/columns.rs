@@ -1,36 +1,36 @@
-//! What a suite measured, a column for each metric.
+//! Measurements of a suite, a column for each metric.
 use crate::journal::JournalError;
 use crate::results::Outcome;
 use crate::runs::Runs;
 use servobench_metrics::Name;
 
-/// What the runs of a suite came to and what was measured of them, by their places in it.
+/// Outcomes and metrics of the runs of a suite, by their places in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
-    /// What came of each; `None`: it has not ended.
+    /// Outcome of each run; `None`: it has not ended.
     pub outcomes: Vec<Option<Outcome>>,
-    /// Which of them did not meet a requirement, broken or lifted.
+    /// True for runs that did not meet a requirement, broken or lifted.
     pub broken: Vec<bool>,
-    /// Every metric that was measured of a run, in the order of tables.
+    /// All metrics that were measured in any run, in the order of tables.
     pub metrics: Vec<MetricColumn>,
 }
 
-/// A metric of each run.
+/// A metric of all runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetricColumn {
     /// The metric.
     pub metric: Name,
     /// Unit of the values.
     pub unit: String,
-    /// Values (SI); not a number where it was not measured.
+    /// Values (SI); NaN where it was not measured.
     pub values: Vec<f64>,
 }
 
 impl Columns {
-    /// Those of `runs`, of which there are `count` when all have ended.
+    /// Columns of `runs`, of which there are `count` when all have ended.
     ///
     /// # Errors
-    /// [`JournalError`], when a result cannot be read.
+    /// [`JournalError`] if a result cannot be read.
     pub fn of(runs: &dyn Runs, count: usize) -> Result<Self, JournalError> {
         let mut columns = Self { outcomes: vec![None; count], broken: vec![false; count], metrics: Vec::new() };
         for head in runs.heads().filter(|head| head.index < count) {

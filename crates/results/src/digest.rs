@@ -1,4 +1,4 @@
-//! What something was made of, as one number.
+//! Digest of inputs, as one number.
 use serde::{Deserialize, Serialize};
 use servobench_files::{digits, named};
 use sha2::{Digest as _, Sha256};
@@ -6,18 +6,18 @@ use std::borrow::Cow;
 use std::fmt;
 use thiserror::Error;
 
-/// A SHA-256 (FIPS 180-4), written as 64 hexadecimal digits; empty where nobody computed one.
+/// A SHA-256 (FIPS 180-4), written as 64 hexadecimal digits; empty if none was computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "Cow<'_, str>")]
 pub struct Digest(Option<[u8; 32]>);
 
-/// A text that is no digest.
+/// A text that is not a digest.
 #[derive(Debug, Error)]
 #[error("`{}` is no digest: it has 64 hexadecimal digits, or none", named(.0))]
 pub struct NoDigest(String);
 
 impl Digest {
-    /// That of `bytes`.
+    /// The digest of `bytes`.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(Some(Sha256::digest(bytes).into()))
@@ -56,12 +56,12 @@ impl TryFrom<Cow<'_, str>> for Digest {
     }
 }
 
-/// Makes one digest of many parts. Each part is preceded by its length, so that no two lists of parts look alike.
+/// Builder of one digest of many parts. Each part is preceded by its length, so that no two lists of parts look alike.
 #[derive(Debug, Clone, Default)]
 pub struct Digester(Sha256);
 
 impl Digester {
-    /// With this part added.
+    /// Adds this part.
     #[must_use]
     pub fn with(mut self, part: impl AsRef<[u8]>) -> Self {
         let part = part.as_ref();

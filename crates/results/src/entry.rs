@@ -15,9 +15,9 @@ pub struct MetricResult {
     /// Smallest allowed value; left out without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_min: Option<f64>,
-    /// Whether the limit is kept; `null` without a limit.
+    /// True if the limit is kept; `null` without a limit.
     pub pass: Option<bool>,
-    /// Line of the scenario file, from 1, that has the limit; left out where nobody knows.
+    /// Line of the limit in the scenario file, from 1; left out if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
 }
@@ -25,7 +25,7 @@ pub struct MetricResult {
 /// A move.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MoveResult {
-    /// What it is, in words.
+    /// Description in words.
     pub label: String,
     /// Start of the profile (s).
     pub start: f64,
@@ -35,41 +35,41 @@ pub struct MoveResult {
     pub metrics: IndexMap<String, MetricResult>,
 }
 
-/// A fault or an incident that was expected.
+/// An expected fault or incident.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExpectedResult {
-    /// State or error code of a fault; left out of an incident.
+    /// State or error code of a fault; left out for an incident.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
-    /// Whose fault; left out of an incident.
+    /// Source of the fault; left out for an incident.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub who: Option<String>,
-    /// Name of the incident; left out of a fault.
+    /// Name of the incident; left out for a fault.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub event: Option<String>,
-    /// From when on it may come (s).
+    /// Earliest time at which it may occur (s).
     pub from: f64,
-    /// Until when it must have come (s); `null`: by the end of the run.
+    /// Latest time by which it must have occurred (s); `null`: the end of the run.
     pub to: Option<f64>,
-    /// When it came (s); `null`: it did not.
+    /// Time at which it occurred (s); `null`: it did not.
     pub met_at: Option<f64>,
 }
 
 impl MetricResult {
-    /// Whether it has a limit that is missed.
+    /// True if it misses a limit.
     #[must_use]
     pub fn is_missed(&self) -> bool {
         self.pass == Some(false)
     }
 
-    /// Significant digits that show how `value` stands to the limits.
+    /// Significant digits needed to show `value` against the limits.
     #[must_use]
     pub fn digits(&self, value: f64) -> usize {
         let bounds = [self.limit_min, self.limit].into_iter().flatten();
         bounds.map(|bound| Quantity::digits_apart(value.abs(), bound.abs())).max().unwrap_or(3)
     }
 
-    /// One that has this limit and could not be measured.
+    /// A metric with this limit that could not be measured.
     pub(crate) fn missing(limit: &Limit) -> Self {
         Self { value: None, unit: String::new(), limit: limit.max, limit_min: limit.min, pass: Some(false), line: None }
     }
@@ -87,7 +87,7 @@ impl From<&Expected> for ExpectedResult {
 }
 
 impl ExpectedResult {
-    /// What was expected, in words.
+    /// The expectation in words.
     #[must_use]
     pub fn words(&self) -> String {
         let Self { fault, who, event, from, to, .. } = self.clone();
@@ -119,7 +119,7 @@ impl From<&MoveMetrics> for MoveResult {
     }
 }
 
-/// By name.
+/// Metrics of a set by name.
 pub(crate) fn of_set(set: &MetricSet) -> IndexMap<String, MetricResult> {
     set.iter().map(|(name, metric)| (name.to_string(), metric.into())).collect()
 }

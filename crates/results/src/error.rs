@@ -1,16 +1,16 @@
-//! Why results cannot be read.
+//! Errors while reading or writing results.
 use crate::journal::JournalError;
 use servobench_files::{named, with_short_quotes};
 use std::io;
 use thiserror::Error;
 
-/// Why results cannot be read, or written.
+/// Reasons why results cannot be read or written.
 #[derive(Debug, Error)]
 pub enum ResultsError {
-    /// They are no JSON of this schema.
+    /// The text is not JSON of this schema.
     #[error("the results are not as docs/results.schema.json says: {}", with_short_quotes(&.0.to_string()))]
     Json(#[from] serde_json::Error),
-    /// They are of a later version.
+    /// The results are of a later version.
     #[error(
         "the results have schema `{found}`, newer than this build, which reads versions 1 to {known}; use the servobench that wrote \
          them, or run the scenarios again"
@@ -21,25 +21,25 @@ pub enum ResultsError {
         /// Newest version that this build reads.
         known: u32,
     },
-    /// They are something else.
+    /// The file is something else.
     #[error("the file has schema `{}`, which is none of servobench's results", named(.found))]
     Schema {
         /// Schema of the file.
         found: String,
     },
-    /// Nothing says whether they are as they were written.
+    /// The results have no digest to show that they are unchanged.
     #[error("the results have no digest, by which an edited file is recognised: an earlier version wrote them")]
     Unsealed,
-    /// They are not as they were written.
+    /// The results were changed after they were written.
     #[error("the results are not those that were written: their digest is another one")]
     Edited,
-    /// What the journal holds of a run cannot be read.
+    /// The record of a run in the journal cannot be read.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The operating system does not let them be written.
+    /// Error of the operating system while writing.
     #[error("the results cannot be written: {0}")]
     Write(#[source] io::Error),
-    /// The operating system does not let them be read.
+    /// Error of the operating system while reading.
     #[error("the results cannot be read: {0}")]
     Read(#[source] io::Error),
 }

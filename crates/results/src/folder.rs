@@ -1,4 +1,4 @@
-//! The folder that a suite writes into: one suite at a time, nothing left of those before.
+//! The output folder of a suite: one suite at a time, without leftovers of earlier ones.
 use crate::error::ResultsError;
 use crate::journal::{self, JournalError};
 use crate::results::files_of_results;
@@ -12,52 +12,52 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// What `run` leaves beside its recordings.
+/// List of results that `run` leaves beside its recordings.
 pub const RESULTS: &str = "results.json";
-/// What `run` leaves when it was ended before its time, beside `results.json`.
+/// Journal that an interrupted `run` leaves beside `results.json`.
 pub const JOURNAL: &str = "results.journal";
-/// What `compare` leaves beside its recording.
+/// List of results that `compare` leaves beside its recording.
 pub const COMPARISON: &str = "comparison.json";
 
-/// The table that `sweep` leaves, for spreadsheets.
+/// Table of `sweep` for spreadsheets.
 pub const TABLE_CSV: &str = "sweep.csv";
-/// The same, for data tools.
+/// Table of `sweep` for data tools.
 pub const TABLE_PARQUET: &str = "sweep.parquet";
-/// The drawing of what varies against what was measured that `sweep` leaves.
+/// Drawing of `sweep`: metrics over the dimensions that vary.
 pub const SWEEP_MAP: &str = "sweep.svg";
-/// The drawing of time against vibration that `sweep` leaves.
+/// Drawing of `sweep`: time against vibration.
 pub const SWEEP_FRONT: &str = "sweep-front.svg";
-/// All that `sweep` leaves beside results and recordings.
+/// All files that `sweep` leaves besides results and recordings.
 pub const OF_A_SWEEP: [&str; 4] = [TABLE_CSV, TABLE_PARQUET, SWEEP_MAP, SWEEP_FRONT];
 
-/// Ends of the names of files that a run may leave.
+/// Endings of the names of files that a run may leave.
 const KINDS: [&str; 3] = [".parquet", ".timing.svg", ".rrd"];
 
-/// A folder that this process alone writes into, until it is dropped or the process ends, however that ends.
+/// A folder into which only this process writes, until it is dropped or the process ends, in whatever way.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
     _lock: FolderLock,
 }
 
-/// Why a folder cannot be written into.
+/// Reasons why a folder cannot be written into.
 #[derive(Debug, Error)]
 pub enum FolderError {
-    /// It cannot be made.
+    /// The folder cannot be created.
     #[error("cannot make the folder `{}`: {source}", path.display())]
     Make {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// Another process writes into it.
+    /// Another process writes into the folder.
     #[error(
         "another servobench writes into `{}` now: wait until it has ended, or name another folder with `--out`",
         .0.display()
     )]
     InUse(PathBuf),
-    /// What is in the place of results is something else.
+    /// The file in the place of results is something else.
     #[error(
         "`{}` is no list of results that this program wrote ({why}) and would be lost: name another folder with `--out`, or \
          remove it", path.display()
@@ -65,32 +65,32 @@ pub enum FolderError {
     NotOurs {
         /// The file.
         path: PathBuf,
-        /// Why it is none.
+        /// Reason why it is not one of ours.
         why: ResultsError,
     },
-    /// It cannot be locked.
+    /// The folder cannot be locked.
     #[error(
         "cannot lock the folder `{}`: {source}; name one on a file system with locks (flock) with `--out`", path.display()
     )]
     Lock {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
 }
 
-/// What was left in a folder by those before.
+/// Leftovers of earlier suites in a folder.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Former {
     /// Recordings, diagrams and drawings.
     names: HashSet<String>,
-    /// Lists of them.
+    /// Their lists.
     lists: Vec<&'static str>,
 }
 
 impl Folder {
-    /// Makes the folder if there is none, and keeps others from writing into it.
+    /// Creates the folder if it is missing, and locks it against other processes.
     ///
     /// # Errors
     /// [`FolderError`]
@@ -107,29 +107,29 @@ impl Folder {
         }
     }
 
-    /// Where it is.
+    /// Path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where the journal is.
+    /// Path of the journal.
     #[must_use]
     pub fn journal(&self) -> PathBuf {
         self.path.join(JOURNAL)
     }
 
-    /// What those before left here: exactly the files that `list` names and the list, with [`RESULTS`] also what a journal
-    /// names and what was half written when its suite was ended. What the list of another command beside it names is not of it.
+    /// Leftovers of earlier suites: exactly the files that `list` names and the list itself; with [`RESULTS`] also the files that a journal
+    /// names and those half written when its suite was interrupted. Files named by the list of another command are left out.
     ///
     /// # Errors
-    /// [`FolderError::NotOurs`], when a file of that name is something else.
+    /// [`FolderError::NotOurs`] if a file of that name is something else.
     pub fn former(&self, list: &'static str) -> Result<Former, FolderError> {
         let mut names = HashSet::new();
         let path = self.path.join(list);
         match files_of_results(&path) {
             Ok(files) => names.extend(files.into_iter().filter(|name| is_left_by_a_run(name))),
-            // Most often there is none.
+            // Most often it is missing.
             Err(ResultsError::Read(_)) => {}
             Err(why) => return Err(FolderError::NotOurs { path, why }),
         }
@@ -155,22 +155,22 @@ impl Folder {
         Ok(former)
     }
 
-    /// Removes that; says how many recordings, diagrams and drawings there were.
+    /// Removes the leftovers; returns the number of recordings, diagrams and drawings removed.
     #[expect(clippy::must_use_candidate, reason = "to remove them is what it is for")]
     pub fn remove(&self, former: &Former) -> usize {
         let removed = former.names.iter().filter(|name| fs::remove_file(self.path.join(name)).is_ok()).count();
-        // They name nothing any more; what takes their place is written by those who come now.
+        // The lists name nothing any more; the current suite writes new ones.
         for list in &former.lists {
             fs::remove_file(self.path.join(list)).ok();
         }
         removed
     }
 
-    /// Removes what runs with these `stems` left that the results of `runs` do not name: they were ended after they wrote it and before
-    /// that was noted.
+    /// Removes the files of runs with these `stems` that the results of `runs` do not name: the runs were interrupted after writing
+    /// them and before they were recorded.
     ///
     /// # Errors
-    /// [`JournalError`], when a result cannot be read: everything stays then.
+    /// [`JournalError`] if a result cannot be read: all files stay then.
     pub fn remove_unnamed(&self, stems: &[String], runs: &dyn Runs) -> Result<(), JournalError> {
         let mut named = HashSet::new();
         for run in runs.each() {
@@ -184,36 +184,36 @@ impl Folder {
     }
 }
 
-/// What the heading of a table that `sweep` wrote begins with.
+/// Beginning of the heading of a table written by `sweep`.
 const HEADING: &str = "point,engine,";
 
-/// Whether the file at `path` is a table that `sweep` wrote, by its heading.
+/// True if the file at `path` is a table written by `sweep`, judging by its heading.
 ///
 /// # Errors
-/// Those of the operating system.
+/// Errors of the operating system.
 pub fn is_table_of_a_sweep(path: &Path) -> io::Result<bool> {
     let mut start = Vec::new();
     servobench_files::open(path, u64::MAX)?.take(HEADING.len() as u64).read_to_end(&mut start)?;
     Ok(start == HEADING.as_bytes())
 }
 
-/// Removes what programs that were killed had not completed: nobody else writes into a folder that is locked.
+/// Removes incomplete files of killed programs: no other process writes into a locked folder.
 fn remove_unfinished(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if unfinished_by(&entry.file_name().to_string_lossy()).is_some() {
-            // It is only in the way.
+            // A leftover only takes space.
             fs::remove_file(entry.path()).ok();
         }
     }
 }
 
-/// Every file that runs with these stems may have left.
+/// All files that runs with these stems may have left.
 fn left_by(stems: &[String]) -> impl Iterator<Item = String> {
     let names = stems.iter().flat_map(|stem| KINDS.iter().map(move |kind| format!("{stem}{kind}")));
     names.filter(|name| is_left_by_a_run(name))
 }
 
-/// Whether `name` is that of a file beside the list, of a kind that a run leaves: a list may come from anywhere.
+/// True if `name` is a file beside the list, of a kind that a run leaves: a list may come from anywhere.
 pub(crate) fn is_left_by_a_run(name: &str) -> bool {
     let path = Path::new(name);
     let is_beside = path.file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\']);
@@ -242,7 +242,7 @@ mod tests {
         let first = Folder::open(&path).unwrap();
         let refusal = Folder::open(&path).unwrap_err().to_string();
         assert!(refusal.starts_with("another servobench writes into `") && refusal.contains("--out"), "{refusal}");
-        // By another path it is the same folder.
+        // The same folder by another path.
         std::os::unix::fs::symlink(&path, there.path().join("link")).unwrap();
         assert!(matches!(Folder::open(&there.path().join("link")), Err(FolderError::InUse(_))));
         drop(first);
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(names(there.path()), ["b.parquet", "notes.txt"]);
     }
 
-    /// Of a suite that was killed: what its journal names, and what was written just before it could.
+    /// Leftovers of a killed suite: the files named in its journal, and those written just before they could be.
     #[test]
     fn what_a_killed_suite_left_is_removed() {
         let there = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The journal: what came of each run, written down when the run has ended.
+//! The journal: the result of each run, written when the run has ended.
 //!
 //! ```text
 //! <digest> {"suite":{…}}
@@ -6,11 +6,11 @@
 //! …
 //! ```
 //! A line holds one record as JSON, after the XXH64 (seed 0) of that JSON as 16 hexadecimal digits. A line is appended by one
-//! call of the system, so that the end of the process, however it comes, loses no record that was written and damages none.
-//! The end of the machine may: what reaches the disk is made sure of when the journal is begun, with a record at most once in
+//! system call, so that the end of the process, in whatever way, neither loses nor damages a written record.
+//! A crash of the machine may: the journal is synced to disk when it is begun, with a record at most once in
 //! [`PERIOD`], and when the suite ends.
 //!
-//! Reading keeps what is whole: a line that is torn, or damaged, is a run that has not ended.
+//! Reading keeps intact lines: a torn or damaged line counts as a run that has not ended.
 use crate::digest::Digest;
 use crate::folder::is_left_by_a_run;
 use crate::run::RunResult;
@@ -23,28 +23,28 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 use twox_hash::XxHash64;
 
-/// How long a record may wait until it is made sure that it is on the disk, as long as others follow it.
+/// Longest time between syncs to disk, as long as records follow.
 const PERIOD: Duration = Duration::from_secs(1);
-/// Bytes of the longest line that is read.
+/// Bytes of the longest line read.
 const LONGEST: u64 = 1 << 26;
 /// Version of the format.
 const VERSION: u32 = 1;
 
-/// What a suite is: the first record.
+/// The first record: description of the suite.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Suite {
     /// Version of the journal's format.
     pub version: u32,
-    /// What [`crate::Results::suite`] will be.
+    /// Value of [`crate::Results::suite`] in the results.
     pub suite: Digest,
-    /// Digest of the program that began it; empty where nobody noted it.
+    /// Digest of the program that began it; empty if unknown.
     #[serde(default)]
     pub program: Digest,
     /// The command line without the program's name.
     pub command: Vec<String>,
-    /// Folder that relative paths of the command line start from.
+    /// Folder to which relative paths of the command line refer.
     pub folder: PathBuf,
-    /// Text that came in on standard input, if a scenario did.
+    /// Text from standard input, if a scenario was read there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub standard_input: Option<String>,
     /// Stems of the files that the runs may leave in the folder of the journal.
@@ -64,31 +64,31 @@ impl Suite {
         Self { version: VERSION, suite, program: Digest::default(), command, folder, standard_input, stems }
     }
 
-    /// The same, begun by the program with this digest.
+    /// Sets the digest of the program that began the suite.
     #[must_use]
     pub fn by(self, program: Digest) -> Self {
         Self { program, ..self }
     }
 
-    /// The first name that is not one of a file beside the journal.
+    /// The first name that is not that of a file beside the journal.
     fn outside(&self) -> Option<String> {
         self.stems.iter().find(|stem| !is_left_by_a_run(&format!("{stem}.parquet"))).cloned()
     }
 }
 
-/// A run that has ended.
+/// A finished run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
     /// Place of the run in the suite, from 0.
     pub index: usize,
-    /// How long it took by the clock (s).
+    /// Wall-clock duration (s).
     pub seconds: f64,
-    /// What came of it.
+    /// Result of the run.
     pub result: RunResult,
 }
 
 impl Finished {
-    /// The first name of a file of the run that is not one beside the journal, of a kind that runs leave.
+    /// The first file name of the run that is not beside the journal, or not of a kind that runs leave.
     fn outside(&self) -> Option<String> {
         let RunResult { recording, files, .. } = &self.result;
         recording.iter().chain(files).find(|name| !is_left_by_a_run(name)).cloned()
@@ -111,26 +111,26 @@ enum Record {
     Finished(Box<Finished>),
 }
 
-/// Why there is no journal, or none that goes on.
+/// Reasons why a journal cannot be used.
 #[derive(Debug, Error)]
 pub enum JournalError {
-    /// The operating system refused.
+    /// Error of the operating system.
     #[error("cannot {action} the journal `{}`: {source}", path.display())]
     Io {
-        /// What was tried.
+        /// Attempted action.
         action: &'static str,
         /// The journal.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// A record is no JSON.
+    /// A record is not JSON.
     #[error("a result cannot be written into the journal: {0}")]
     Json(#[from] serde_json::Error),
-    /// Its first line is none of a journal.
+    /// The first line is not that of a journal.
     #[error("`{}` is no journal of a suite: its first line is damaged", .0.display())]
     NoSuite(PathBuf),
-    /// It is of a later version.
+    /// The journal is of a later version.
     #[error("the journal `{}` has version {found}, newer than this build, which reads version {VERSION}", path.display())]
     Newer {
         /// The journal.
@@ -152,15 +152,15 @@ pub enum JournalError {
         /// The name.
         name: String,
     },
-    /// A record that was written is another one now.
+    /// A record has changed since it was written.
     #[error("the record of a run in the journal `{}` has changed since it was written: is the disk in order?", .0.display())]
     Changed(PathBuf),
-    /// A result that nobody noted.
+    /// The run has no result.
     #[error("there is no result of run {0}")]
     NoSuchRun(usize),
 }
 
-/// Where a record is in the journal.
+/// Place of a record in the journal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
     /// Bytes before its line.
@@ -169,24 +169,24 @@ pub struct Place {
     length: u64,
 }
 
-/// The journal of a suite that is under way.
+/// The journal of a running suite.
 #[derive(Debug)]
 pub struct Journal {
     file: File,
     path: PathBuf,
-    /// When it was made sure of last.
+    /// Time of the last sync.
     synced: Instant,
-    /// The last line is not whole: the next one begins a line of its own.
+    /// True if the last line is torn: the next record begins a new line.
     is_torn: bool,
 }
 
 impl Journal {
-    /// Begins the journal of `suite` at `path`, in place of one that may be there.
+    /// Begins the journal of `suite` at `path`, replacing an existing one.
     ///
     /// # Errors
     /// [`JournalError::Io`]
     pub fn create(path: PathBuf, suite: &Suite) -> Result<Self, JournalError> {
-        // What is there may be a link that somebody planted: it goes, and nothing is written to where it leads.
+        // An existing file may be a planted link: it is removed, and nothing is written to its target.
         std::fs::remove_file(&path).or_else(not_found).map_err(failed("begin", &path))?;
         let file = File::options().create_new(true).read(true).write(true).open(&path);
         let file = file.map_err(failed("begin", &path))?;
@@ -196,9 +196,9 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Goes on with the journal at `path`: what suite it is of. `each` is told the runs that have ended and where their records are;
+    /// Continues the journal at `path`; returns its suite. `each` gets the finished runs with the places of their records;
     /// of several records of one run the last one counts. A journal may come from anywhere: one that is a link, or that names a file
-    /// outside of its folder, is refused, and `each` is told none of its runs from there on.
+    /// outside of its folder, is refused, and `each` gets none of its runs from there on.
     ///
     /// # Errors
     /// [`JournalError`]
@@ -206,7 +206,7 @@ impl Journal {
         if std::fs::symlink_metadata(&path).map_err(failed("read", &path))?.is_symlink() {
             return Err(JournalError::Link(path));
         }
-        // A FIFO under its name would keep its reader waiting.
+        // A FIFO of that name would block its reader.
         servobench_files::metadata(&path, u64::MAX).map_err(failed("read", &path))?;
         let mut file = File::options().read(true).write(true).open(&path).map_err(failed("read", &path))?;
         let mut outside = None;
@@ -220,14 +220,14 @@ impl Journal {
             return Err(JournalError::Outside { path, name });
         }
         let length = file.seek(SeekFrom::End(0)).map_err(failed("read", &path))?;
-        // An empty line is no record: it does not matter if the last line was whole.
+        // An empty line is not a record, so a complete last line does no harm.
         Ok((Self { file, path, synced: Instant::now(), is_torn: length > 0 }, suite))
     }
 
-    /// Writes down that a run has ended, and says where.
+    /// Appends the record of a finished run; returns its place.
     ///
     /// # Errors
-    /// [`JournalError::Io`], [`JournalError::Json`]: the record is then not there, all others are.
+    /// [`JournalError::Io`], [`JournalError::Json`]: then only this record is missing.
     pub fn append(&mut self, finished: &Finished) -> Result<Place, JournalError> {
         let place = self.write(&Written::Finished(finished))?;
         if self.synced.elapsed() >= PERIOD {
@@ -251,7 +251,7 @@ impl Journal {
         }
     }
 
-    /// Makes sure that what was written is on the disk.
+    /// Syncs the journal to disk.
     ///
     /// # Errors
     /// [`JournalError::Io`]
@@ -261,7 +261,7 @@ impl Journal {
         Ok(())
     }
 
-    /// The same journal whose file is another one from now on.
+    /// Replaces the file of the journal.
     #[cfg(test)]
     pub(crate) fn on(mut self, path: &str) -> Self {
         self.file = File::options().read(true).write(true).open(path).unwrap();
@@ -273,7 +273,7 @@ impl Journal {
         let start = if self.is_torn { "\n" } else { "" };
         let line = format!("{start}{:016x} {json}\n", digest(&json));
         self.is_torn = true;
-        // Reading moved away from the end, and what was torn may have left some of itself.
+        // Reading has moved away from the end, and a torn write may have left a part of itself.
         let end = self.file.seek(SeekFrom::End(0)).map_err(failed("write", &self.path))?;
         self.file.write_all(line.as_bytes()).map_err(failed("write", &self.path))?;
         self.is_torn = false;
@@ -282,7 +282,7 @@ impl Journal {
     }
 }
 
-/// What suite the journal `file` is of, `path` for messages. `each` is told what [`Journal::resume`] tells it.
+/// The suite of the journal `file`, with `path` for messages. `each` is called as by [`Journal::resume`].
 ///
 /// # Errors
 /// [`JournalError`]
@@ -310,7 +310,7 @@ struct Lines<'a, R> {
 }
 
 impl<R: Read> Lines<'_, R> {
-    /// The record in the next line, if that is whole, and where it is; `None` at the end.
+    /// The record in the next line, if it is intact, and its place; `None` at the end.
     fn next(&mut self) -> Result<Option<(Option<Record>, Place)>, JournalError> {
         let mut line = Vec::new();
         let mut limited = (&mut self.source).take(LONGEST);
@@ -321,7 +321,7 @@ impl<R: Read> Lines<'_, R> {
     }
 }
 
-/// The record in `line`, if that is whole.
+/// The record in `line`, if it is intact.
 fn record(line: &[u8]) -> Option<Record> {
     let line = str::from_utf8(line).ok()?.strip_suffix('\n')?;
     let (found, json) = line.split_at_checked(16)?;
@@ -333,7 +333,7 @@ fn digest(json: &str) -> u64 {
     XxHash64::oneshot(0, json.as_bytes())
 }
 
-/// What is not there need not be removed.
+/// A missing file need not be removed.
 fn not_found(error: io::Error) -> io::Result<()> {
     if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) }
 }

@@ -1,4 +1,4 @@
-//! The results of a suite as they come.
+//! The results of a suite as its runs end.
 use crate::digest::Digest;
 use crate::journal::{Finished, Journal, JournalError, Place, Suite};
 use crate::planned::Planned;
@@ -10,18 +10,18 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// The results of a suite as they come: the journal holds them, memory only what could not be written there.
+/// The results of a suite as its runs end: in the journal, or in memory if they could not be written there.
 #[derive(Debug)]
 pub struct Kept {
     journal: Option<Journal>,
     planned: Planned,
-    /// By the place of the run in the suite.
+    /// Finished runs by their place in the suite.
     ended: BTreeMap<usize, Ended>,
-    /// Those that every run has until now; `None`: there was none.
+    /// Overrides common to all runs so far; `None` before the first.
     overrides: Option<Vec<String>>,
 }
 
-/// What is known of a run that ended.
+/// Summary of a finished run.
 #[derive(Debug)]
 struct Ended {
     verdict: Outcome,
@@ -40,7 +40,7 @@ enum Where {
 }
 
 impl Ended {
-    /// As it is kept at `place` of the journal, otherwise in memory.
+    /// Summary with the result at `place` of the journal, or in memory without one.
     fn new(finished: Finished, place: Option<Place>) -> Self {
         let Finished { seconds, result, .. } = finished;
         Self {
@@ -56,15 +56,15 @@ impl Ended {
 }
 
 impl Kept {
-    /// Those of the runs `planned`, none of which has ended. Without a journal they are in memory.
+    /// Results of the `planned` runs, none of which has ended. Without a journal they are in memory.
     #[must_use]
     pub fn new(journal: Option<Journal>, planned: impl Into<Planned>) -> Self {
         let planned = planned.into();
         Self { journal, planned, ended: BTreeMap::new(), overrides: None }
     }
 
-    /// Those that the journal at `path` holds, and what suite it is of. Only runs that `counts` have ended; which runs there are is still
-    /// to be said, by [`Kept::plan`].
+    /// Results in the journal at `path`, and its suite. Only runs for which `counts` is true count as ended; [`Kept::plan`] must set
+    /// the runs afterwards.
     ///
     /// # Errors
     /// [`JournalError`]
@@ -81,42 +81,42 @@ impl Kept {
         Ok((Self { journal: Some(journal), planned: Planned::default(), ended, overrides }, suite))
     }
 
-    /// The runs are these.
+    /// Sets the planned runs.
     pub fn plan(&mut self, planned: impl Into<Planned>) {
         let planned = planned.into();
         self.ended.retain(|index, _| *index < planned.len());
         self.planned = planned;
     }
 
-    /// The runs, ended or not.
+    /// The planned runs, ended or not.
     #[must_use]
     pub const fn planned(&self) -> &Planned {
         &self.planned
     }
 
-    /// Only those of the runs that ended are taken for ended whose inputs are what `inputs` gives for their place: the others, by their
-    /// places, are run again.
+    /// Drops the finished runs whose inputs differ from those that `inputs` gives for their place; returns their
+    /// places, to be run again.
     pub fn hold_inputs(&mut self, inputs: impl Fn(usize) -> Digest) -> Vec<usize> {
         let others = self.ended.extract_if(.., |index, ended| ended.inputs != inputs(*index));
         others.map(|(index, _)| index).collect()
     }
 
-    /// How many have ended.
+    /// Number of finished runs.
     #[must_use]
     pub fn ended(&self) -> usize {
         self.ended.len()
     }
 
-    /// Whether the run at `index` has ended.
+    /// True if the run at `index` has ended.
     #[must_use]
     pub fn has(&self, index: usize) -> bool {
         self.ended.contains_key(&index)
     }
 
-    /// A run has ended.
+    /// Records a finished run.
     ///
     /// # Errors
-    /// [`JournalError`], when the journal does not hold it: it is kept in memory then.
+    /// [`JournalError`] if the journal cannot record it: it is then kept in memory.
     pub fn note(&mut self, finished: Finished) -> Result<(), JournalError> {
         let noted = self.journal.as_mut().map(|journal| journal.append(&finished)).transpose();
         keep_common(&mut self.overrides, &finished.result);
@@ -125,7 +125,7 @@ impl Kept {
         refusal.map_or(Ok(()), Err)
     }
 
-    /// Makes sure that the journal is on the disk.
+    /// Syncs the journal to disk.
     ///
     /// # Errors
     /// [`JournalError::Io`]
@@ -134,7 +134,7 @@ impl Kept {
     }
 }
 
-/// Leaves those overrides that `run` has too.
+/// Retains only overrides that `run` has too.
 fn keep_common(overrides: &mut Option<Vec<String>>, run: &RunResult) {
     match overrides {
         None => *overrides = Some(run.overrides.clone()),
@@ -190,7 +190,7 @@ mod tests {
         Finished { index, seconds: 0.25, result }
     }
 
-    /// Whether a result is in memory or in the journal, it is the same one.
+    /// A result is the same in memory and in the journal.
     #[test]
     fn results_come_back_from_wherever_they_are_kept() {
         let folder = tempfile::tempdir().unwrap();
@@ -212,7 +212,7 @@ mod tests {
             );
             assert!(matches!(runs.result(3), Err(JournalError::NoSuchRun(3))));
         }
-        // What is no more than noted again counts as it was noted last; what does not count any more has not ended.
+        // A run recorded again counts with its last record; one that does not count any more has not ended.
         let (mut kept, _) = Kept::resume(path, |one| one.index != 1).unwrap();
         kept.plan(planned());
         assert_eq!((kept.ended(), kept.has(1), kept.planned().len()), (2, false, 4));
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(kept.result(0).unwrap().into_owned(), samples::snap());
     }
 
-    /// A journal may name places that no suite has.
+    /// A journal may name places outside of the suite.
     #[test]
     fn places_beyond_the_suite_are_none() {
         let folder = tempfile::tempdir().unwrap();
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!((kept.ended(), kept.heads().count()), (1, 1));
     }
 
-    /// On a full disk the results of a suite are still there when it ends.
+    /// With a full disk the results of a suite are still there when it ends.
     #[cfg(target_os = "linux")]
     #[test]
     fn what_the_journal_does_not_hold_is_in_memory() {

@@ -1,17 +1,17 @@
-//! What a suite of runs leaves on disk, and what stays of it after a crash.
+//! Results of a suite of runs on disk, and their recovery after a crash.
 //!
-//! | what | type |
+//! | data | type |
 //! |---|---|
-//! | what came of one run | [`RunResult`] |
-//! | `results.json`, what came of all of them | [`Results`] |
+//! | result of one run | [`RunResult`] |
+//! | `results.json`, results of all runs | [`Results`] |
 //! | `results.journal`, which grows while they run | [`Journal`] |
-//! | the results of a suite that is under way: in the journal, as long as that can be written | [`Kept`] |
-//! | results one after the other, wherever they are kept | [`Runs`] |
-//! | what was measured of all of them, a column for each metric | [`Columns`] |
-//! | the folder that holds both, for one suite at a time | [`Folder`] |
+//! | results of a running suite: in the journal, as long as that can be written | [`Kept`] |
+//! | results one after the other, in the journal or in memory | [`Runs`] |
+//! | measurements of all runs, a column for each metric | [`Columns`] |
+//! | folder of both files, for one suite at a time | [`Folder`] |
 //!
-//! Nothing here knows how a run is made. No clock and no host are part of a result, so that equal suites give equal bytes;
-//! the journal alone holds how long a run took.
+//! This crate is independent of how runs are made. Neither clock nor host is part of a result, so that equal suites give equal bytes;
+//! only the journal has the duration of each run.
 
 mod columns;
 mod digest;

@@ -1,42 +1,42 @@
-//! What the runs of a suite are called.
+//! Names of the runs of a suite.
 use crate::results::Unfinished;
 
-/// What the runs of a suite are called, by their places in it. Those of a sweep are called alike: a million of them take no more room
+/// Names of the runs of a suite, by their places in it. Those of a sweep have the same name: a million of them take no more memory
 /// than one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Planned {
     kinds: Vec<Unfinished>,
-    /// How many runs in a row are called like each of them.
+    /// Number of consecutive runs with each name.
     each: usize,
 }
 
 impl Planned {
-    /// `each` runs in a row for each of `kinds`.
+    /// `each` consecutive runs for each of `kinds`.
     #[must_use]
     pub const fn repeated(kinds: Vec<Unfinished>, each: usize) -> Self {
         Self { kinds, each }
     }
 
-    /// What the run at `index` is called.
+    /// Name of the run at `index`.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<&Unfinished> {
         self.kinds.get(index.checked_div(self.each)?)
     }
 
-    /// How many runs there are.
+    /// Number of runs.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.kinds.len() * self.each
     }
 
-    /// Whether there is none.
+    /// True without runs.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Each by itself.
+/// One run of each name.
 impl From<Vec<Unfinished>> for Planned {
     fn from(kinds: Vec<Unfinished>) -> Self {
         Self::repeated(kinds, 1)

@@ -1,31 +1,31 @@
-//! Text that somebody else wrote (names, messages, logs of FMUs), made fit for terminals, logs, XML and drawings.
+//! Foreign text (names, messages, logs of FMUs) made safe for terminals, logs, XML and drawings.
 //!
-//! Three kinds of characters can do harm there. Those that are not shown: control characters and escape sequences, which steer a
-//! terminal; characters that turn the direction of writing, or have no width, by which a text looks like another one; characters that
-//! Unicode reserves and XML does not allow. Those that end a line: whoever writes one writes the next line of a log. And what begins a
-//! command to a runner of continuous integration, which reads it out of the log.
+//! Three kinds of characters can do harm there. Invisible ones: control characters and escape sequences, which control a
+//! terminal; characters that turn the direction of writing, or have no width, which make a text look like another one; characters that
+//! Unicode reserves and XML does not allow. Line ends: a text with one can forge the next line of a log. And the beginnings of
+//! commands to a CI runner, which reads them from the log.
 
 use std::fmt::Write as _;
 
-/// `text` as one line: what is not shown is a question mark in a diamond, what ends a line or sets a tab is a blank.
+/// `text` as one line: invisible characters become a question mark in a diamond, line ends and tabs a blank.
 #[must_use]
 pub fn printable(text: &str) -> String {
     let shown: String = text.chars().map(visible).collect();
     without_commands(&shown)
 }
 
-/// The same of each line of `text`.
+/// `text` with each line treated like that.
 #[must_use]
 pub fn printable_lines(text: &str) -> String {
     text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// The JSON `text` with the escapes of JSON for what is not shown: it means the same.
+/// The JSON `text` with invisible characters escaped: its meaning stays the same.
 #[must_use]
 pub fn printable_json(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
-        // Between its strings JSON has line feeds and blanks only.
+        // Between its strings JSON has only line feeds and blanks.
         if c == '\n' || c == visible(c) {
             shown.push(c);
         } else {
@@ -38,7 +38,7 @@ pub fn printable_json(text: &str) -> String {
     shown
 }
 
-/// What is shown of a character.
+/// Visible replacement of a character.
 const fn visible(c: char) -> char {
     match c {
         '\t'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}' => ' ',
@@ -47,28 +47,28 @@ const fn visible(c: char) -> char {
     }
 }
 
-/// Whether nothing is shown of a character, or something else than the text says.
+/// True if a character is invisible, or makes a text look like another one.
 const fn is_hidden(c: char) -> bool {
     matches!(c,
         // C0, delete, C1.
         '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}'
         // Marks, embeddings, overrides and isolates of the direction of writing (UAX #9).
         | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-        // Of no width, or a blank that is none: joiners, soft hyphen, fillers of Hangul, operators of mathematics.
+        // Without width, or a false blank: joiners, soft hyphen, Hangul fillers, mathematical operators.
         | '\u{ad}' | '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
         | '\u{200b}'..='\u{200d}' | '\u{2060}'..='\u{2065}' | '\u{206a}'..='\u{206f}' | '\u{3164}' | '\u{feff}' | '\u{ffa0}'
         | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}'
-        // Interlinear annotations, tags, selectors of variants.
+        // Interlinear annotations, tags, variation selectors.
         | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}')
-        // No characters, which those who paint keep for themselves.
+        // Noncharacters, which painters of text use as marks.
         || matches!(c, '\u{fdd0}'..='\u{fdef}')
         || c as u32 & 0xfffe == 0xfffe
 }
 
-/// Beginnings of commands that a runner takes from anywhere in a line.
+/// Beginnings of commands that a CI runner accepts anywhere in a line.
 const COMMANDS: [&str; 3] = ["##[", "##vso[", "##teamcity["];
 
-/// `line` without what a runner of continuous integration takes for a command: `::` at its beginning, blanks before it or not, and
+/// `line` without commands to a CI runner: `::` at its beginning, with or without blanks before it, and
 /// [`COMMANDS`].
 fn without_commands(line: &str) -> String {
     let mut line = line.to_owned();
@@ -100,7 +100,7 @@ mod tests {
         );
     }
 
-    /// Every character there is.
+    /// All characters.
     #[test]
     fn what_is_shown_has_a_width_and_a_direction() {
         for c in (0..=0x10_ffff).filter_map(char::from_u32) {

@@ -1,4 +1,4 @@
-//! `results.json`: what a run gave, for machines. The schema is in `docs/results.schema.json`.
+//! `results.json`: results of runs, for programs. The schema is in `docs/results.schema.json`.
 use crate::digest::Digest;
 use crate::error::ResultsError;
 use crate::run::RunResult;
@@ -14,7 +14,7 @@ const SCHEMA: &str = "servobench-results/";
 /// Version of the schema.
 const VERSION: u32 = 3;
 
-/// The results of several runs. `R` is how those are held that ended, `U` those that did not.
+/// The results of several runs. `R` is the container of finished runs, `U` the type of unfinished ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(bound(deserialize = "R: Deserialize<'de>, U: Deserialize<'de>"))]
 pub struct Results<R = Vec<RunResult>, U = Unfinished> {
@@ -22,68 +22,68 @@ pub struct Results<R = Vec<RunResult>, U = Unfinished> {
     pub schema: String,
     /// Program and version that wrote them.
     pub generator: String,
-    /// Whether every run came to its end.
+    /// Completeness of the suite.
     #[serde(default)]
     pub status: Status,
-    /// Digest of the runs that were asked for, in their order: equal suites of one program have equal digests, and equal
+    /// Digest of the requested runs, in their order: equal suites of one program have equal digests, and equal
     /// results.
     #[serde(default)]
     pub suite: Digest,
-    /// The runs that ended, in the order in which they were asked for.
+    /// The finished runs, in the order of the request.
     pub scenarios: R,
-    /// The runs that did not end, in that order; left out where all did.
+    /// The unfinished runs, in that order; left out if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unfinished: Vec<U>,
 }
 
-/// Whether every run came to its end.
+/// Completeness of a suite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// Every run that was asked for is among the results.
+    /// All requested runs are among the results.
     #[default]
     Complete,
-    /// The suite is under way, or was ended before its time.
+    /// The suite is running, or was interrupted.
     Incomplete,
 }
 
-/// A run that was asked for and has no result.
+/// A requested run without a result.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Unfinished {
     /// Name of the scenario.
     pub name: String,
-    /// File of the scenario, as it was given, `-` for standard input; `null` for an embedded one.
+    /// File of the scenario as given, `-` for standard input; `null` for an embedded one.
     pub file: Option<String>,
     /// Engine.
     pub engine: String,
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// Every limit is kept, every requirement met, every expected fault has come.
+    /// All limits are kept, all requirements met, all expected faults have occurred.
     Passed,
-    /// Every requirement is met, and there was no limit to keep.
+    /// All requirements are met, and there was no limit to keep.
     Unjudged,
-    /// A limit is missed, a requirement broken, or an expected fault did not come.
+    /// A limit is missed, a requirement broken, or an expected fault did not occur.
     Failed,
-    /// The scenario cannot be read, or asks for what cannot be built.
+    /// The scenario cannot be read, or cannot be built.
     #[serde(alias = "input")]
     Invalid,
-    /// The run could not be carried out.
+    /// The run could not be completed.
     #[default]
     Error,
 }
 
 impl Outcome {
-    /// Whether the run came to its end, and nothing in it failed.
+    /// True if the run was completed, and nothing in it failed.
     #[must_use]
     pub const fn is_good(self) -> bool {
         matches!(self, Self::Passed | Self::Unjudged)
     }
 
-    /// The word for it, everywhere.
+    /// The word for the outcome, used everywhere.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -95,26 +95,26 @@ impl Outcome {
         }
     }
 
-    /// Whether the run came to its end, so that its metrics mean what they say.
+    /// True if the run was completed, so that its metrics are valid.
     #[must_use]
     pub const fn is_whole(self) -> bool {
         !matches!(self, Self::Invalid | Self::Error)
     }
 }
 
-/// Bytes of a file of results at most: those of 100 000 runs with one move have 1.5 GB.
+/// Largest file of results (bytes): 100 000 runs with one move take 1.5 GB.
 const MOST_BYTES: u64 = 1 << 32;
-/// A file of more bytes is looked through before it is read.
+/// A file of more bytes is parsed for validity before it is read.
 const LARGE: u64 = 16 << 20;
 
-/// The text of a file of results.
+/// Reads the text of a file of results.
 ///
 /// # Errors
-/// Those of the operating system; it is no regular file, or larger than any results.
+/// Errors of the operating system; the file is not regular, or larger than any results.
 pub fn read_results(path: &Path) -> io::Result<String> {
     let file = servobench_files::open(path, MOST_BYTES)?;
     if file.metadata()?.len() > LARGE {
-        // What is no JSON is not held in memory to find that out.
+        // A file that is not JSON is not loaded into memory to find that out.
         let refused = |error: serde_json::Error| {
             let why = with_short_quotes(&error.to_string());
             io::Error::new(io::ErrorKind::InvalidData, format!("it is no JSON: {why}"))
@@ -125,7 +125,7 @@ pub fn read_results(path: &Path) -> io::Result<String> {
 }
 
 impl<R, U> Results<R, U> {
-    /// The results of a suite, of which some runs may not have ended.
+    /// The results of a suite, some runs of which may not have ended.
     #[must_use]
     pub fn of_suite(suite: Digest, scenarios: R, unfinished: Vec<U>) -> Self {
         let generator = concat!("servobench ", env!("CARGO_PKG_VERSION")).to_owned();
@@ -141,7 +141,7 @@ impl Results {
         Self::of_suite(Digest::default(), scenarios, Vec::new())
     }
 
-    /// As JSON, numbers in the shortest form that reads back to the same bits, with the digest of the results behind them.
+    /// The results as JSON, numbers in the shortest form that reads back to the same bits, with their digest at the end.
     ///
     /// # Errors
     /// [`ResultsError::Json`].
@@ -155,7 +155,7 @@ impl Results {
         Ok(serde_json::to_string_pretty(&Sealed { results: self, digest: digest_of(self)? })? + "\n")
     }
 
-    /// Reads what [`Results::to_json`] wrote, unless it has been edited since.
+    /// Reads JSON from [`Results::to_json`]; refuses it if it has been edited since.
     ///
     /// # Errors
     /// As [`Results::from_json`]; [`ResultsError::Unsealed`], [`ResultsError::Edited`].
@@ -172,8 +172,8 @@ impl Results {
         }
     }
 
-    /// Reads what [`Results::to_json`] wrote, and results of older versions: those of version 2 say nothing of what the runs
-    /// were made of, those of version 1 neither of requirements and parameters nor of files but the recording.
+    /// Reads JSON from [`Results::to_json`], and results of older versions: version 2 has no inputs of the
+    /// runs, version 1 also lacks requirements, parameters, and all files but the recording.
     ///
     /// # Errors
     /// [`ResultsError::Json`], [`ResultsError::Newer`], [`ResultsError::Schema`].
@@ -190,7 +190,7 @@ impl Results {
     }
 }
 
-/// What a file of results says of itself.
+/// Head of a file of results.
 #[derive(Deserialize)]
 struct Head {
     schema: String,
@@ -198,11 +198,11 @@ struct Head {
 }
 
 impl Head {
-    /// Its version, if this build reads that.
+    /// Version of the schema, if this build reads it.
     fn version(self) -> Result<u32, ResultsError> {
         let Self { schema, status } = self;
         match schema.strip_prefix(SCHEMA).and_then(|version| version.parse().ok()) {
-            // What does not say that it is complete is not.
+            // A file without a status is not complete.
             Some(VERSION) if status.is_none() => Err(ResultsError::Json(serde::de::Error::missing_field("status"))),
             Some(version @ 1..=VERSION) => Ok(version),
             Some(version) if version > VERSION => Err(ResultsError::Newer { found: schema, known: VERSION }),
@@ -211,7 +211,7 @@ impl Head {
     }
 }
 
-/// Every file that the runs left whose results the file at `path` holds, by name. What else they are is not kept in memory.
+/// Names of all files left by the runs whose results are in the file at `path`. The rest is not kept in memory.
 ///
 /// # Errors
 /// As [`Results::from_json`]; [`ResultsError::Read`].
@@ -219,7 +219,7 @@ pub fn files_of_results(path: &Path) -> Result<Vec<String>, ResultsError> {
     #[derive(Deserialize)]
     struct Left {
         recording: Option<String>,
-        /// Version 1 had none.
+        /// Missing in version 1.
         files: Option<Vec<String>>,
     }
     #[derive(Deserialize)]
@@ -249,7 +249,7 @@ mod tests {
     };
     use servobench_trace::{About, Channel, ChannelSpec, Ending, Event, LogEntry, Move, Recording};
 
-    /// What is wrong, and how to make it so.
+    /// A mistake, and the function that makes it.
     type Spoiled = (&'static str, fn(&mut Value));
 
     fn validator() -> jsonschema::Validator {
@@ -302,7 +302,7 @@ mod tests {
         }
     }
 
-    /// It judged by two limits of which one cannot be measured.
+    /// A run judged by two limits of which one cannot be measured.
     fn judged() -> RunResult {
         let recording = recording();
         let mut metrics = measure(&recording, &Question::default());
@@ -441,7 +441,7 @@ mod tests {
         assert_eq!(line("setpoint_velocity_ratio"), None, "it has no limit");
     }
 
-    /// What version 1 lacks is empty, and its word for invalid input is understood.
+    /// Fields that version 1 lacks are empty, and its word for invalid input is understood.
     #[test]
     fn the_version_before_is_read() {
         let mut old = value(&samples::results());

@@ -1,4 +1,4 @@
-//! What came of one run.
+//! Result of one run.
 use crate::digest::Digest;
 use crate::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
 use crate::results::Outcome;
@@ -8,7 +8,7 @@ use servobench_files::MadeOf;
 use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
 use servobench_trace::{Event, LogEntry, Recording};
 
-/// Which run it is.
+/// Identity of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RunIdentity {
     /// Name of the scenario.
@@ -17,30 +17,30 @@ pub struct RunIdentity {
     pub file: Option<String>,
     /// Engine.
     pub engine: String,
-    /// What it was made of; see [`RunResult::inputs`].
+    /// Digest of its inputs; see [`RunResult::inputs`].
     pub inputs: Digest,
     /// File of the recording.
     pub recording: Option<String>,
-    /// The seal in the recording.
+    /// Seal of the recording.
     pub recording_seal: Option<String>,
-    /// Every file that it left beside the results, that of the recording among them.
+    /// All files that the run left beside the results, including the recording.
     pub files: Vec<String>,
-    /// Files that the scenario is made of.
+    /// Files from which the scenario is built.
     pub made_of: Vec<MadeOf>,
-    /// What the scenario file says, by key.
+    /// Contents of the scenario file, by key.
     pub parameters: Vec<(String, String)>,
-    /// Keys that have another value than the file gives them, with that: `setpoint.jerk=200 m/s3`.
+    /// Keys that were overridden, with their values: `setpoint.jerk=200 m/s3`.
     pub overrides: Vec<String>,
-    /// Where the scenario file has which limit.
+    /// Places of the limits in the scenario file.
     pub limits: Vec<LimitPlace>,
-    /// Warnings of `check`; `None` where nobody checked.
+    /// Warnings of `check`; `None` if it was not run.
     pub check_warnings: Option<Vec<String>>,
 }
 
-/// Where a limit stands in its file.
+/// Place of a limit in its file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LimitPlace {
-    /// Index of the move that it is of; `None` for the run as a whole.
+    /// Index of its move; `None` for the run as a whole.
     pub in_move: Option<usize>,
     /// Name of the metric.
     pub metric: String,
@@ -53,68 +53,68 @@ pub struct LimitPlace {
 pub struct RunResult {
     /// Name of the scenario.
     pub name: String,
-    /// File of the scenario, as it was given, `-` for standard input; `null` for an embedded one.
+    /// File of the scenario as given, `-` for standard input; `null` for an embedded one.
     pub file: Option<String>,
     /// Engine that computed the mechanics; empty for a file that could not be read.
     pub engine: String,
-    /// Digest of everything that the run was made of: scenario, overrides, engine, every file that it names, and the program.
-    /// Equal digests are equal runs.
+    /// Digest of all inputs of the run: scenario, overrides, engine, every file that it names, and the program.
+    /// Equal digests mean equal runs.
     #[serde(default)]
     pub inputs: Digest,
-    /// Files that the scenario is made of, itself first: values that it does not give come from the models among them. Empty for one
+    /// Files from which the scenario is built, itself first: missing values come from the models among them. Empty for a scenario
     /// that could not be read.
     #[serde(default)]
     pub made_of: Vec<MadeOf>,
-    /// What came of it.
+    /// Outcome of the run.
     pub verdict: Outcome,
     /// Simulated time, from tick 0 to the last recorded instant (s).
     pub duration: f64,
-    /// What failed or what is wrong, in words; empty where nothing is.
+    /// Failures or mistakes, in words; empty without any.
     pub reasons: Vec<String>,
-    /// How the run stands to each requirement.
+    /// Standing of each requirement.
     #[serde(default)]
     pub requirements: IndexMap<String, RequirementResult>,
-    /// The faults that were expected.
+    /// The expected faults.
     #[serde(default)]
     pub expected: Vec<ExpectedResult>,
-    /// Calls with `optional`, by name; left out where there are none.
+    /// Calls with `optional`, by name; left out without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub optional_calls: Vec<String>,
-    /// What breaks no requirement and should be known.
+    /// Warnings, which break no requirement.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// Warnings of `check`; left out where nobody checked.
+    /// Warnings of `check`; left out if it was not run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check_warnings: Option<Vec<String>>,
-    /// What the scenario file says, models and overrides merged in, by key.
+    /// Contents of the scenario file, models and overrides merged in, by key.
     #[serde(default)]
     pub parameters: IndexMap<String, String>,
-    /// Keys that have another value than the file gives them, with that; left out where none has.
+    /// Keys that were overridden, with their values; left out without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overrides: Vec<String>,
-    /// Metrics by name; with those that have a limit but could not be measured.
+    /// Metrics by name, including those with a limit that could not be measured.
     pub metrics: IndexMap<String, MetricResult>,
-    /// Metrics that could not be measured, and why.
+    /// Metrics that could not be measured, with the reason.
     pub absent: IndexMap<String, String>,
     /// The moves.
     pub moves: Vec<MoveResult>,
-    /// What happened: limits that bound, warnings.
+    /// Events: limits that bound, warnings.
     pub events: Vec<Event>,
-    /// What FMUs said; left out where they said nothing.
+    /// Log of FMUs; left out if empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub log: Vec<LogEntry>,
-    /// File of the recording, beside the results; `null` when none was written.
+    /// File of the recording, beside the results; `null` if none was written.
     pub recording: Option<String>,
-    /// The seal in the recording: another recording of that name is not of this run. `null` when none was written.
+    /// Seal of the recording: a recording of that name with another seal is not of this run. `null` if none was written.
     #[serde(default)]
     pub recording_seal: Option<String>,
-    /// Every file that the run left beside the results, by name.
+    /// All files that the run left beside the results, by name.
     #[serde(default)]
     pub files: Vec<String>,
 }
 
 impl RunResult {
-    /// A run that was judged.
+    /// A judged run.
     #[must_use]
     pub fn judged(run: RunIdentity, recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> Self {
         let limits = run.limits.clone();
@@ -147,13 +147,13 @@ impl RunResult {
         result
     }
 
-    /// A scenario that cannot be read or built, and why.
+    /// A scenario that cannot be read or built, with the reasons.
     #[must_use]
     pub fn invalid(run: RunIdentity, reasons: Vec<String>) -> Self {
         Self { verdict: Outcome::Invalid, reasons, ..Self::of(run, None, &Metrics::default()) }
     }
 
-    /// A run that could not be carried out and why, with what was recorded and measured until then.
+    /// A run that could not be completed, with its recording and metrics until then, and the reasons.
     #[must_use]
     pub fn error(run: RunIdentity, until_then: Option<(&Recording, &Metrics)>, reasons: Vec<String>) -> Self {
         let nothing = Metrics::default();
@@ -162,7 +162,7 @@ impl RunResult {
         Self { reasons, ..Self::of(run, recording, metrics) }
     }
 
-    /// Metrics of the run, or of a move.
+    /// Metrics of the run, or of one of its moves.
     fn metrics_of(&mut self, in_move: Option<usize>) -> Option<&mut IndexMap<String, MetricResult>> {
         match in_move {
             None => Some(&mut self.metrics),
@@ -170,25 +170,25 @@ impl RunResult {
         }
     }
 
-    /// Every metric by name, those of the run before those of its moves.
+    /// All metrics by name, those of the run before those of its moves.
     pub fn all_metrics(&self) -> impl Iterator<Item = (&str, &MetricResult)> {
         let all = self.metrics.iter().chain(self.moves.iter().flat_map(|made| made.metrics.iter()));
         all.map(|(name, metric)| (name.as_str(), metric))
     }
 
-    /// Requirements with this standing, and the reasons.
+    /// Requirements with this standing, with the reasons.
     pub fn requirements_that_are(&self, standing: Standing) -> impl Iterator<Item = (&str, &[String])> {
         let all = self.requirements.iter().filter(move |(_, requirement)| requirement.standing == standing);
         all.map(|(name, requirement)| (name.as_str(), requirement.reasons.as_slice()))
     }
 
-    /// Expected faults that may come at any time from some time on: without an end of its window an expectation lifts `no_fault` of that
+    /// Expected faults that may occur at any time from some time on: without an end of its window an expectation lifts `no_fault` for that
     /// fault for the rest of the run.
     pub fn open_expectations(&self) -> impl Iterator<Item = &ExpectedResult> {
         self.expected.iter().filter(|expected| expected.to.is_none())
     }
 
-    /// True where something is lifted that every run is held to: a requirement, a call with `optional`, an expected fault without an end of
+    /// True if a general obligation of runs is lifted: by a requirement, a call with `optional`, or an expected fault without an end of
     /// its window.
     #[must_use]
     pub fn lifts(&self) -> bool {
@@ -197,7 +197,7 @@ impl RunResult {
             || self.open_expectations().next().is_some()
     }
 
-    /// True with warnings of the verdict or of `check`; `None` where the verdict has none and `check` was not asked.
+    /// True with warnings of the verdict or of `check`; `None` if the verdict has none and `check` was not run.
     #[must_use]
     pub fn warns(&self) -> Option<bool> {
         match (&self.check_warnings, self.warnings.is_empty()) {
@@ -207,7 +207,7 @@ impl RunResult {
         }
     }
 
-    /// Requirements that it did not meet, broken or lifted, and the reasons: with one of them it cannot be compared with other runs.
+    /// Unmet requirements, broken or lifted, with the reasons: with any of them the run cannot be compared with others.
     pub fn not_met(&self) -> impl Iterator<Item = (&str, &RequirementResult)> {
         let all = self.requirements.iter().filter(|(name, requirement)| requirement.is_not_met(name));
         all.map(|(name, requirement)| (name.as_str(), requirement))
@@ -249,7 +249,7 @@ impl RunResult {
         }
     }
 
-    /// Value (SI) and unit of a metric, when it was measured.
+    /// Value (SI) and unit of a metric, if it was measured.
     #[must_use]
     pub fn metric(&self, name: Name) -> Option<(f64, &str)> {
         let metric = self.metrics.get(name.as_str())?;

@@ -1,32 +1,32 @@
-//! The runs of a suite one after the other, wherever their results are kept.
+//! The runs of a suite one after the other, with results in memory or in the journal.
 use crate::journal::JournalError;
 use crate::results::{Outcome, Results, Unfinished};
 use crate::run::RunResult;
 use std::borrow::Cow;
 use std::time::Duration;
 
-/// The results of a suite, of which one at a time is read: how many there are makes no difference to memory.
+/// The results of a suite, read one at a time: memory does not depend on their number.
 pub trait Runs {
-    /// The runs that ended, in the order in which they were asked for.
+    /// The finished runs, in the order of the request.
     fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_>;
 
     /// The result of the run with this [`RunHead::index`].
     ///
     /// # Errors
-    /// [`JournalError`], when what was written is not what is read.
+    /// [`JournalError`] if the record has changed or cannot be read.
     fn result(&self, index: usize) -> Result<Cow<'_, RunResult>, JournalError>;
 
-    /// The runs that did not end, in that order.
+    /// The unfinished runs, in that order.
     fn unfinished(&self) -> Box<dyn Iterator<Item = &Unfinished> + '_>;
 
-    /// Keys that have another value than the files give them in every run: `setpoint.jerk=200 m/s3`.
+    /// Keys that are overridden in every run, with their values: `setpoint.jerk=200 m/s3`.
     fn overrides(&self) -> Vec<&str>;
 }
 
-/// What is known of a run before its result is read.
+/// Summary of a run, known before its result is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunHead<'a> {
-    /// Its place, by which the result is read.
+    /// Index for reading its result.
     pub index: usize,
     /// Name of the scenario.
     pub name: &'a str,
@@ -34,11 +34,11 @@ pub struct RunHead<'a> {
     pub file: Option<&'a str>,
     /// Engine.
     pub engine: &'a str,
-    /// What came of it.
+    /// Outcome of the run.
     pub verdict: Outcome,
-    /// How long it took by the clock, where that is known.
+    /// Wall-clock duration, if known.
     pub took: Option<Duration>,
-    /// Whether it left a recording.
+    /// True if it left a recording.
     pub has_recording: bool,
     /// See [`RunResult::lifts`].
     pub lifts: bool,
@@ -47,12 +47,12 @@ pub struct RunHead<'a> {
 }
 
 impl dyn Runs + '_ {
-    /// How many runs came to this.
+    /// Number of runs with this outcome.
     pub fn count_of(&self, outcome: Outcome) -> usize {
         self.heads().filter(|head| head.verdict == outcome).count()
     }
 
-    /// Every result, one after the other.
+    /// All results, one after the other.
     pub fn each(&self) -> impl Iterator<Item = Result<Cow<'_, RunResult>, JournalError>> {
         self.heads().map(|head| self.result(head.index))
     }

@@ -1,4 +1,4 @@
-//! Results for the tests: the move of Lambrechts under two limits, a run that missed limits, one that broke off.
+//! Results for the tests: Lambrechts' move under two limits, a run that missed limits, one that broke off.
 use crate::digest::Digest;
 use crate::entry::{ExpectedResult, MetricResult};
 use crate::results::{Outcome, Results};
@@ -16,13 +16,13 @@ fn free(name: Name, value: f64, unit: &str) -> (String, MetricResult) {
     (name.to_string(), metric)
 }
 
-/// A metric with a largest value.
+/// A metric with an upper limit.
 fn limited(name: Name, value: Option<f64>, unit: &str, limit: f64) -> (String, MetricResult) {
     let pass = Some(value.is_some_and(|value| value <= limit));
     (name.to_string(), MetricResult { value, unit: unit.into(), limit: Some(limit), limit_min: None, pass, line: None })
 }
 
-/// A run that passed, with these metrics.
+/// A passed run with these metrics.
 #[must_use]
 pub fn run(name: &str, engine: &str, metrics: impl IntoIterator<Item = (String, MetricResult)>) -> RunResult {
     RunResult {
@@ -83,7 +83,7 @@ pub fn of_numbers(name: &str, numbers: [f64; 8]) -> RunResult {
     )
 }
 
-/// The set-point of Lambrechts: 1 m at 1 m/s, 5 m/s², 50 m/s³, and at order 4 1000 m/s⁴, all of which it reaches.
+/// Lambrechts' set-point: 1 m at 1 m/s, 5 m/s², 50 m/s³, and at order 4 1000 m/s⁴, all of which it reaches.
 #[must_use]
 pub fn lambrechts_move(order: usize) -> Move {
     let limits = [1.0, 5.0, 50.0, 1000.0];
@@ -115,7 +115,7 @@ pub fn snap() -> RunResult {
     of_numbers("lambrechts-snap", [1.35, 0.0, 0.73e-6, 0.21e-6, 38.985, 0.0021, 169.0, 60.0])
 }
 
-/// A run that missed three limits, one of them because it could not be measured.
+/// A run that missed three limits, one of which could not be measured.
 #[must_use]
 pub fn missed() -> RunResult {
     let mut run = run(
@@ -142,7 +142,7 @@ pub fn missed() -> RunResult {
     run
 }
 
-/// A run that keeps its limit, with a drive that was at its limit for half a second.
+/// A run that keeps its limit, with a drive at its limit for half a second.
 #[must_use]
 pub fn kept() -> RunResult {
     let mut run = run("kept", "exact", [limited(Name::MoveTime, Some(1.0), "s", 2.0)]);
@@ -164,7 +164,7 @@ pub fn kept() -> RunResult {
     run
 }
 
-/// A run that keeps its limit, breaks two requirements, and misses a fault that it expects.
+/// A run that keeps its limit, breaks two requirements, and lacks an expected fault.
 #[must_use]
 pub fn short() -> RunResult {
     let mut run = run("pick", "exact", [limited(Name::MoveTime, Some(0.65), "s", 2.0)]);
@@ -237,7 +237,7 @@ pub fn broken() -> RunResult {
     run
 }
 
-/// All of them.
+/// All sample results.
 #[must_use]
 pub fn results() -> Results {
     Results::new(vec![jerk(), missed(), kept(), snap(), broken(), wrong(), short()])

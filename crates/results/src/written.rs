@@ -1,4 +1,4 @@
-//! `results.json` while its runs are read, one after the other, with the digest by which an edited file is recognised.
+//! Output of `results.json` while its runs are read, one after the other, with the digest that reveals edits.
 use crate::digest::{Digest, Digester};
 use crate::error::ResultsError;
 use crate::journal::JournalError;
@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 use std::io::Write;
 
-/// Results with their digest behind them. It is computed while the runs are written.
+/// Results followed by their digest, which is computed while the runs are written.
 #[derive(Serialize)]
 struct Sealed<'a, R: Serialize> {
     #[serde(flatten)]
@@ -18,7 +18,7 @@ struct Sealed<'a, R: Serialize> {
     digest: Sum<'a>,
 }
 
-/// The digest of the parts that were written until then.
+/// The digest of the parts written so far.
 struct Sum<'a>(&'a RefCell<Digester>);
 
 impl Serialize for Sum<'_> {
@@ -27,23 +27,23 @@ impl Serialize for Sum<'_> {
     }
 }
 
-/// The digest of results begins with what does not depend on the runs that ended.
+/// The digest of results begins with the parts that do not depend on the finished runs.
 fn begun(suite: &Digest, unfinished: &[&Unfinished]) -> Result<Digester, serde_json::Error> {
     let start = Digester::default().with(suite.to_string());
     unfinished.iter().try_fold(start, |digester, run| Ok(digester.with(serde_json::to_vec(run)?)))
 }
 
-/// The digest that a file of these results has: of the suite, the runs that did not end, and those that did, each as JSON.
+/// The digest of a file of these results: of the suite, the unfinished runs, and the finished ones, each as JSON.
 pub(crate) fn digest_of(results: &Results) -> Result<Digest, ResultsError> {
     let begun = begun(&results.suite, &results.unfinished.iter().collect::<Vec<_>>())?;
     let all = results.scenarios.iter().try_fold(begun, |digester, run| Ok(digester.with(serde_json::to_vec(run)?)));
     Ok(all.map_err(ResultsError::Json)?.finish())
 }
 
-/// The results of runs that are read while they are written.
+/// The results of runs, each read when it is written.
 struct OneByOne<'a> {
     runs: &'a dyn Runs,
-    /// Why a run could not be read.
+    /// Error of a run that could not be read.
     refusal: RefCell<Option<JournalError>>,
     digester: &'a RefCell<Digester>,
 }
@@ -70,10 +70,10 @@ impl Serialize for &OneByOne<'_> {
     }
 }
 
-/// Writes what came of `runs`, those of `suite`, as [`Results::to_json`] does it.
+/// Writes the results of `runs`, which belong to `suite`, as [`Results::to_json`] does.
 ///
 /// # Errors
-/// [`ResultsError::Journal`] when a run cannot be read, [`ResultsError::Write`].
+/// [`ResultsError::Journal`] if a run cannot be read, [`ResultsError::Write`].
 pub fn write_results(suite: &Digest, runs: &dyn Runs, out: &mut dyn Write) -> Result<(), ResultsError> {
     let unfinished: Vec<&Unfinished> = runs.unfinished().collect();
     let digester = RefCell::new(begun(suite, &unfinished)?);
@@ -94,7 +94,7 @@ mod tests {
     use crate::results::{Status, Unfinished};
     use crate::samples;
 
-    /// Whoever writes results one by one writes the same bytes.
+    /// Results written one by one give the same bytes.
     #[test]
     fn written_one_by_one_they_are_the_same() {
         let mut results = samples::results();

@@ -46,7 +46,7 @@ fn it_reads_back_and_goes_on() {
     assert_eq!(resumed(&path).unwrap().2, [before, vec![again]].concat());
 }
 
-/// A record is read from where it is, and what is written afterwards stands at the end all the same.
+/// A record is read from its place, and later records are still written to the end.
 #[test]
 fn a_record_is_read_from_its_place() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,7 +62,7 @@ fn a_record_is_read_from_its_place() {
         places.push((next.clone(), journal.append(&next).unwrap()));
     }
     assert_eq!(resumed(&path).unwrap().2.len(), 5);
-    // A bit of it turns over on the disk.
+    // A bit of it flips on the disk.
     let mut bytes = fs::read(&path).unwrap();
     let end = bytes.len() - 20;
     bytes[end] ^= 1;
@@ -84,7 +84,7 @@ fn a_link_in_its_place_is_replaced_and_not_followed() {
     assert_eq!(fs::read(victim).unwrap(), b"victim");
 }
 
-/// Whatever the byte after which a write stops, the records before it are there, and those written later follow.
+/// After any byte at which a write stops, the records before it are there, and later ones follow.
 #[test]
 fn a_journal_that_is_cut_off_keeps_what_is_whole() {
     let folder = tempfile::tempdir().unwrap();
@@ -105,7 +105,7 @@ fn a_journal_that_is_cut_off_keeps_what_is_whole() {
     }
 }
 
-/// One bit anywhere costs the record that it is in, and no other.
+/// One flipped bit anywhere costs only the record that contains it.
 #[test]
 fn a_damaged_record_is_one_that_is_not_there() {
     let whole = written(&tempfile::tempdir().unwrap().path().join("results.journal"));
@@ -125,7 +125,7 @@ fn a_damaged_record_is_one_that_is_not_there() {
     }
 }
 
-/// Whoever sent the folder may have written into its journal whatever he liked.
+/// The sender of a folder may have written anything into its journal.
 #[test]
 fn a_journal_that_leads_outside_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,7 +154,7 @@ fn a_journal_that_leads_outside_is_refused() {
     }
 }
 
-/// Records would be appended to where the link leads.
+/// Records would be appended to the target of the link.
 #[cfg(unix)]
 #[test]
 fn a_journal_that_is_a_link_is_refused() {
