@@ -1,7 +1,7 @@
-//! From a loop to a report.
+//! Analysis of a loop, which gives a report.
 //!
-//! The verdict is of the whole loop. The name is found by closing the loops from the inside: the current loop with the shaft held,
-//! the velocity loop with the position loop open, the position loop; the first that is unstable.
+//! The verdict is that of the whole loop. The unstable loop is identified by closing the loops from the inside: the current loop with the
+//! shaft held, the velocity loop with the position loop open, the position loop; it is the first that is unstable.
 use crate::boundary;
 use crate::eigen::{self, Block, Eigenvalue};
 use crate::equations::{Closed, Equations};
@@ -17,19 +17,19 @@ use servobench_drive::Stage;
 use servobench_linear::{Factors, Running};
 use std::f64::consts::TAU;
 
-/// How much is asked for.
+/// Depth of an analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// Whether the loop is stable, and if not, why.
+    /// The verdict, and if unstable, the reason.
     Verdict,
-    /// The boundaries of all gains and the least damped poles too, which takes longer.
+    /// Also the boundaries of all gains and the least damped poles, which takes longer.
     Boundaries,
 }
 
-/// Analyses the loop that is `running`, of which `model` says what it is.
+/// Analyses the loop `running`, which `model` describes.
 ///
 /// # Errors
-/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
+/// [`StabilityError`] names a parameter out of its bound, or the reason why the poles could not be computed.
 pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth) -> Result<Report, StabilityError> {
     model.check()?;
     let mut analysis = Analysis::new(model, running)?;
@@ -51,12 +51,12 @@ pub fn analyse<'a>(model: &'a Loop, running: Box<dyn Running + 'a>, depth: Depth
     Ok(Report { instability, largest, slowest, loops, warnings: model.warnings() })
 }
 
-/// The whole loop with the position loop that a master closes: the poles that fade last, and the factor on the gain of that loop, nearest
-/// to 1, up to which it is stable: below 1 where it is not, and 0 where no gain makes it so. No factor where it is stable and nothing but the
-/// verdict is asked for.
+/// The whole loop with the position loop that a master closes: the poles that decay last, and the factor on the gain of that loop, nearest
+/// to 1, up to which it is stable: below 1 if it is not, and 0 if no gain makes it so. The factor is `None` if it is stable and only the
+/// verdict is requested.
 ///
 /// # Errors
-/// [`StabilityError`] names a parameter out of its bound, or why the poles could not be computed.
+/// [`StabilityError`] names a parameter out of its bound, or the reason why the poles could not be computed.
 pub fn analyse_master<'a>(
     model: &'a Loop,
     running: Box<dyn Running + 'a>,
@@ -79,7 +79,7 @@ pub fn analyse_master<'a>(
 pub(crate) struct Poles {
     period: Period,
     blocks: Vec<Block>,
-    /// Each with the index of its block.
+    /// Each pole with the index of its block.
     pub(crate) values: Vec<(usize, Complex<f64>)>,
 }
 
@@ -95,7 +95,7 @@ impl Poles {
         self.blocks[block].refine(&self.period, value)
     }
 
-    /// The largest outside of the unit circle, by more than rounding.
+    /// The largest pole outside of the unit circle, by more than rounding.
     pub(crate) fn outside(&self) -> Option<Eigenvalue> {
         let mut outside: Vec<_> = self.values.iter().copied().filter(|(_, value)| value.norm_sqr() > 1.0).collect();
         outside.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
@@ -117,14 +117,14 @@ impl Poles {
         }
     }
 
-    /// The pole that fades last among those of this kind; `is_kind` sees the pole over a period, `is_wanted` the pole in seconds.
+    /// The pole that decays last among those of a kind; `is_kind` gets the pole over a period, `is_wanted` the pole in seconds.
     fn slowest(
         &self,
         equations: &Equations,
         is_kind: impl Fn(Complex<f64>) -> bool,
         is_wanted: impl Fn(&Pole) -> bool,
     ) -> Option<Pole> {
-        // A pole at the origin is a delay; of a pair one stands for both.
+        // A pole at the origin is a delay; one of a pair stands for both.
         let of_kind = |value: Complex<f64>| value.im >= 0.0 && value.norm() > f64::EPSILON.sqrt() && is_kind(value);
         let mut found: Vec<_> = self.values.iter().copied().filter(|(_, value)| of_kind(*value)).collect();
         found.sort_by(|(_, a), (_, b)| b.norm().total_cmp(&a.norm()));
@@ -135,14 +135,14 @@ impl Poles {
         Pole::new(&self.period, equations, eigenvalue)
     }
 
-    /// Largest magnitude in a block that holds the state `index`.
+    /// Largest magnitude in a block with the state `index`.
     fn largest_with(&self, index: usize) -> f64 {
         let of_state = self.values.iter().filter(|(block, _)| self.blocks[*block].states.contains(&index));
         of_state.map(|(_, value)| value.norm()).fold(0.0, f64::max)
     }
 }
 
-/// The poles of all loops but the one that is known to be at 1.
+/// The poles of all loops except the one that is known to be at 1.
 fn candidates(equations: &Equations, blocks: &[Block]) -> Vec<(usize, Complex<f64>)> {
     let of_block =
         |(index, block): (usize, &Block)| block.eigenvalues.iter().map(|value| (index, *value)).collect::<Vec<_>>();
@@ -163,16 +163,16 @@ fn candidates(equations: &Equations, blocks: &[Block]) -> Vec<(usize, Complex<f6
     all
 }
 
-/// A loop under analysis, with the gains of a speed of the drive's schedule.
+/// A loop under analysis, with the gains at a speed of the drive's schedule.
 pub(crate) struct Analysis<'a> {
     model: &'a Loop,
     equations: Equations<'a>,
-    /// Factors on position and velocity gain, and the speed that has them (motor coordinate); `None` at standstill.
+    /// Factors on position and velocity gain, and their speed (motor coordinate); `None` at standstill.
     scheduled: ((f64, f64), Option<f64>),
 }
 
 impl<'a> Analysis<'a> {
-    /// At standstill.
+    /// The analysis at standstill.
     pub(crate) fn new(model: &'a Loop, running: Box<dyn Running + 'a>) -> Result<Self, StabilityError> {
         Ok(Self { model, equations: Equations::new(model, running)?, scheduled: ((1.0, 1.0), None) })
     }
@@ -182,13 +182,13 @@ impl<'a> Analysis<'a> {
         self.equations.schedule(factors);
     }
 
-    /// The fastest growing pole of the whole loop with its gains by `factors`.
+    /// The fastest growing pole of the whole loop with its gains scaled by `factors`.
     pub(crate) fn unstable_at(&mut self, factors: (f64, f64)) -> Result<Option<Pole>, StabilityError> {
         self.schedule(factors, None);
         self.unstable(self.whole())
     }
 
-    /// Why the whole loop, whose largest pole is `pole`, is unstable at `speed`, where it has its gains by `factors`.
+    /// The reason why the whole loop, whose largest pole is `pole`, is unstable at `speed`, where its gains are scaled by `factors`.
     pub(crate) fn instability_at(
         &mut self,
         factors: (f64, f64),
@@ -199,7 +199,7 @@ impl<'a> Analysis<'a> {
         self.instability(pole)
     }
 
-    /// All loops that have a gain.
+    /// All loops with a gain.
     fn whole(&self) -> Closed {
         let closes_velocity = self.model.drive.velocity.k_p > 0.0;
         Closed { position: self.model.has_position_loop() && closes_velocity, velocity: closes_velocity, shaft: true }
@@ -224,7 +224,7 @@ impl<'a> Analysis<'a> {
         Ok(poles.outside().map(|eigenvalue| poles.in_seconds(&self.equations, &eigenvalue)))
     }
 
-    /// Why the whole loop, whose largest pole is `pole`, is unstable.
+    /// The reason why the whole loop, whose largest pole is `pole`, is unstable.
     fn instability(&mut self, pole: Pole) -> Result<Instability, StabilityError> {
         let whole = self.whole();
         if self.unstable(self.alone(LoopName::Current))?.is_some() {
@@ -241,7 +241,7 @@ impl<'a> Analysis<'a> {
                 return Ok(velocity);
             }
         }
-        // The decoupling of the back-EMF closes a loop over the shaft which has no gain but this one.
+        // The decoupling of the back-EMF closes a loop over the shaft with no other gain than this one.
         let gain_name = self.current_gain_name();
         self.named(LoopName::Current, gain_name, pole)
     }
@@ -269,7 +269,7 @@ impl<'a> Analysis<'a> {
         Ok(Boundaries { below, above, alone: false })
     }
 
-    /// The gain of the current loop that is too large, where the loop by itself is unstable.
+    /// The gain of the current loop that is too large, if the loop by itself is unstable.
     fn unstable_axis(&mut self) -> Result<GainName, StabilityError> {
         if self.model.has_bandwidth() {
             return Ok(GainName::CurrentBandwidth);

@@ -1,10 +1,10 @@
-//! Where a loop changes from stable to unstable or back as one gain grows or falls.
+//! Gains at which a loop changes from stable to unstable or back.
 //!
-//! The gain goes by a factor from 1 away, on a logarithmic grid, and the first change of the verdict is bisected. So that an island
-//! is not stepped over, the grid follows the poles: a step is half of what a pole needs to get to the unit circle (of a stable loop
-//! the one that is soonest there, of an unstable loop the one outside that is last) at its present speed d|λ|/d ln k (or a twentieth of |dλ/d ln k|, where it goes along the circle), but at least
-//! 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower than 0.5 %, or a pole comes to the circle and
-//! back within a step, in which it would have gone half of the way.
+//! The gain moves away from the factor 1 on a logarithmic grid, and the first change of the verdict is bisected. So that no island
+//! is stepped over, the grid follows the poles: a step is half of the distance of a pole to the unit circle (for a stable loop
+//! the pole that arrives first, for an unstable loop the one outside that arrives last) at its current speed d|λ|/d ln k (or a twentieth of
+//! |dλ/d ln k|, if it moves along the circle), but at least 0.5 % and at most 10 % of the gain. A range of gains that is missed is narrower
+//! than 0.5 %, or a pole comes to the circle and back within a step, in which it would have gone half of the distance.
 use crate::analyse::Poles;
 use crate::equations::{Closed, Equations};
 use crate::error::StabilityError;
@@ -14,11 +14,11 @@ use crate::report::GainName;
 pub(crate) const REACH: f64 = 1_000.0;
 const SHORTEST_STEP: f64 = 0.005;
 const LONGEST_STEP: f64 = 0.1;
-/// Share of the way to the circle that a step takes at most.
+/// Largest share of the distance to the circle in one step.
 const SHARE: f64 = 0.5;
-/// Share of the way along the circle that counts as one towards it: poles that go along it may turn.
+/// Share of the motion along the circle that counts as motion towards it: poles along it may turn.
 const ALONG: f64 = 0.05;
-/// Relative difference of gains that tells the speed of the poles.
+/// Relative difference of gains that gives the speed of the poles.
 const DIFFERENCE: f64 = 1e-4;
 /// Relative accuracy of the boundary.
 const ACCURACY: f64 = 1e-6;
@@ -62,7 +62,7 @@ impl Scan<'_, '_> {
         Ok(None)
     }
 
-    /// The poles with the gain by e to the power of `exponent`; `None` where the loop grows beyond all numbers within a period.
+    /// The poles with the gain scaled by e to the power of `exponent`; `None` if the loop overflows within a period.
     fn poles(&mut self, exponent: f64) -> Result<Option<Poles>, StabilityError> {
         self.equations.with(self.closed, self.name.factors(exponent.exp()));
         match Poles::new(self.equations) {
@@ -71,7 +71,7 @@ impl Scan<'_, '_> {
         }
     }
 
-    /// Whether the verdict is another one.
+    /// True if the verdict has changed.
     fn is_other(&self, poles: Option<&Poles>) -> bool {
         let is_unstable = poles.is_none_or(|poles| poles.outside().is_some());
         is_unstable != self.is_unstable
@@ -86,8 +86,8 @@ impl Scan<'_, '_> {
         Ok(f64::midpoint(same, other))
     }
 
-    /// How far the gain can go until the verdict could be half-way at its change, from where `poles` are at `beside`: a stable loop
-    /// changes with the first pole that leaves the circle, an unstable one with the last that comes in.
+    /// Step of the gain in which the decisive pole could move half-way to the circle, from `poles` and their values at `beside`: a
+    /// stable loop changes with the first pole that leaves the circle, an unstable one with the last that comes in.
     fn step(&mut self, poles: Option<&Poles>, beside: f64) -> Result<f64, StabilityError> {
         let (Some(poles), Some(moved)) = (poles, self.poles(beside)?) else { return Ok(LONGEST_STEP) };
         let mut steps = (LONGEST_STEP, SHORTEST_STEP);

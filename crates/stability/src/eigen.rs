@@ -1,4 +1,4 @@
-//! Eigenvalues of the loop over a period, and how far rounding can have moved them.
+//! Eigenvalues of the loop over a period, with bounds of their rounding errors.
 //!
 //! The matrix M of a period is a product that was rounded. An eigenvalue from it is therefore refined on the ticks
 //! themselves, with its right and left eigenvectors v and y:
@@ -6,15 +6,15 @@
 //! ```text
 //! v_0 = v,  v_{j+1} = A_j·v_j        y_N = y,  y_j = A_jᵀ·y_{j+1}        λ = yᵀ·v_N / yᵀ·v
 //! ```
-//! To first order an error of the tick matrices, |ΔA_j| ≤ γ·|A_j| entry by entry, and what is left of the residual
+//! To first order an error of the tick matrices, |ΔA_j| ≤ γ·|A_j| entry by entry, and the remaining residual
 //! r = v_N − λ·v move it by at most
 //!
 //! ```text
 //! |Δλ| ≤ (γ·Σ_j |y_{j+1}|ᵀ·|A_j|·|v_j| + |y|ᵀ·|r|) / |yᵀ·v|,        γ = 4·n·u
 //! ```
-//! n states, u = 2⁻⁵³: an entry is a sum of at most n products of two tables of this kind, and so is the vector's way through
-//! it. A pole is outside the unit circle when |λ| − 1 exceeds this. With |y|ᵀ|v|/|yᵀ·v| the condition of λ is in it: two poles
-//! that meet have an infinite one.
+//! n states, u = 2⁻⁵³: an entry is a sum of at most n products of two tables of this kind, and so is the vector's path through
+//! it. A pole is outside the unit circle when |λ| − 1 exceeds this. The condition of λ, |y|ᵀ|v|/|yᵀ·v|, is part of it: for two poles
+//! that meet it is infinite.
 //! Source: Golub & Van Loan, *Matrix Computations*, 4th ed., §7.2.2; Higham, *Accuracy and Stability*, 2nd ed., §3.
 use crate::error::StabilityError;
 use crate::period::{ComplexVector, Period};
@@ -22,10 +22,10 @@ use crate::qr;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix};
 
-/// Bound of the relative error of what a tick does to a vector, by the number of states: 4·u.
+/// Bound of the relative error of a tick on a vector, per state: 4·u.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 2.0;
 
-/// A loop of the structure, with its eigenvalues.
+/// A loop of the structure with its eigenvalues.
 pub(crate) struct Block {
     /// Its states.
     pub(crate) states: Vec<usize>,
@@ -36,10 +36,10 @@ pub(crate) struct Block {
     pub(crate) eigenvalues: Vec<Complex<f64>>,
 }
 
-/// An eigenvalue that was refined.
+/// A refined eigenvalue.
 pub(crate) struct Eigenvalue {
     pub(crate) value: Complex<f64>,
-    /// How far off it can be.
+    /// Bound of its error.
     pub(crate) bound: f64,
     /// The right eigenvector before the period and after each tick.
     pub(crate) states: Vec<ComplexVector>,
@@ -74,7 +74,7 @@ impl Block {
         let product = |vector: &ComplexVector| self.states.iter().map(|&i| left[i] * vector[i]).sum::<Complex<f64>>();
         let scale = product(before);
         let refined = product(after) / scale;
-        // A real eigenvalue has no partner that it could have become a pair with.
+        // A real eigenvalue has no partner with which it could have become a pair.
         let value = if value.im == 0.0 { Complex::new(refined.re, 0.0) } else { refined };
 
         let mut moved = 0.0;
@@ -101,17 +101,17 @@ impl Block {
     }
 }
 
-/// The right eigenvector of `matrix` that goes with `value`, by inverse iteration.
+/// The right eigenvector of `matrix` for `value`, by inverse iteration.
 fn vector(matrix: &DMatrix<f64>, value: Complex<f64>) -> ComplexVector {
     let size = matrix.nrows();
-    // Off the eigenvalue by what it is uncertain by anyway, lest the matrix is singular.
+    // Off the eigenvalue by its uncertainty, lest the matrix is singular.
     let off = f64::EPSILON * matrix.norm().max(f64::MIN_POSITIVE);
     let shifted = DMatrix::from_fn(size, size, |i, j| {
         let diagonal = if i == j { value + Complex::new(off, off / 2.0) } else { Complex::default() };
         Complex::new(matrix[(i, j)], 0.0) - diagonal
     });
     let factors = shifted.lu();
-    // No symmetry that an eigenvector could be orthogonal to.
+    // Without any symmetry to which an eigenvector could be orthogonal.
     let mut vector = ComplexVector::from_fn(size, |i, _| Complex::new(1.0 + 0.37 * i as f64, 0.61 - 0.13 * i as f64));
     for _ in 0..3 {
         let Some(next) = factors.solve(&vector) else { break };

@@ -1,4 +1,4 @@
-//! The matrices of a loop's ticks with some of its loops closed and its gains by factors.
+//! The matrices of a loop's ticks with some of its loops closed and its gains scaled.
 use crate::error::StabilityError;
 use crate::model::Loop;
 use servobench_base::Divider;
@@ -8,15 +8,15 @@ use std::rc::Rc;
 
 /// Names of velocities of the bodies, from the motor on.
 const VELOCITY: &str = "mechanics.velocity";
-/// Name of the effort of the motor, by which the controllers act on the bodies.
+/// Name of the effort of the motor, through which the controllers act on the bodies.
 const EFFORT: &str = "controllers.effort";
 /// Ends of the names of the motor's currents.
 const CURRENTS: [&str; 2] = [".state.current.d", ".state.current.q"];
 
-/// Ticks that have one matrix.
+/// Ticks with the same matrix.
 #[derive(Debug, Clone, Copy)]
 struct Kind {
-    /// Number of the first of them.
+    /// Number of the first of these ticks.
     tick: u32,
     turns: Turns,
 }
@@ -34,7 +34,7 @@ struct Turns {
 pub(crate) struct Order {
     /// Cycles of the tasks in ticks, from 1 on: each is a whole number of the one before.
     pub(crate) every: Vec<u32>,
-    /// Kinds of the last ticks of the longest of these cycles, as many as there are in a period. Those of the shorter ones end by the kinds
+    /// Kinds of the last ticks of the longest of these cycles, as many as there are in a period. Shorter cycles end with the kinds
     /// 0, 1, ….
     pub(crate) ends: Vec<usize>,
 }
@@ -48,28 +48,28 @@ impl Order {
     }
 }
 
-/// Which loops are closed; the current loop always is.
+/// Closed loops; the current loop is always closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Closed {
     pub(crate) position: bool,
     pub(crate) velocity: bool,
-    /// Whether the shaft turns; a current loop by itself is looked at with the shaft held.
+    /// True if the shaft turns; a current loop by itself is analysed with the shaft held.
     pub(crate) shaft: bool,
 }
 
-/// The matrices of a loop that runs, and which of it is closed.
+/// The matrices of a running loop, with its closed loops and gains.
 pub(crate) struct Equations<'a> {
     model: &'a Loop,
     matrices: Matrices<'a>,
-    /// By tasks that are faster than a step of the position loop, from every tick on, and behind them those of the steps in a period.
+    /// Kinds of ticks: those of tasks faster than a step of the position loop, from every tick on, then those of the steps in a period.
     kinds: Vec<Kind>,
-    /// Ticks from step to step of the position loop: of what closes it, or of what interpolates between its cycles.
+    /// Ticks from step to step of the position loop, or of the interpolation between its cycles.
     step: u32,
     names: Vec<String>,
     closed: Closed,
     factors: Factors,
     scheduled: (f64, f64),
-    /// The loops of what was closed last: no gain changes what acts on what.
+    /// States of the loops for the last closed loops: gains do not change which states act on which.
     loops: Option<(Closed, Rc<Vec<Vec<usize>>>)>,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Equations<'a> {
         let mut faster = vec![1, current, velocity];
         faster.retain(|&every| every < step);
         faster.dedup();
-        // The drive goes from one velocity of a master to the next, so that each of its steps is another.
+        // The drive interpolates between the velocities of a master, so that each of its steps differs.
         let ticks: Vec<u32> = faster.into_iter().chain((1..=position / step).map(|number| number * step)).collect();
         let of = |&tick: &u32| Kind {
             tick,
@@ -105,7 +105,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// The matrix of a tick of this kind.
+    /// The matrix of a tick of kind `index`.
     pub(crate) fn matrix(&mut self, index: usize) -> Result<TickMatrix, StabilityError> {
         let kind = self.kinds[index].turns;
         let (closed, factors, one) = (self.closed, self.factors, Factors::ONE);
@@ -131,7 +131,7 @@ impl<'a> Equations<'a> {
             }
         }
         if !closed.shaft {
-            // Bodies that are held do not move, whatever acts on them.
+            // Bodies that are held do not move, no matter what acts on them.
             for (index, name) in self.names.iter().enumerate() {
                 if name.starts_with(MECHANICS) {
                     found.matrix.row_mut(index).fill(0.0);
@@ -144,12 +144,12 @@ impl<'a> Equations<'a> {
         Ok(found)
     }
 
-    /// The same loop with these loops closed and gains so much larger.
+    /// Sets the closed loops and the factors on the gains.
     pub(crate) const fn with(&mut self, closed: Closed, factors: Factors) {
         (self.closed, self.factors) = (closed, factors);
     }
 
-    /// The same loop with the gains of position and velocity loop by these factors of a gain schedule.
+    /// Sets the factors of a gain schedule on the gains of position and velocity loop.
     pub(crate) const fn schedule(&mut self, factors: (f64, f64)) {
         self.scheduled = factors;
     }
@@ -158,7 +158,7 @@ impl<'a> Equations<'a> {
         self.model
     }
 
-    /// The order of ticks in the period of the loops that are closed: one that is open does not lengthen it, since what is below it repeats
+    /// The order of ticks in the period of the closed loops: an open one does not lengthen it, because the loops below it repeat
     /// faster.
     pub(crate) fn order(&self) -> Order {
         let Closed { position, shaft, .. } = self.closed;
@@ -177,7 +177,7 @@ impl<'a> Equations<'a> {
         self.names.len()
     }
 
-    /// Which states are of the controllers.
+    /// True for states of the controllers.
     pub(crate) fn controllers(&self) -> Vec<bool> {
         self.names.iter().map(|name| name.starts_with(CONTROLLERS)).collect()
     }
@@ -201,7 +201,7 @@ impl<'a> Equations<'a> {
         self.names.iter().enumerate().filter(move |(_, name)| is_one(name)).map(|(index, _)| index)
     }
 
-    /// States of the loops, where they are known.
+    /// States of the loops, if they are known.
     pub(crate) fn known_loops(&self) -> Option<Rc<Vec<Vec<usize>>>> {
         self.loops.as_ref().filter(|(closed, _)| *closed == self.closed).map(|(_, loops)| Rc::clone(loops))
     }
@@ -215,8 +215,8 @@ impl<'a> Equations<'a> {
         self.model.drive.base_rate.period()
     }
 
-    /// Whether there is one pole at 1 within the current loop, because physics wants it: without viscous friction and without a
-    /// velocity loop the axis keeps any constant speed, since the integrators hold the current at its reference whatever the
+    /// True if there is one pole at 1 within the current loop for physical reasons: without viscous friction and without a
+    /// velocity loop the axis keeps any constant speed, because the integrators hold the current at its reference at any
     /// back-EMF. A current that is held over several ticks while the rotor turns is not quite at its reference.
     pub(crate) fn turns_freely(&self) -> bool {
         let (closed, model) = (self.closed, self.model);

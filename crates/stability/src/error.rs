@@ -1,8 +1,8 @@
-//! Why a loop could not be analysed.
+//! Errors of the analysis of a loop.
 use servobench_base::ParamError;
 use thiserror::Error;
 
-/// Why a loop could not be analysed.
+/// Reasons why a loop could not be analysed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StabilityError {
     /// A parameter is out of its bound.
@@ -11,13 +11,13 @@ pub enum StabilityError {
     /// A parameter of the drive is out of its bound.
     #[error(transparent)]
     Drive(#[from] servobench_drive::ParameterError),
-    /// The loop that runs has no matrices.
+    /// The running loop has no matrices.
     #[error(transparent)]
     Linear(#[from] servobench_linear::LinearError),
-    /// The source of effort is not one that the drive's output is for.
+    /// The source of effort does not suit the drive's output.
     #[error("a current loop is for a synchronous motor, a direct output for an ideal source")]
     SourceDoesNotFit,
-    /// The numbers of one period of the loop exceed what can be computed with.
+    /// The numbers of one period of the loop overflow.
     #[error(
         "the poles of the loop cannot be computed: over the common period of its loops ({ticks} base ticks) it grows beyond 1e150"
     )]
@@ -30,7 +30,7 @@ pub enum StabilityError {
         "the poles of the loop cannot be computed: the QR iteration did not converge after {iterations} iterations for one of them"
     )]
     NotConverged {
-        /// How many were granted.
+        /// Allowed number of iterations.
         iterations: u32,
     },
 }

@@ -1,14 +1,14 @@
-//! The sampled linear loop of a servo axis: its poles, the name of the loop that is unstable, and the gains at the boundary.
+//! The sampled linear loop of a servo axis: its poles, the loop that is unstable, and the gains at the boundary.
 //!
-//! [`Loop`] says what the axis and its drive are. [`analyse`] takes the matrices of its ticks from the loop that runs
-//! ([`servobench_linear`]): all rates, delays, filters and the current loop in both axes are in them. The product over the
-//! common period of all loops is taken around once; its eigenvalues are the poles.
+//! [`Loop`] describes the axis and its drive. [`analyse`] takes the matrices of its ticks from the running loop
+//! ([`servobench_linear`]), which include all rates, delays, filters and the current loop in both axes. The product over the
+//! common period of all loops is formed once; its eigenvalues are the poles.
 //!
 //! ```text
 //! x(t+1) = C_t·P·x(t)                P the mechanics, C_t the loops that are due at tick t, and the power stage
 //! M = (C_0·P)·(C_{N−1}·P)⋯(C_1·P)    the loop is unstable: |λ(M)| > 1
 //! ```
-//! [`analyse_schedule`] does the same with the gains of a gain schedule.
+//! [`analyse_schedule`] repeats the analysis with the gains of a gain schedule.
 //!
 //! Friction, saturation and quantisation are not in it: [`LEFT_OUT`].
 //! Source: Bittanti & Colaneri, *Periodic Systems*, 2009, ch. 3 (monodromy matrix of a multirate loop).

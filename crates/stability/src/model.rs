@@ -1,45 +1,45 @@
-//! What is analysed: an axis, the drive that closes its loops, and where it is operated.
+//! Subject of the analysis: an axis, the drive that closes its loops, and the operating point.
 use crate::StabilityError;
 use servobench_base::{Coordinate, Divider, Dq, finite, positive};
 use servobench_drive as drive;
 use servobench_drive::current::Tuning;
 use servobench_plant::{Body, Chain, LinearMechanics, pmsm};
 
-/// What the analysis leaves out, in a sentence.
+/// Parts left out of the analysis, in a sentence.
 pub const LEFT_OUT: &str = "the analysis is of the linear loop at standstill: dry friction, saturation (current, voltage, \
                             effort) and quantisation are not in it";
 
 /// An axis with its drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loop {
-    /// The drive: gains, rates and what it believes of the axis. Its limits and its feedforward are outside of the loop.
+    /// The drive: gains, rates and its estimate of the axis. Its limits and its feedforward are outside of the loop.
     pub drive: drive::Params,
-    /// Whether the drive closes a position loop.
+    /// True if the drive closes a position loop.
     pub closes_position: bool,
     /// Cycle of the master that closes a position loop over a bus, in its place.
     pub master_cycle: Option<Divider>,
-    /// Where the drive has the motor's velocity from.
+    /// Source of the drive's motor velocity.
     pub velocity_signal: VelocitySignal,
-    /// Which position closes the position loop.
+    /// Position that closes the position loop.
     pub position_feedback: PositionFeedback,
-    /// What the gains of the current loop follow from, which is how reports call them; `None` without one.
+    /// Parameters from which the gains of the current loop follow, after which reports name them; `None` without one.
     pub current_tuning: Option<Tuning>,
-    /// What turns the drive's command into effort.
+    /// Conversion of the drive's command into effort.
     pub source: Source,
-    /// What the motor moves.
+    /// Mechanics driven by the motor.
     pub mechanics: Mechanics,
     /// Current along the d axis at rest (A, peak).
     pub d_current: f64,
 }
 
-/// What the motor moves.
+/// Mechanics driven by the motor.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mechanics {
     /// Bodies in a row.
     Bodies(Chain),
     /// A user's own model.
     Model {
-        /// How the motor moves.
+        /// Coordinate of the motor.
         coordinate: Coordinate,
         /// Axis coordinate per motor coordinate.
         transmission: f64,
@@ -55,7 +55,7 @@ impl From<Chain> for Mechanics {
 }
 
 impl Mechanics {
-    /// How the motor moves.
+    /// Coordinate of the motor.
     #[must_use]
     pub fn coordinate(&self) -> Coordinate {
         match self {
@@ -84,7 +84,7 @@ impl Mechanics {
         }
     }
 
-    /// True where no viscous friction ends a motion.
+    /// True without viscous friction that would end a motion.
     pub(crate) fn is_free(&self) -> bool {
         match self {
             Self::Bodies(chain) => chain.bodies().iter().all(|body| body.friction.linear() == 0.0),
@@ -92,7 +92,7 @@ impl Mechanics {
         }
     }
 
-    /// How far off numbers of a tick can be, as a share of the largest one, beside their roundings.
+    /// Uncertainty of the numbers of a tick, relative to the largest one, besides their roundings.
     pub(crate) const fn uncertainty(&self) -> f64 {
         match self {
             Self::Bodies(_) => 0.0,
@@ -100,7 +100,7 @@ impl Mechanics {
         }
     }
 
-    /// Shares of the squares of velocities in the kinetic energy, from the motor's on; of a model the motor's alone is known.
+    /// Shares of the squares of velocities in the kinetic energy, beginning with the motor; for a user's model only the motor's is known.
     pub(crate) fn energies(&self) -> Vec<f64> {
         match self {
             Self::Bodies(chain) => {
@@ -111,30 +111,30 @@ impl Mechanics {
     }
 }
 
-/// Where the drive has the motor's velocity from.
+/// Source of the drive's motor velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VelocitySignal {
-    /// An ideal encoder gives it.
+    /// Velocity of an ideal encoder.
     Encoder,
     /// Differences of positions over the period of the velocity loop.
     Differences,
 }
 
-/// Which position closes the position loop.
+/// Position that closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PositionFeedback {
-    /// The motor's.
+    /// Position of the motor.
     Motor,
-    /// The load's: the last body.
+    /// Position of the load: the last body.
     Load,
 }
 
-/// What turns the drive's command into effort. It must be the kind of the drive's [`Stage`](drive::Stage).
+/// Conversion of the drive's command into effort. It must match the kind of the drive's [`Stage`](drive::Stage).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
     /// A synchronous motor on an inverter, under the drive's current loop.
     Pmsm(pmsm::Params),
-    /// An ideal source: so much effort (N or N·m) per unit of output.
+    /// An ideal source: effort (N or N·m) per unit of output.
     Ideal {
         /// Effort per unit of output.
         gain: f64,
@@ -158,17 +158,17 @@ impl Loop {
         }
     }
 
-    /// Whether a position loop is closed, by the drive or by a master.
+    /// True if a position loop is closed, by the drive or by a master.
     pub(crate) fn has_position_loop(&self) -> bool {
         self.master_cycle.is_some() || (self.closes_position && self.drive.position_gain > 0.0)
     }
 
-    /// Whether all current gains, those of both axes by the same factor, are one number in the scenario.
+    /// True if all current gains, scaled by the same factor in both axes, are one number in the scenario.
     pub(crate) const fn has_bandwidth(&self) -> bool {
         !matches!(self.current_tuning, Some(Tuning::Gains(_)))
     }
 
-    /// Effort that the source gives per effort that the drive asks for, at rest.
+    /// Effort of the source per effort requested by the drive, at rest.
     pub(crate) fn effort_ratio(&self) -> f64 {
         match (&self.source, &self.drive.stage) {
             (Source::Pmsm(motor), drive::Stage::Current { params, .. }) => {

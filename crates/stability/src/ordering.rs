@@ -1,12 +1,12 @@
-//! Bandwidths of the loops as the axis has them, and whether each loop is slower than the one below it.
+//! Bandwidths of the loops with the true parameters of the axis, and loops that are faster than the one below.
 use crate::model::{Loop, PositionFeedback, Source};
 use crate::report::{LoopName, Warning};
 use servobench_drive::Stage;
 use std::f64::consts::TAU;
 
 impl Loop {
-    /// Frequency at which the open loop, everything below it ideal, has the gain 1 (Hz): K_v/2π, k_p/(2π·J) and k_p/(2π·L) with
-    /// the gain and the inertia that the axis has, whatever the drive believes; `None` for a loop that there is not.
+    /// Frequency at which the open loop, with everything below it ideal, has the gain 1 (Hz): K_v/2π, k_p/(2π·J) and k_p/(2π·L) with
+    /// the true gain and inertia of the axis, not the drive's estimates; `None` without this loop.
     pub(crate) fn bandwidth(&self, name: LoopName) -> Option<f64> {
         let p = &self.drive;
         let omega = match name {
@@ -24,7 +24,7 @@ impl Loop {
         (omega > 0.0).then_some(omega / TAU)
     }
 
-    /// A cascade works because each loop sees the one below it as done already.
+    /// Loops that are faster than the one below: a cascade relies on each loop seeing the one below it as settled.
     pub(crate) fn warnings(&self) -> Vec<Warning> {
         [(LoopName::Position, LoopName::Velocity), (LoopName::Velocity, LoopName::Current)]
             .into_iter()

@@ -1,7 +1,7 @@
-//! The common period of all loops: the matrices of its ticks, their product, and vectors on their way through it.
+//! The common period of all loops: the matrices of its ticks, their product, and the propagation of vectors through it.
 //!
-//! The product is taken around once from the tick at which all loops turn, after they have: there every signal of a
-//! controller is fresh, so that a loop is in it as a ring through a controller's state (`structure`).
+//! The product begins after the tick at which all loops are due: there every signal of a
+//! controller is fresh, so that a loop appears in it as a ring through a controller's state (`structure`).
 use crate::equations::{Equations, Order};
 use crate::error::StabilityError;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -17,9 +17,9 @@ pub(crate) type ComplexVector = DVector<Complex<f64>>;
 pub(crate) struct Period {
     /// The matrix of a tick of each level.
     kinds: Vec<TickMatrix>,
-    /// Index into `kinds` of each tick of the period, the one at which all loops turn last.
+    /// Index into `kinds` of each tick of the period; the tick at which all loops are due is the last.
     ticks: Vec<usize>,
-    /// The product of all.
+    /// The product of all tick matrices.
     pub(crate) monodromy: DMatrix<f64>,
     /// States of each loop.
     pub(crate) loops: Rc<Vec<Vec<usize>>>,
@@ -27,7 +27,7 @@ pub(crate) struct Period {
     pub(crate) h: f64,
 }
 
-/// `matrix` to the power of `exponent`; `None` for 1.
+/// `matrix` to the power of `exponent`; `None` for the exponent 0.
 fn power<T: Clone>(matrix: &T, mut exponent: u32, after: impl Fn(&T, &T) -> T) -> Option<T> {
     let (mut power, mut square) = (None, matrix.clone());
     while exponent > 0 {
@@ -42,10 +42,10 @@ fn power<T: Clone>(matrix: &T, mut exponent: u32, after: impl Fn(&T, &T) -> T) -
     power
 }
 
-/// The product over a period of what is there for each kind of ticks.
+/// The product over a period, of values given for each kind of tick.
 fn product<T: Clone>(of: impl Fn(usize) -> T, order: &Order, after: impl Fn(&T, &T) -> T + Copy) -> T {
     let Order { every, ends } = order;
-    // Over a cycle, by the kind of its last tick: as many cycles of the task below, the others of which end by a tick of that.
+    // Over a cycle, by the kind of its last tick: as many cycles of the task below, all but the last of which end with a tick of that task.
     let mut below: Vec<T> = (1..every.len()).map(|kind| of(kind - 1)).collect();
     let mut ends: Vec<T> = ends.iter().map(|&kind| of(kind)).collect();
     for level in 1..every.len() {
@@ -60,17 +60,17 @@ fn product<T: Clone>(of: impl Fn(usize) -> T, order: &Order, after: impl Fn(&T, 
 }
 
 impl Period {
-    /// Of the loops that `equations` close.
+    /// The period of the loops that `equations` close.
     ///
     /// # Errors
-    /// [`StabilityError`] when the loop does not run, [`StabilityError::Overflow`] when the product is beyond what can be computed with.
+    /// [`StabilityError`] if the loop does not run, [`StabilityError::Overflow`] if the product overflows.
     pub(crate) fn new(equations: &mut Equations) -> Result<Self, StabilityError> {
         let order = equations.order();
         let used = order.ends.iter().max().map_or(0, |last| last + 1);
         let kinds: Vec<TickMatrix> = (0..used).map(|kind| equations.matrix(kind)).collect::<Result<_, _>>()?;
         let ticks = order.ticks();
         let monodromy = product(|kind| kinds[kind].matrix.clone(), &order, |last, first| last * first);
-        // NaN, too.
+        // NaN is caught, too.
         if !monodromy.iter().all(|entry| entry.abs() < LARGEST) {
             return Err(StabilityError::Overflow { ticks: ticks.len() });
         }
@@ -92,7 +92,7 @@ impl Period {
         self.ticks.iter().map(|&kind| &self.kinds[kind].matrix)
     }
 
-    /// What the entries of these matrices are sums of.
+    /// Magnitudes of the terms whose sums are the entries of these matrices.
     pub(crate) fn magnitudes(&self) -> impl Iterator<Item = &DMatrix<f64>> {
         let of = |&kind: &usize| {
             let tick = &self.kinds[kind];
@@ -111,7 +111,7 @@ impl Period {
         states
     }
 
-    /// What a row vector (here as a column) is before each tick and after the last: `y_j = A_jᵀ·y_{j+1}`.
+    /// The row vector `row` (here as a column) before each tick and after the last: `y_j = A_jᵀ·y_{j+1}`.
     pub(crate) fn backward(&self, row: ComplexVector) -> Vec<ComplexVector> {
         let mut rows = vec![row];
         for matrix in self.matrices().rev() {

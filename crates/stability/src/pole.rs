@@ -1,14 +1,14 @@
-//! A pole in continuous time: growth and frequency, as the base ticks show them.
+//! A pole in continuous time: growth and frequency, derived from the base ticks.
 //!
-//! Over a period of N ticks λ tells the growth ln|λ|/(N·h), but the angle only up to whole turns: under a loop of 4 kHz a mode at
-//! 2.65 kHz looks like one at 1.35 kHz. The eigenvector knows more. On its way from tick to tick, p_k, growth taken out, it turns by
+//! Over a period of N ticks λ gives the growth ln|λ|/(N·h), but the angle only up to whole turns: with a loop of 4 kHz a mode at
+//! 2.65 kHz looks like one at 1.35 kHz. The eigenvector resolves this. From tick to tick, p_k, with the growth removed, it turns by
 //!
 //! ```text
 //! φ = arg Σ_k ⟨p_k, p_{k+1}⟩                      of a pair of poles
 //! cos φ = Σ_k ⟨p_k, p_{k+1}⟩ / Σ_k |p_k|²         of a real pole, whose eigenvector swings without turning
 //! ```
-//! a tick, on average, and the branch of arg λ is the one that is nearest to N·φ. ⟨ ⟩ is the kinetic energy, or where nothing moves
-//! the currents. What is above half the base rate is folded there: the run itself cannot tell.
+//! per tick on average, and the branch of arg λ is the one nearest to N·φ. ⟨ ⟩ is the kinetic energy, or if nothing moves
+//! the currents. Frequencies above half the base rate are folded there: the run itself cannot resolve them.
 use crate::eigen::Eigenvalue;
 use crate::equations::Equations;
 use crate::period::{ComplexVector, Period};
@@ -22,17 +22,17 @@ pub struct Pole {
     pub magnitude: f64,
     /// The common period (s).
     pub period: f64,
-    /// Growth (1/s): ln|λ|/period; negative where it decays.
+    /// Growth (1/s): ln|λ|/period; negative if it decays.
     pub growth: f64,
     /// Frequency (Hz).
     pub frequency: f64,
 }
 
 impl Pole {
-    /// A pair of poles with less damping than this, 1/√2, has a peak of resonance: its oscillation can be seen.
+    /// A pair of poles with less damping than this, 1/√2, has a resonance peak: its oscillation is visible.
     pub const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-    /// Damping ratio, of a second-order system with this growth and frequency; negative where it grows.
+    /// Damping ratio of a second-order system with this growth and frequency; negative if it grows.
     #[must_use]
     pub fn damping(&self) -> f64 {
         let omega = TAU * self.frequency;
@@ -40,7 +40,7 @@ impl Pole {
         if natural == 0.0 { 0.0 } else { -self.growth / natural }
     }
 
-    /// True where its oscillation can be seen.
+    /// True if its oscillation is visible.
     #[must_use]
     pub fn oscillates(&self) -> bool {
         self.damping() < Self::RESONANT
@@ -55,7 +55,7 @@ impl Pole {
     }
 }
 
-/// The angle of `value` on the branch that is nearest to `turn`.
+/// The angle of `value` on the branch nearest to `turn`.
 fn nearest_branch(value: Complex<f64>, turn: f64) -> f64 {
     value.arg() + TAU * ((turn - value.arg()) / TAU).round()
 }
@@ -79,7 +79,7 @@ fn turn_per_tick(equations: &Equations, eigenvalue: &Eigenvalue) -> f64 {
     if eigenvalue.value.im == 0.0 { (turned.re / energy).clamp(-1.0, 1.0).acos() } else { turned.arg() }
 }
 
-/// Inertia of each velocity, or 1 for each current where no body moves.
+/// Inertia of each velocity, or 1 for each current if no body moves.
 fn weights(equations: &Equations, states: &[ComplexVector]) -> Vec<f64> {
     let mut weights = vec![0.0; equations.states()];
     for (index, share) in equations.velocities().zip(equations.model().mechanics.energies()) {

@@ -1,8 +1,9 @@
 //! Eigenvalues of a matrix without its eigenvectors, by the QR algorithm with double shifts.
 //!
-//! The matrix is brought to Hessenberg form by elimination with pivots; steps of Francis then let its lower diagonal fade, and where an
-//! entry of that has gone, one or two eigenvalues split off. Vectors, which cost more than half of it, are for those that are refined.
-//! Two real shifts are both the one nearer to the corner: with two different ones the Jordan chains that delays make at 0 do not split off.
+//! The matrix is reduced to Hessenberg form by elimination with pivots; Francis steps then let its subdiagonal decay, and where one of its
+//! entries vanishes, one or two eigenvalues split off. Vectors, which cost more than half of the time, are only computed for refinement.
+//! If both shifts are real, the one nearer to the corner is used twice: with two different ones the Jordan chains of delays at 0 do not
+//! split off.
 //! Sources: Wilkinson & Reinsch, *Handbook for Automatic Computation* II, 1971, contributions II/13 (elmhes) and II/14 (hqr); shifts as in
 //! LAPACK 3.12, dlahqr.
 use nalgebra::{Complex, DMatrix};
@@ -10,12 +11,12 @@ use nalgebra::{Complex, DMatrix};
 /// A row of the matrix.
 type Row = Vec<f64>;
 
-/// Every so many iterations an exceptional shift, which is not an estimate of an eigenvalue, breaks a cycle.
+/// Number of iterations after which an exceptional shift, which is not an estimate of an eigenvalue, breaks a cycle.
 const EXCEPTIONAL: u32 = 10;
-/// Iterations granted to each eigenvalue. Delays make long Jordan chains at 0, which took up to 70.
+/// Iterations allowed for each eigenvalue. Delays make long Jordan chains at 0, which took up to 70.
 pub(crate) const ITERATIONS: u32 = 300;
 
-/// The eigenvalues of `a`, which should be balanced; `None` where one does not come within [`ITERATIONS`].
+/// The eigenvalues of `matrix`, which should be balanced; `None` if one does not converge within [`ITERATIONS`].
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let mut rows: Vec<Row> = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
     let a = rows.as_mut_slice();
@@ -99,7 +100,7 @@ fn reduce(a: &mut [Row]) {
     }
 }
 
-/// Where the block begins that ends with `last`: the entry below the diagonal before it has faded, and is taken to be 0.
+/// Start of the block that ends with `last`: the subdiagonal entry before it is negligible, and is taken to be 0.
 fn split(a: &[Row], last: usize, scale: f64) -> usize {
     let has_faded = |i: &usize| {
         let beside = a[i - 1][i - 1].abs() + a[*i][*i].abs();
@@ -116,15 +117,15 @@ fn pair([a, d]: [f64; 2], product: f64) -> [Complex<f64>; 2] {
     if square < 0.0 {
         return [1.0, -1.0].map(|sign| Complex::new(d + half, sign * root));
     }
-    // Without the difference of two nearly equal numbers.
+    // Avoids the difference of two nearly equal numbers.
     let larger = half + root.copysign(half);
     let smaller = if larger == 0.0 { 0.0 } else { -product / larger };
     [larger, smaller].map(|part| Complex::new(d + part, 0.0))
 }
 
-/// A step of Francis on the rows `from` to `last`, with these two shifts' sum and product.
+/// A Francis step on the rows `from` to `last`, with the sum and product of two shifts.
 fn sweep(a: &mut [Row], from: usize, last: usize, [x, y, w]: [f64; 3]) {
-    // Where two small entries below the diagonal follow each other, it can begin there.
+    // The step can begin where two small subdiagonal entries follow each other.
     let first_column = |a: &[Row], m: usize| {
         let z = a[m][m];
         let (r, s) = (x - z, y - z);
@@ -204,13 +205,13 @@ fn sweep(a: &mut [Row], from: usize, last: usize, [x, y, w]: [f64; 3]) {
 mod tests {
     use super::*;
 
-    /// Those of `matrix`, the largest first.
+    /// The eigenvalues `all`, the largest first.
     fn sorted(mut all: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
         all.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
         all
     }
 
-    /// Oracle: the roots that the companion matrix was made of, as a product of their linear factors.
+    /// Oracle: the roots from which the companion matrix was made, as a product of their linear factors.
     #[test]
     fn roots_of_a_polynomial_are_found() {
         let roots = [
@@ -271,7 +272,8 @@ mod tests {
         }
     }
 
-    /// Delays: Jordan chains of four and six at 0 beside four eigenvalues of a loop. With two different real shifts 4 of 300 did not converge.
+    /// Delays: Jordan chains of four and six at 0 beside four eigenvalues of a loop. With two different real shifts 4 of 300
+    /// did not converge.
     #[test]
     fn chains_of_delays_split_off() {
         let mut random = random();
@@ -291,7 +293,7 @@ mod tests {
         }
     }
 
-    /// A matrix that turns in a circle needs a shift that is no estimate.
+    /// A matrix that permutes in a cycle needs a shift that is not an estimate.
     #[test]
     fn a_permutation_ends() {
         let n = 8;

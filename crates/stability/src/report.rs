@@ -1,4 +1,4 @@
-//! What an analysis says.
+//! Results of an analysis.
 use crate::pole::Pole;
 use servobench_base::Dq;
 use servobench_linear::Factors;
@@ -7,7 +7,7 @@ use std::fmt::{self, Display, Formatter};
 /// A loop of the cascade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LoopName {
-    /// The current loop, which follows the effort that the velocity loop asks for.
+    /// The current loop, which follows the effort requested by the velocity loop.
     Current,
     /// The velocity loop.
     Velocity,
@@ -33,60 +33,60 @@ pub enum GainName {
 /// A gain at which the loop changes from stable to unstable or back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Boundary {
-    /// By the gain as it is.
+    /// Factor on the present gain.
     pub factor: f64,
-    /// The gain, in the unit of the gain as it is.
+    /// The gain, in the unit of the present gain.
     pub gain: f64,
 }
 
-/// The nearest changes of the verdict, all other gains as they are; integral times stay. `None`: none within a factor of 1000.
+/// The nearest changes of the verdict, with all other gains unchanged; integral times stay. `None`: none within a factor of 1000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Boundaries {
     /// Downwards.
     pub below: Option<Boundary>,
     /// Upwards.
     pub above: Option<Boundary>,
-    /// Whether the loops around this one are open for it: with them no gain made it stable.
+    /// True if the loops around this one are open for it, because with them no gain made it stable.
     pub alone: bool,
 }
 
-/// A loop, as its poles show it.
+/// A loop with its poles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopReport {
-    /// Which.
+    /// Name of the loop.
     pub name: LoopName,
-    /// Its gain; that of the q axis where each has its own.
+    /// Its gain; that of the q axis if each axis has its own.
     pub gain_name: GainName,
-    /// Its value.
+    /// Value of the gain.
     pub gain: f64,
     /// Unit of the value.
     pub unit: &'static str,
-    /// Frequency at which it has the gain 1 with everything below it ideal (Hz), by the inertia and the motor that the axis has;
+    /// Frequency at which it has the gain 1 with everything below it ideal (Hz), with the true inertia and motor of the axis;
     /// `None` with a gain of 0.
     pub bandwidth: Option<f64>,
-    /// Where the whole loop changes its verdict; `None` where it was not asked for, or the gain is 0.
+    /// Boundaries of the whole loop; `None` if not requested, or the gain is 0.
     pub boundaries: Option<Boundaries>,
-    /// The pole with the least damping while the loops around it are open (current loop: the shaft held); `None` where it was
-    /// not asked for, or the gain is 0.
+    /// The pole with the least damping while the loops around it are open (current loop: the shaft held); `None` if
+    /// not requested, or the gain is 0.
     pub least_damped: Option<Pole>,
 }
 
-/// Why the loop is unstable.
+/// The reason why the loop is unstable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instability {
-    /// The loop that makes it so: closed from the inside, the first that is unstable.
+    /// The loop that causes it: closed from the inside, the first that is unstable.
     pub name: LoopName,
-    /// Its gain.
+    /// Gain of that loop.
     pub gain_name: GainName,
-    /// Its value.
+    /// Value of the gain.
     pub gain: f64,
     /// Unit of the value.
     pub unit: &'static str,
     /// The largest pole of the whole loop.
     pub pole: Pole,
-    /// Where the verdict changes.
+    /// Gains at which the verdict changes.
     pub boundaries: Boundaries,
-    /// Speed of the motor, and its unit, at which the drive's gain schedule has this gain; `None` at standstill.
+    /// Speed of the motor, with its unit, at which the drive's gain schedule has this gain; `None` at standstill.
     pub speed: Option<(f64, &'static str)>,
 }
 
@@ -103,32 +103,32 @@ pub struct Warning {
     pub inner_bandwidth: f64,
 }
 
-/// The poles of a loop that fade last.
+/// The poles of a loop that decay last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slowest {
-    /// Of those that oscillate, with a damping ratio below [`Pole::RESONANT`].
+    /// The last of those that oscillate, with a damping ratio below [`Pole::RESONANT`].
     pub oscillating: Option<Pole>,
-    /// Of the real positive ones, which do not oscillate.
+    /// The last of the real positive ones, which do not oscillate.
     pub real: Option<Pole>,
 }
 
-/// What an analysis says.
+/// Result of an analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Why the loop is unstable; `None`: no pole is outside of the unit circle.
+    /// The reason why the loop is unstable; `None`: no pole is outside of the unit circle.
     pub instability: Option<Instability>,
-    /// The largest pole: the one that grows fastest or, in a stable loop, fades last. `None` where nothing is closed.
+    /// The largest pole: the one that grows fastest or, in a stable loop, decays last. `None` if no loop is closed.
     pub largest: Option<Pole>,
-    /// The poles that fade last.
+    /// The poles that decay last.
     pub slowest: Slowest,
-    /// Current, velocity and position loop, those that there are.
+    /// Current, velocity and position loop, as far as they exist.
     pub loops: Vec<LoopReport>,
-    /// What is set in an order in which cascades do not work.
+    /// Loops whose bandwidths are in an order in which cascades do not work.
     pub warnings: Vec<Warning>,
 }
 
 impl Report {
-    /// Whether no pole is outside of the unit circle.
+    /// True if no pole is outside of the unit circle.
     #[must_use]
     pub const fn is_stable(&self) -> bool {
         self.instability.is_none()
@@ -136,7 +136,7 @@ impl Report {
 }
 
 impl Boundaries {
-    /// Whether there is none in either direction.
+    /// True without a boundary in either direction.
     #[must_use]
     pub const fn is_none(&self) -> bool {
         self.below.is_none() && self.above.is_none()
@@ -144,7 +144,7 @@ impl Boundaries {
 }
 
 impl GainName {
-    /// This gain by `factor`, the others as they are.
+    /// Factors that scale this gain by `factor`, and leave the others unchanged.
     pub(crate) const fn factors(self, factor: f64) -> Factors {
         let one = Factors::ONE;
         match self {
@@ -235,7 +235,7 @@ impl Display for Rounded {
     }
 }
 
-/// A magnitude of at least 1, so that what it exceeds 1 by is seen.
+/// A magnitude of at least 1, with enough digits to show by how much it exceeds 1.
 struct Magnitude(f64);
 
 impl Display for Magnitude {

@@ -1,8 +1,8 @@
-//! Gains over speed: the loop with the gains of every speed of the drive's schedule, as if they stayed.
+//! Gains over speed: the loop with the gains at every speed of the drive's schedule, as if they were constant.
 //!
-//! The speeds are looked at where no gain changes by more than [`RATIO`] from one to the next. A run of neighbours that are unstable is
-//! a range of speeds. Whether it counts is a matter of how long the set-point stays in it: in a shorter time than a period of the
-//! pole nothing has gone there and back. Frozen at its fastest, a pole says nothing of gains that change as fast as it swings.
+//! Speeds are sampled so that no gain changes by more than [`RATIO`] from one to the next. A run of unstable neighbours is
+//! a range of speeds. It counts if the set-point stays in it long enough: in less time than a period of the
+//! pole no oscillation builds up. Frozen at its fastest, a pole does not describe gains that change as fast as it oscillates.
 use crate::analyse::Analysis;
 use crate::error::StabilityError;
 use crate::model::Loop;
@@ -12,11 +12,11 @@ use servobench_drive::schedule;
 use servobench_linear::Running;
 use std::ops::Range;
 
-/// Gains at most that far apart (5 %) from one speed to the next: margins of a loop change by less than 0.5 dB.
+/// Largest ratio of gains (5 %) from one speed to the next: margins of a loop change by less than 0.5 dB.
 const RATIO: f64 = 1.05;
-/// Speeds at least, that of standstill apart.
+/// Fewest speeds, without standstill.
 const FEWEST: usize = 8;
-/// Speeds at most for each of both gains: those that change by more than a factor of 500 are looked at in coarser steps.
+/// Most speeds for each of both gains: gains that change by more than a factor of 500 are sampled in coarser steps.
 const MOST: usize = 128;
 
 /// A speed, the gains there, and their fastest growing pole.
@@ -26,9 +26,9 @@ struct At {
     pole: Option<Pole>,
 }
 
-/// Why the loop is unstable at a speed at which the set-point stays for longer than a period of the pole. `stays` is told a range of
-/// speeds (rad/s or m/s, of the motor) and gives the longest time for which the set-point is within it (s). Standstill is not looked
-/// at: [`analyse`](crate::analyse) does.
+/// The reason why the loop is unstable at a speed at which the set-point stays for longer than a period of the pole. `stays` gives,
+/// for a range of speeds (rad/s or m/s, of the motor), the longest time for which the set-point is within it (s). Standstill is
+/// covered by [`analyse`](crate::analyse).
 ///
 /// # Errors
 /// [`StabilityError`], as of [`analyse`](crate::analyse).
@@ -63,12 +63,12 @@ pub fn analyse_schedule<'a>(
     analysis.instability_at(*factors, *speed, *pole).map(Some)
 }
 
-/// A period of `pole` (s), which grows; of one that does not swing, the time in which it grows by e.
+/// A period of `pole` (s), which grows; without oscillation the time in which it grows by e.
 fn period(pole: Pole) -> f64 {
     if pole.frequency > 0.0 { 1.0 / pole.frequency } else { 1.0 / pole.growth }
 }
 
-/// Runs of neighbours that are unstable.
+/// Runs of unstable neighbours.
 fn ranges(speeds: &[At]) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for (index, _) in speeds.iter().enumerate().filter(|(_, at)| at.pole.is_some()) {
@@ -80,7 +80,7 @@ fn ranges(speeds: &[At]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Half-way between the speed `index` and the one before; 0 below the first, without an end above the last.
+/// Midpoint between the speed `index` and the one before; the first speed below it, infinity above the last.
 fn edge(speeds: &[At], index: usize) -> f64 {
     match (index.checked_sub(1).map(|before| speeds[before].speed), speeds.get(index)) {
         (Some(before), Some(at)) => f64::midpoint(before, at.speed),
@@ -89,7 +89,7 @@ fn edge(speeds: &[At], index: usize) -> f64 {
     }
 }
 
-/// Shares of the way from the first gains to the last, at which neither gain differs by more than [`RATIO`] from the one before; 0 apart.
+/// Shares of the range of gains, without 0, at which neither gain differs by more than [`RATIO`] from the one before.
 fn shares(schedule: &schedule::Params) -> Vec<f64> {
     let mut shares: Vec<f64> = [schedule.position, schedule.velocity].into_iter().flat_map(of_factor).collect();
     shares.sort_by(f64::total_cmp);
@@ -97,7 +97,7 @@ fn shares(schedule: &schedule::Params) -> Vec<f64> {
     shares
 }
 
-/// Those of a gain that becomes `factor` times as large: 1 + s·(f − 1) = f^u, with u in equal steps.
+/// Shares for a gain that becomes `factor` times as large: 1 + s·(f − 1) = f^u, with u in equal steps.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
 fn of_factor(factor: f64) -> Vec<f64> {
     let steps = ((factor.ln().abs() / RATIO.ln()).ceil() as usize).clamp(FEWEST, MOST);
