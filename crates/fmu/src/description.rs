@@ -118,7 +118,7 @@ fn variable(at: u32, row: &Row, units: &mut Vec<Unit>) -> Result<Variable, NoUni
     })
 }
 
-/// The position of `unit` in `units`, to which it is added when it is not there.
+/// The position of `unit` in `units`, to which it is added if it is missing.
 fn position(units: &mut Vec<Unit>, unit: Unit) -> usize {
     units.iter().position(|one| *one == unit).unwrap_or_else(|| {
         units.push(unit);
@@ -126,7 +126,7 @@ fn position(units: &mut Vec<Unit>, unit: Unit) -> usize {
     })
 }
 
-/// The enumerations that variables are of.
+/// The enumerations used by variables.
 fn enumerations(model: &Model) -> Vec<Enumeration> {
     let is_used = |choice: &Choice| model.variables.iter().any(|row| row.kind == Kind::Enumeration(*choice));
     let item = |(value, (name, description)): (i64, (&str, &str))| Item {
@@ -139,7 +139,7 @@ fn enumerations(model: &Model) -> Vec<Enumeration> {
         .collect()
 }
 
-/// Outputs are what a step leaves, and follow no input without one; at the beginning they follow from the parameters.
+/// Outputs are the result of a step, and follow no input directly; at the beginning they depend on the parameters.
 fn structure(model: &Model) -> ModelStructure {
     let with_role = |is: fn(&Role) -> bool| {
         let all = model.variables.iter().enumerate();

@@ -1,26 +1,26 @@
-//! Why an FMU cannot be written, or a call of the standard is refused.
+//! Errors while writing an FMU, and reasons for refusing a call of the standard.
 use servobench_sim::BuildError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why an FMU cannot be made of a scenario.
+/// Reasons why a scenario cannot become an FMU.
 #[derive(Debug, Error)]
 pub enum FmuError {
-    /// The loop cannot be built; with the mechanics of the engine `exact`, which is the one inside.
+    /// The loop cannot be built with the mechanics of the engine `exact`, which the FMU contains.
     #[error("`{scenario}` cannot be built on the engine `exact`, which is the one in an FMU: {error}")]
     Build {
         /// Name of the scenario.
         scenario: String,
-        /// Why.
+        /// Error of the construction.
         error: BuildError,
     },
-    /// The scenario has no drive that could be a part.
+    /// The scenario has no drive to export.
     #[error("`{scenario}` has no drive: `--part axis` or `--part mechanics` can be exported")]
     NoDrive {
         /// Name of the scenario.
         scenario: String,
     },
-    /// The drive's coordinate is not that of its mechanics.
+    /// The drive's coordinate is opposite to that of its mechanics.
     #[error(
         "the motor of `{scenario}` is mounted the other way round (`bus.units`), so that its torque alone has the wrong sign for the \
          mechanics: export `--part axis`"
@@ -37,29 +37,29 @@ pub enum FmuError {
         /// Name of the scenario.
         scenario: String,
     },
-    /// A table's path leads where an archive has no place for it.
+    /// The path of a table has no place in an archive.
     #[error("`{path}` cannot be packed: name the table by a path relative to the scenario's folder")]
     Path {
-        /// The path as the scenario has it.
+        /// The path as in the scenario.
         path: String,
     },
-    /// There is no library to put into an FMU.
+    /// The library to put into an FMU is missing.
     #[error(
         "there is no library to put into an FMU, neither at {looked}: build it with `cargo build --release -p servobench-fmu`"
     )]
     NoLibrary {
-        /// Where it was looked for.
+        /// Places that were searched.
         looked: String,
     },
     /// The library cannot be read.
     #[error("cannot read `{}`: {error}", path.display())]
     Read {
-        /// Where it is.
+        /// Path of the library.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         error: std::io::Error,
     },
-    /// The library is none for the platform of the FMU.
+    /// The library is not for the platform of the FMU.
     #[error("the library is none for Linux on x86-64 (ELF): build it with `cargo build --release -p servobench-fmu`")]
     Library,
     /// The archive cannot be written.
@@ -67,7 +67,7 @@ pub enum FmuError {
     Archive(String),
 }
 
-/// Why a call is refused.
+/// Reasons for refusing a call.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub(crate) enum Refusal {
     #[error("it is not allowed in {phase}: {allowed}")]
@@ -111,7 +111,7 @@ pub(crate) enum Refusal {
     Size { given: usize, wanted: usize },
 }
 
-/// What a variable takes.
+/// Values that a variable takes.
 fn values(min: f64, max: f64) -> String {
     match (min > f64::MIN, max < f64::MAX) {
         (true, true) => format!("values from {min} to {max}"),

@@ -12,15 +12,15 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Name of the library in the archive, without its extension.
 const IDENTIFIER: &str = "servobench";
-/// Beginning of an ELF file of 64 bits, little endian, and the machine x86-64 at byte 18.
+/// Beginning of a 64-bit little-endian ELF file, and the machine x86-64 at byte 18.
 const ELF64: &[u8] = b"\x7fELF\x02\x01";
 const X86_64: [u8; 2] = [62, 0];
 
-/// The FMU of a part of a scenario, as the bytes of its archive, with this library inside: the one that this crate is built to. The
+/// The FMU of a part of a scenario, as the bytes of its archive, with this library inside: the one built from this crate. The
 /// same arguments give the same bytes.
 ///
 /// # Errors
-/// [`FmuError`] says what of the scenario cannot be in an FMU, or that the library is none.
+/// [`FmuError`] names the part of the scenario that cannot be in an FMU, or rejects the library.
 pub fn export(loaded: &Loaded, version: Version, part: Part, library: &[u8]) -> Result<Vec<u8>, FmuError> {
     if !(library.starts_with(ELF64) && library.get(18..20) == Some(&X86_64)) {
         return Err(FmuError::Library);
@@ -42,7 +42,7 @@ pub fn export(loaded: &Loaded, version: Version, part: Part, library: &[u8]) -> 
     archive(&files).map_err(|error| FmuError::Archive(error.to_string()))
 }
 
-/// A zip archive of `files` without anything that differs from one writing to the next.
+/// A zip archive of `files`, independent of the time and place of writing.
 fn archive(files: &[(String, &[u8])]) -> zip::result::ZipResult<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default()
@@ -72,7 +72,7 @@ mod tests {
         parse(name, text, None).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// The beginning of a library and nothing else.
+    /// The beginning of a library.
     fn library() -> Vec<u8> {
         let mut bytes = vec![0; 64];
         bytes[..6].copy_from_slice(ELF64);
@@ -80,7 +80,7 @@ mod tests {
         bytes
     }
 
-    /// Oracle: the reader of model descriptions, which takes nothing that contradicts the standard, and has nothing to remark.
+    /// Oracle: the reader of model descriptions, which rejects everything that contradicts the standard, and has no remarks.
     #[test]
     fn what_is_written_is_read_without_a_remark() {
         let loaded = demo();
@@ -96,13 +96,13 @@ mod tests {
                 let kinds = |causality| read.variables.iter().filter(move |one| one.causality == causality).count();
                 assert_eq!(kinds(Causality::Output), read.structure.outputs.len());
                 assert!(kinds(Causality::Input) > 0 && kinds(Causality::Parameter) > 0);
-                // Nothing follows without a step.
+                // No output follows an input directly.
                 assert!(read.structure.outputs.iter().all(|one| one.dependencies.as_ref().is_some_and(Vec::is_empty)));
             }
         }
     }
 
-    /// Oracle: the instance itself. What `min` and `max` allow is taken, and what is a rounding beyond them is refused.
+    /// Oracle: the instance itself. Values within `min` and `max` are accepted, and values a rounding beyond them are refused.
     #[test]
     fn the_bounds_that_are_written_are_those_that_are_kept() {
         let asked = Asked { name: "Float64", takes: |kind| kind == Kind::Real, name_of: |_| "another type" };
@@ -131,7 +131,7 @@ mod tests {
         assert!(bounded > 10, "{bounded}");
     }
 
-    /// Oracle: the end of the program by `sim`, and the run that records it.
+    /// Oracle: the end of the program in `sim`, and the run that records it.
     #[test]
     fn the_default_experiment_covers_the_program() {
         const SLOW: &str = "[[program]]\nmove_to = \"4 m\"\n[[program]]\nwait = \"1.23456 s\"\n";

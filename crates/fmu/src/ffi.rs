@@ -1,4 +1,4 @@
-//! The C interface: pointers are checked, panics stay inside, and what is refused is logged.
+//! The C interface: pointers are checked, panics are caught, and refused calls are logged.
 #![expect(unsafe_code, reason = "functions that other programs call, with pointers of theirs")]
 
 #[cfg(test)]
@@ -16,36 +16,36 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Categories of the log, which the standard names (FMI 2.0.5, §2.2.4).
+/// Categories of the log, named by the standard (FMI 2.0.5, §2.2.4).
 pub(crate) const CATEGORIES: [(&str, &str); 1] = [("logStatusError", "calls that are refused, and why")];
 
-/// How a call ended, in the order of the statuses of both versions. Nothing is discarded: that would say that the same may be asked
-/// again, as some importers do without end.
+/// Outcome of a call, with the status codes of both versions. `Discard` is never used: it would mean that the same call may be repeated,
+/// which some importers then do endlessly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
     Ok = 0,
     Error = 3,
 }
 
-/// Where messages go.
+/// Destination of messages.
 trait Log {
     fn say(&self, outcome: Outcome, category: &CStr, message: &CStr);
 }
 
-/// What a host holds.
+/// Object behind the host's pointer.
 struct Handle {
     instance: Instance,
     token: String,
     log: Box<dyn Log>,
-    /// Whether errors are logged, the only category.
+    /// True if errors are logged, the only category.
     logged: bool,
 }
 
 impl Handle {
-    /// Takes which categories are logged; none are all.
+    /// Sets the logged categories; an empty list means all.
     ///
     /// # Errors
-    /// [`Refusal::Unsupported`] for one that the model description does not list.
+    /// [`Refusal::Unsupported`] for a category that the model description does not list.
     fn set_logging(&mut self, is_on: bool, categories: &[&CStr]) -> Result<(), Refusal> {
         let is_known = |category: &&CStr| CATEGORIES.iter().any(|(name, _)| category.to_bytes() == name.as_bytes());
         if !categories.iter().all(is_known) {
@@ -78,19 +78,19 @@ fn say(log: &dyn Log, logged: bool, outcome: Outcome, message: &str) {
     }
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn words_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
     format!("a defect of the FMU: {}", text.unwrap_or("a panic without a message"))
 }
 
-/// Carries out `body`, a call of `function` on the instance at `pointer`. An error leaves the instance where only a new beginning
-/// is left.
+/// Executes `body`, a call of `function` on the instance at `pointer`. After an error the instance only allows reset, a saved state,
+/// or its end.
 ///
 /// # Safety
-/// `pointer` is NULL or one that [`give`] gave and that was not freed; nobody else uses it at the same time.
+/// `pointer` is NULL, or was returned by [`give`] and not freed since; no other caller uses it at the same time.
 unsafe fn call(pointer: *mut c_void, function: &str, body: impl FnOnce(&mut Handle) -> Result<(), Refusal>) -> Outcome {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     let Some(handle) = (unsafe { pointer.cast::<Handle>().as_mut() }) else { return Outcome::Error };
     let message = match catch_unwind(AssertUnwindSafe(|| body(handle))) {
         Ok(Ok(())) => return Outcome::Ok,
@@ -102,7 +102,7 @@ unsafe fn call(pointer: *mut c_void, function: &str, body: impl FnOnce(&mut Hand
     Outcome::Error
 }
 
-/// Makes an instance of what `place` says: the folder of the resources and the token. NULL and a message when there is none.
+/// Creates an instance from `place`: the folder of the resources and the token. Returns NULL and logs a message if that fails.
 fn give(function: &str, log: Box<dyn Log>, logged: bool, place: Result<(PathBuf, String), String>) -> *mut c_void {
     let made = catch_unwind(|| {
         let (folder, token) = place?;
@@ -128,12 +128,12 @@ fn give(function: &str, log: Box<dyn Log>, logged: bool, place: Result<(PathBuf,
 /// Ends the instance at `pointer`.
 ///
 /// # Safety
-/// As for [`call`]; it must not be used any more.
+/// As for [`call`]; the pointer must not be used any more.
 unsafe fn take(pointer: *mut c_void) {
     if !pointer.is_null() {
-        // SAFETY: as the function demands: it came from `Box::into_raw` in `give`.
+        // SAFETY: as required by this function: it came from `Box::into_raw` in `give`.
         let handle = unsafe { Box::from_raw(pointer.cast::<Handle>()) };
-        // What a destructor panics with must not leave, either.
+        // A panic of a destructor must not leave, either.
         drop(catch_unwind(AssertUnwindSafe(move || drop(handle))));
     }
 }
@@ -141,12 +141,12 @@ unsafe fn take(pointer: *mut c_void) {
 /// `length` values at `pointer`.
 ///
 /// # Safety
-/// `pointer` is NULL, or so many values are there and nobody writes them for as long as they are used.
+/// `pointer` is NULL, or points to `length` values that nobody writes while they are used.
 unsafe fn slice<'a, T>(pointer: *const T, length: usize, argument: &'static str) -> Result<&'a [T], Refusal> {
     match (pointer.is_null(), length) {
         (_, 0) => Ok(&[]),
         (true, _) => Err(Refusal::Null { argument }),
-        // SAFETY: as the function demands.
+        // SAFETY: as required by this function.
         (false, _) => Ok(unsafe { std::slice::from_raw_parts(pointer, length) }),
     }
 }
@@ -154,12 +154,12 @@ unsafe fn slice<'a, T>(pointer: *const T, length: usize, argument: &'static str)
 /// Writes `value` to `pointer`.
 ///
 /// # Safety
-/// `pointer` is NULL or may be written.
+/// `pointer` is NULL or may be written to.
 unsafe fn put<T>(pointer: *mut T, value: T, argument: &'static str) -> Result<(), Refusal> {
     if pointer.is_null() {
         return Err(Refusal::Null { argument });
     }
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     unsafe { pointer.write(value) };
     Ok(())
 }
@@ -167,12 +167,12 @@ unsafe fn put<T>(pointer: *mut T, value: T, argument: &'static str) -> Result<()
 /// The text at `pointer`.
 ///
 /// # Safety
-/// `pointer` is NULL or a text that ends with a zero byte.
+/// `pointer` is NULL or points to a text that ends with a zero byte.
 unsafe fn text<'a>(pointer: *const c_char, argument: &'static str) -> Result<&'a CStr, Refusal> {
     if pointer.is_null() {
         return Err(Refusal::Null { argument });
     }
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     Ok(unsafe { CStr::from_ptr(pointer) })
 }
 
@@ -181,18 +181,18 @@ unsafe fn text<'a>(pointer: *const c_char, argument: &'static str) -> Result<&'a
 /// # Safety
 /// As for [`slice`] and [`text`].
 unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> Result<Vec<&'a CStr>, Refusal> {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     let all = unsafe { slice(pointer, count, "categories")? };
     // SAFETY: the same.
     all.iter().map(|one| unsafe { text(*one, "categories") }).collect()
 }
 
-/// Saves the state of `handle` to `state`, in place of the one that is there.
+/// Saves the state of `handle` to `state`, replacing the one there.
 ///
 /// # Safety
-/// `state` may be written; what is there is NULL or a state that this library gave.
+/// `state` may be written to; it holds NULL or a state returned by this library.
 unsafe fn save(handle: &mut Handle, state: *mut *mut c_void) -> Result<(), Refusal> {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     let Some(place) = (unsafe { state.as_mut() }) else { return Err(Refusal::Null { argument: "FMUState" }) };
     let saved = handle.instance.save()?;
     // SAFETY: the same: it came from `Box::into_raw` here or in `keep`.
@@ -203,30 +203,30 @@ unsafe fn save(handle: &mut Handle, state: *mut *mut c_void) -> Result<(), Refus
     Ok(())
 }
 
-/// Gives `state` to the host.
+/// Hands `state` over to the host.
 ///
 /// # Safety
-/// `place` may be written.
+/// `place` may be written to.
 unsafe fn keep(state: State, place: *mut *mut c_void) -> Result<(), Refusal> {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     unsafe { put(place, Box::into_raw(Box::new(state)).cast(), "FMUState") }
 }
 
 /// The state at `pointer`.
 ///
 /// # Safety
-/// `pointer` is NULL or a state that this library gave and that was not freed.
+/// `pointer` is NULL, or a state returned by this library and not freed since.
 unsafe fn state<'a>(pointer: *mut c_void) -> Result<&'a State, Refusal> {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     unsafe { pointer.cast::<State>().as_ref() }.ok_or(Refusal::Null { argument: "FMUState" })
 }
 
 /// Frees the state at `place` and sets it to NULL.
 ///
 /// # Safety
-/// `place` is NULL, or may be written and holds NULL or a state that this library gave.
+/// `place` is NULL, or may be written to and holds NULL or a state returned by this library.
 unsafe fn free_state(place: *mut *mut c_void) {
-    // SAFETY: as the function demands.
+    // SAFETY: as required by this function.
     if let Some(place) = unsafe { place.as_mut() }
         && !place.is_null()
     {
@@ -236,7 +236,7 @@ unsafe fn free_state(place: *mut *mut c_void) {
     }
 }
 
-/// Copies the bytes of a state to where the host has room for them.
+/// Copies the bytes of a state to the host's buffer.
 ///
 /// # Safety
 /// `to` has room for `size` bytes.
@@ -247,7 +247,7 @@ unsafe fn copy_bytes(bytes: &[u8], to: *mut u8, size: usize) -> Result<(), Refus
     if to.is_null() {
         return Err(Refusal::Null { argument: "serializedState" });
     }
-    // SAFETY: as the function demands; the bytes are our own, so they do not overlap.
+    // SAFETY: as required by this function; the bytes are our own, so they do not overlap.
     unsafe { to.copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
     Ok(())
 }

@@ -1,13 +1,13 @@
-//! An instance of the FMU, whichever version of the standard it is called by: its state machine, its values and its time.
+//! An instance of the FMU, for both versions of the standard: its state machine, its values and its time.
 //!
 //! ```text
 //! Instantiated → Initialization → Step → Terminated       any → Instantiated by reset
-//!        an error leads to Failed, where only reset, a saved state and the end are left
+//!        an error leads to Failed, where only reset, a saved state and the end are allowed
 //! ```
 //! Source: FMI 2.0.5, §4.2.4; FMI 3.0.2, §2.3 and §4.2.
 //!
-//! Time of the FMU is the tick of its loop: t = start + k/f. A step goes over a whole number of base ticks and holds the inputs;
-//! another one is an error: it never fits, whatever is asked for next.
+//! Time of the FMU is the tick of its loop: t = start + k/f. A step covers a whole number of base ticks and holds the inputs;
+//! any other step is an error: it never fits, whatever is requested next.
 use crate::error::Refusal;
 use crate::interface::{Kind, Role, Variable};
 use crate::machine::{Machine, Model};
@@ -15,14 +15,14 @@ use servobench_base::Rate;
 use std::ffi::{CStr, CString};
 use std::sync::Arc;
 
-/// How far a communication point may be from the time of a tick, in ticks. Hosts that add up their step are off by some
-/// roundings, 1e-9 of a tick in an hour at 16 kHz; what is meant as another length differs by more than a thousandth.
+/// Largest distance of a communication point from the time of a tick, in ticks. Hosts that add up their step are off by some
+/// roundings, 1e-9 of a tick in an hour at 16 kHz; an intentionally different length differs by more than a thousandth.
 const NEAR: f64 = 1e-3;
 
-/// Longest step that is computed, in ticks: times up to it are exact.
+/// Longest step computed, in ticks: times up to it are exact.
 const MOST_TICKS: f64 = 9_007_199_254_740_992.0;
 
-/// Where an instance is in the state machine of the standard.
+/// State of an instance in the state machine of the standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
     Instantiated,
@@ -44,7 +44,7 @@ impl Phase {
     }
 }
 
-/// When the simulation begins and ends (s).
+/// Start and end of the simulation (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Experiment {
     pub(crate) start: f64,
@@ -58,20 +58,20 @@ pub(crate) struct Instance {
     experiment: Experiment,
     /// Values of all variables; outputs as of the last reading.
     values: Vec<f64>,
-    /// Whether the outputs among them are those of the machine.
+    /// True if the outputs among them are current.
     is_read: bool,
     machine: Option<Machine>,
-    /// Where the last step ended (s).
+    /// End of the last step (s).
     last_successful_time: f64,
     text: CString,
 }
 
-/// An instance at a time, to go back to.
+/// State of an instance at a time, which can be restored.
 pub(crate) struct State {
     pub(crate) phase: Phase,
     pub(crate) experiment: Experiment,
     pub(crate) values: Vec<f64>,
-    /// The loop, where it was built.
+    /// The loop, if it was built.
     pub(crate) machine: Option<Vec<u64>>,
 }
 
@@ -88,12 +88,12 @@ impl Instance {
         &self.model
     }
 
-    /// Where the last step ended (s).
+    /// End of the last step (s).
     pub(crate) const fn last_successful_time(&self) -> f64 {
         self.last_successful_time
     }
 
-    /// An error was returned: nothing but a new beginning is left.
+    /// Marks the instance as failed: only a reset or a saved state continues it.
     pub(crate) fn fail(&mut self) {
         self.phase = Phase::Failed;
     }
@@ -102,7 +102,7 @@ impl Instance {
         if phases.contains(&self.phase) { Ok(()) } else { Err(Refusal::Phase { phase: self.phase.name(), allowed }) }
     }
 
-    /// Sets when the simulation begins and ends.
+    /// Sets start and end of the simulation.
     pub(crate) fn set_experiment(&mut self, experiment: Experiment) -> Result<(), Refusal> {
         self.expect(&[Phase::Instantiated], "before initialization mode only")?;
         let Experiment { start, stop } = experiment;
@@ -139,7 +139,7 @@ impl Instance {
         *self = Self::new(Arc::clone(&self.model));
     }
 
-    /// Makes sure that the loop is there, with the parameters as they are.
+    /// Builds the loop with the present parameters, if it is missing.
     fn built(&mut self) -> Result<(), Refusal> {
         if self.machine.is_none() {
             self.machine = Some(Machine::new(&self.model, &self.values)?);
@@ -154,7 +154,7 @@ impl Instance {
         at.map(|at| (at, &self.model.variables[at])).ok_or(Refusal::Reference { reference, count })
     }
 
-    /// The variable of a reference, if it is of the type that is asked for.
+    /// The variable of a reference, if it has the requested type.
     fn typed(&self, reference: u32, asked: &Asked) -> Result<(usize, &Variable), Refusal> {
         let (at, variable) = self.variable(reference)?;
         if (asked.takes)(variable.kind) {
@@ -177,7 +177,7 @@ impl Instance {
         }
     }
 
-    /// Reads a text, which stays until the next call.
+    /// Reads a text, which remains valid until the next call.
     pub(crate) fn get_text(&mut self, reference: u32, asked: &Asked) -> Result<&CStr, Refusal> {
         let (at, _) = self.typed(reference, asked)?;
         self.read_outputs(at)?;
@@ -186,7 +186,7 @@ impl Instance {
         Ok(&self.text)
     }
 
-    /// Makes the outputs those of the machine; `at` is the one that is asked for.
+    /// Updates the outputs from the machine; `at` is the requested one.
     fn read_outputs(&mut self, at: usize) -> Result<(), Refusal> {
         if self.phase == Phase::Instantiated {
             return Err(Refusal::NotYet { name: self.model.variables[at].name.clone() });
@@ -216,7 +216,7 @@ impl Instance {
             Role::Setting(_) | Role::Input(_) => {}
         }
         let (min, max) = variable.range();
-        // A NaN is in no range; an infinity neither.
+        // Neither NaN nor infinity is in any range.
         if !(min..=max).contains(&value) {
             return Err(Refusal::Range { name: variable.name.clone(), min, max, value });
         }
@@ -227,14 +227,14 @@ impl Instance {
         Ok(())
     }
 
-    /// The time (s).
+    /// Current time (s).
     fn time(&self) -> f64 {
         let rate = self.model.scenario.base_rate;
         let tick = self.machine.as_ref().map_or(0, Machine::tick);
         self.experiment.start + time_of(tick, rate)
     }
 
-    /// Goes from `point` to `point + length` (s).
+    /// Steps from `point` to `point + length` (s).
     pub(crate) fn step(&mut self, point: f64, length: f64) -> Result<(), Refusal> {
         self.expect(&[Phase::Step], "in step mode only")?;
         if !point.is_finite() {
@@ -273,13 +273,13 @@ impl Instance {
         Ok(())
     }
 
-    /// Where the instance is.
+    /// Saves the state of the instance.
     pub(crate) fn save(&mut self) -> Result<State, Refusal> {
         let machine = self.machine.as_mut().map(Machine::save).transpose()?;
         Ok(State { phase: self.phase, experiment: self.experiment, values: self.values.clone(), machine })
     }
 
-    /// Goes back to `state`, which may be of another instance of the same FMU.
+    /// Restores `state`, which may be of another instance of the same FMU.
     pub(crate) fn restore(&mut self, state: &State) -> Result<(), Refusal> {
         let machine = match &state.machine {
             None => None,
@@ -311,12 +311,12 @@ fn time_of(tick: u64, rate: Rate) -> f64 {
     rate.time(servobench_base::Tick(tick))
 }
 
-/// A type that a function of the standard asks for.
+/// A type requested by a function of the standard.
 pub(crate) struct Asked {
     /// Its name in the standard.
     pub(crate) name: &'static str,
-    /// Variables of this kind are of it.
+    /// True for kinds of variables of this type.
     pub(crate) takes: fn(Kind) -> bool,
-    /// What the standard calls the type of variables of this kind.
+    /// Name in the standard of the type of variables of a kind.
     pub(crate) name_of: fn(Kind) -> &'static str,
 }

@@ -1,5 +1,5 @@
-//! The variables of an FMU: the one table from which `modelDescription.xml` is generated and by which the functions of the
-//! standard find what they are asked for. A value reference is the position in it.
+//! The variables of an FMU: the one table from which `modelDescription.xml` is generated, and in which the functions of the
+//! standard look up variables. A value reference is the position in it.
 use crate::parameter::{Least, OF_DRIVE, OF_MECHANICS, Parameter, effort, limits_of_moves};
 use crate::part::{Part, has_one_body};
 use servobench_cia402::PowerState;
@@ -8,7 +8,7 @@ use servobench_scenario::{Actuator, Scenario};
 use servobench_signals::Writer;
 use servobench_sim::Stepper;
 
-/// What a variable counts in. Whatever it is, it is kept as a number, but for texts.
+/// Kind of a variable. All kinds but texts are stored as numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Real,
@@ -36,7 +36,7 @@ impl Choice {
         }
     }
 
-    /// Names of the items and what they mean.
+    /// Names and meanings of the items.
     pub(crate) fn items(self) -> Vec<(&'static str, &'static str)> {
         match self {
             Self::Command => vec![
@@ -50,7 +50,7 @@ impl Choice {
     }
 }
 
-/// Item `program` of [`Choice::Command`], and the others.
+/// Item `program` of [`Choice::Command`]; the others follow.
 pub(crate) const PROGRAM: f64 = 1.0;
 pub(crate) const TARGET: f64 = 2.0;
 pub(crate) const SETPOINT: f64 = 3.0;
@@ -76,13 +76,13 @@ pub(crate) enum Input {
 /// Largest override.
 const MOST_OVERRIDE: f64 = 2.0;
 
-/// How many inputs there are.
+/// Number of inputs.
 pub(crate) const INPUTS: usize = 13;
 
-/// Outputs, which a step leaves.
+/// Outputs, which are updated by a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
-    /// What a recording has in this channel.
+    /// Value of this channel of a recording.
     Channel(usize),
     ShaftPosition,
     ShaftVelocity,
@@ -92,7 +92,7 @@ pub(crate) enum Output {
     Faults,
 }
 
-/// What is set before the simulation begins.
+/// Settings before the simulation begins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Setting {
     Command,
@@ -101,7 +101,7 @@ pub(crate) enum Setting {
     Scenario(&'static Parameter),
 }
 
-/// What a variable is for.
+/// Role of a variable.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Role {
     Time,
@@ -116,16 +116,16 @@ pub(crate) struct Variable {
     pub(crate) name: String,
     pub(crate) description: String,
     pub(crate) kind: Kind,
-    /// Symbol of its unit as recordings write it; empty for a pure number.
+    /// Symbol of its unit as in recordings; empty for a pure number.
     pub(crate) unit: String,
     pub(crate) role: Role,
-    /// Of an input or a parameter.
+    /// Start value of an input or a parameter.
     pub(crate) start: f64,
     pub(crate) least: Least,
 }
 
 impl Variable {
-    /// Values that it takes.
+    /// Range of its values.
     pub(crate) fn range(&self) -> (f64, f64) {
         match self.kind {
             Kind::Boolean => (0.0, 1.0),

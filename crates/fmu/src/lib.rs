@@ -1,7 +1,7 @@
 //! An axis of a scenario, its drive or its mechanics, as a co-simulation FMU of FMI 2.0 and 3.0.
 //!
-//! The crate is both what writes an FMU ([`export`]) and, built as a shared library, what is inside it: the functions of the
-//! standard around the closed loop of `servobench run`, on the engine `exact`. One table of variables (`interface`) makes the model
+//! The crate both writes FMUs ([`export`]) and, built as a shared library, is the code inside them: the functions of the
+//! standard around the closed loop of `servobench run`, on the engine `exact`. One table of variables (`interface`) generates the model
 //! description and serves the functions.
 //!
 //! ```text

@@ -1,25 +1,25 @@
-//! Where the library that goes into FMUs is.
+//! Location of the library that is packed into FMUs.
 use crate::error::FmuError;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Its file name, as cargo makes it of this crate.
+/// File name of the library, as cargo builds it from this crate.
 pub const LIBRARY: &str = "libservobench_fmu.so";
 
-/// The library for [`export`](crate::export) that is at [`library_path`].
+/// The library for [`export`](crate::export) at [`library_path`].
 ///
 /// # Errors
-/// As there, and [`FmuError::Read`] that it cannot be read.
+/// As for [`library_path`], and [`FmuError::Read`] if it cannot be read.
 pub fn library(program: &Path) -> Result<Vec<u8>, FmuError> {
     let path = library_path(program)?;
     fs::read(&path).map_err(|error| FmuError::Read { path, error })
 }
 
-/// Where the library for [`export`](crate::export) is that belongs to the program at `program`: in `../lib` of its folder, as it is
-/// distributed; in `deps`, where cargo leaves it with the program; or beside it, where it is built by itself.
+/// Path of the library for [`export`](crate::export) that belongs to the program at `program`: in `../lib` of its folder, as
+/// distributed; in `deps`, where cargo leaves it with the program; or beside it, if built by itself.
 ///
 /// # Errors
-/// [`FmuError::NoLibrary`] says where it was looked for and how to make it.
+/// [`FmuError::NoLibrary`] lists the places searched, and how to build it.
 pub fn library_path(program: &Path) -> Result<PathBuf, FmuError> {
     let folder = program.parent().unwrap_or_else(|| Path::new(""));
     let places = ["../lib", "deps", ""].map(|within| folder.join(within).join(LIBRARY));

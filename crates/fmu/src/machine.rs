@@ -1,4 +1,4 @@
-//! The loop inside an FMU: what its inputs do in a base tick and where its outputs come from.
+//! The loop inside an FMU: effect of its inputs in a base tick, and source of its outputs.
 use crate::error::{FmuError, Refusal};
 use crate::interface::{INPUTS, Input, Kind, Output, Role, SETPOINT, Setting, TARGET, Variable, variables};
 use crate::mover::Mover;
@@ -11,12 +11,12 @@ use servobench_plcopen::AxisState;
 use servobench_scenario::Scenario;
 use servobench_sim::{Bench, BuildError, External, Stepper};
 
-/// What an FMU is made of, before it has parameters of its own.
+/// Part, scenario and variables of an FMU, before parameters are set.
 pub(crate) struct Model {
     pub(crate) part: Part,
     pub(crate) scenario: Scenario,
     pub(crate) variables: Vec<Variable>,
-    /// How long a run of the scenario lasts (s), a whole number of base ticks.
+    /// Duration of a run of the scenario (s), a whole number of base ticks.
     pub(crate) length: f64,
 }
 
@@ -24,7 +24,7 @@ impl Model {
     /// `part` of `scenario`.
     ///
     /// # Errors
-    /// [`FmuError`] when there is no such part or it cannot be built.
+    /// [`FmuError`] if the part does not exist or cannot be built.
     pub(crate) fn new(part: Part, scenario: &Scenario) -> Result<Self, FmuError> {
         let name = || scenario.name.clone();
         if part == Part::Drive && scenario.actuator.drive().is_none() {
@@ -40,7 +40,7 @@ impl Model {
         let built = |error| FmuError::Build { scenario: name(), error };
         let stepper = stepper(&own).map_err(built)?;
         let variables = variables(part, &own, &stepper);
-        // Mechanics have no program of their own, and are stepped through that of the scenario.
+        // Mechanics have no program of their own, and are stepped for the duration of the scenario's program.
         let length = Bench::length(scenario).map_err(built)?;
         Ok(Self { part, scenario: own, variables, length })
     }
@@ -50,7 +50,7 @@ impl Model {
         self.variables.iter().map(|variable| variable.start).collect()
     }
 
-    /// Those of `values` that are inputs.
+    /// The inputs among `values`.
     pub(crate) fn inputs(&self, values: &[f64]) -> [f64; INPUTS] {
         let mut inputs = [0.0; INPUTS];
         for (variable, value) in self.variables.iter().zip(values) {
@@ -66,20 +66,20 @@ fn stepper(scenario: &Scenario) -> Result<Stepper, BuildError> {
     Ok(Bench::new(scenario, &Exact)?.into_stepper())
 }
 
-/// A loop that runs.
+/// A running loop.
 pub(crate) struct Machine {
     part: Part,
     stepper: Stepper,
-    /// What the command is, an item of the enumeration.
+    /// Command, an item of the enumeration.
     command: f64,
     mover: Mover,
-    /// Axis coordinate per motor coordinate where the motor is the load too.
+    /// Axis coordinate per motor coordinate, if motor and load are one body.
     one_body: Option<f64>,
     failed: bool,
 }
 
 impl Machine {
-    /// The loop of `model`, parameters as `values` say.
+    /// The loop of `model`, with parameters from `values`.
     ///
     /// # Errors
     /// [`Refusal::Build`].
@@ -90,7 +90,7 @@ impl Machine {
             match variable.role {
                 Role::Setting(Setting::Command) => command = *value,
                 Role::Setting(Setting::Limit(at)) => limits[at] = *value,
-                // What nobody set stays as it is, to the last bit.
+                // Unset parameters keep their values, to the last bit.
                 Role::Setting(Setting::Scenario(parameter)) if value.to_bits() != variable.start.to_bits() => {
                     parameter.apply(&mut scenario, *value);
                 }
@@ -107,15 +107,15 @@ impl Machine {
         self.stepper.base_rate()
     }
 
-    /// The tick that comes next.
+    /// The next tick.
     pub(crate) const fn tick(&self) -> u64 {
         self.stepper.tick().0
     }
 
-    /// One base tick.
+    /// Runs one base tick.
     ///
     /// # Errors
-    /// [`Refusal::Failed`] or [`Refusal::Move`]; it can only go back then.
+    /// [`Refusal::Failed`] or [`Refusal::Move`]; then only a saved state can be restored.
     pub(crate) fn step(&mut self, inputs: &[f64; INPUTS]) -> Result<(), Refusal> {
         let input = |input: Input| inputs[input as usize];
         let is_true = |one| input(one) != 0.0;
@@ -153,7 +153,7 @@ impl Machine {
         })
     }
 
-    /// Sets every output among `values`.
+    /// Sets all outputs among `values`.
     pub(crate) fn read(&mut self, variables: &[Variable], values: &mut [f64]) {
         let (shaft, states) = (self.stepper.shaft(), self.stepper.states());
         let channels = self.stepper.values();
@@ -181,7 +181,7 @@ impl Machine {
         [drive, link].into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 
-    /// Its state.
+    /// Saves the state.
     ///
     /// # Errors
     /// [`Refusal::Failed`] after a failure.
@@ -196,10 +196,10 @@ impl Machine {
         Ok(all)
     }
 
-    /// Goes back to the state `saved`, of a machine with the same parameters.
+    /// Restores the state `saved`, of a machine with the same parameters.
     ///
     /// # Errors
-    /// [`Refusal::State`]; then it can only go back to another one.
+    /// [`Refusal::State`]; then only another state can be restored.
     pub(crate) fn restore(&mut self, saved: &[u64]) -> Result<(), Refusal> {
         self.failed = true;
         let wrong = Refusal::State { why: "they are not of a loop with these parameters" };

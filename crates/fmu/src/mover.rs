@@ -1,26 +1,26 @@
-//! Moves to a target, from whatever state of motion the set-point is in.
+//! Moves to a target, from any state of motion of the set-point.
 use servobench_base::{Rate, Setpoint, Stateful};
 use servobench_motion::online::{DirectionalLimits, Effort, Target};
 use servobench_motion::{Limits, Order, PlanError};
 use servobench_planner::{Generator, Plan, Replanning, Request};
 
-/// Generator of set-points for the command `target`: a rising edge of `execute` makes a move to `target`, jerk-limited, also
-/// while another is under way. A new override plans the rest of the move again, with the limit of velocity times it; at 0 the axis
-/// stops until it rises.
+/// Generator of set-points for the command `target`: a rising edge of `execute` starts a jerk-limited move to `target`, also
+/// while another is active. A new override replans the rest of the move, with the velocity limit scaled by it; at 0 the axis
+/// stops until the override rises.
 #[derive(Debug, Stateful)]
 pub(crate) struct Mover {
     #[state(constant)]
     limits: [f64; 3],
-    /// What is followed at present.
+    /// Current set-point.
     now: Setpoint,
-    /// Where the last move goes.
+    /// Target of the last move.
     goal: Option<f64>,
     under_way: Option<Move>,
     executed: bool,
     factor: f64,
 }
 
-/// A move under way: its start, the tick of it, and the plan that follows from the start.
+/// An active move: its start, the tick of the start, and the plan from there.
 #[derive(Debug)]
 struct Move {
     start: Start,
@@ -48,7 +48,7 @@ impl Move {
 }
 
 impl Start {
-    /// The way from here to the goal, or to rest.
+    /// The plan from here to the goal, or to rest.
     fn plan(&self) -> Result<Plan, PlanError> {
         let Self { from, goal, factor, limits: [velocity, acceleration, jerk] } = *self;
         let is_stop = factor == 0.0;
@@ -66,7 +66,7 @@ impl Start {
 }
 
 impl Mover {
-    /// At rest at `start`, with limits of velocity, acceleration and jerk (axis coordinate).
+    /// A mover at rest at `start`, with limits of velocity, acceleration and jerk (axis coordinate).
     pub(crate) fn new(start: f64, limits: [f64; 3]) -> Self {
         Self { limits, now: Setpoint::at_rest(start), goal: None, under_way: None, executed: false, factor: 1.0 }
     }
@@ -107,12 +107,12 @@ mod tests {
 
     const RATE: u32 = 1_000;
 
-    /// Set-points of ticks 0 to `ticks`, with the target that `target` says, executed while it says so.
+    /// Set-points of ticks 0 to `ticks`, with the targets from `target`, executed while it returns one.
     fn positions(ticks: u64, target: impl Fn(u64) -> Option<f64>) -> Vec<Setpoint> {
         slowed(ticks, target, |_| 1.0)
     }
 
-    /// The same with an override.
+    /// Set-points with an override.
     fn slowed(ticks: u64, target: impl Fn(u64) -> Option<f64>, factor: impl Fn(u64) -> f64) -> Vec<Setpoint> {
         let mut mover = Mover::new(0.1, [1.0, 10.0, 200.0]);
         let rate = Rate::new(RATE).unwrap();
@@ -130,7 +130,7 @@ mod tests {
         assert!((all[425].v - 1.0).abs() < 1e-12, "the middle of the move: {:?}", all[425]);
     }
 
-    /// Oracle: the limits themselves; position, velocity and acceleration go on where a move takes over from another.
+    /// Oracle: the limits themselves; position, velocity and acceleration are continuous where a move takes over from another.
     #[test]
     fn another_target_takes_over_without_a_jump() {
         let all = positions(2_000, |k| match k {
@@ -146,7 +146,7 @@ mod tests {
         }
         assert!((all[1_999].x + 0.2).abs() < 1e-12 && all[1_999].v.abs() < 1e-9);
     }
-    /// Oracle: the velocity limit times the override, at rest for 0; nothing jumps, and the target is reached all the same.
+    /// Oracle: the velocity limit times the override, at rest for 0; everything is continuous, and the target is reached all the same.
     #[test]
     fn an_override_changes_the_velocity_on_the_way() {
         let factor = |k| match k {

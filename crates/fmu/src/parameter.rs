@@ -11,7 +11,7 @@ pub(crate) struct Parameter {
     pub(crate) description: &'static str,
     /// Symbol of its unit on the axis.
     pub(crate) unit: fn(&Scenario) -> String,
-    /// Whether it must be above zero, or at least zero.
+    /// Least value: above zero, zero, or any.
     pub(crate) least: Least,
     get: fn(&Scenario) -> Option<f64>,
     set: fn(&mut Scenario, f64),
@@ -26,12 +26,12 @@ pub(crate) enum Least {
 }
 
 impl Parameter {
-    /// Its value in `scenario`; `None` where there is nothing of that kind.
+    /// Its value in `scenario`; `None` if it does not apply there.
     pub(crate) fn value(&self, scenario: &Scenario) -> Option<f64> {
         (self.get)(scenario).filter(|value| value.is_finite())
     }
 
-    /// Sets it.
+    /// Sets it to `value` in `scenario`.
     pub(crate) fn apply(&self, scenario: &mut Scenario, value: f64) {
         (self.set)(scenario, value);
     }
@@ -82,7 +82,7 @@ fn chain_mut(scenario: &mut Scenario) -> Option<&mut Chain> {
     }
 }
 
-/// The load, where it is a body of its own.
+/// The load, if it is a separate body.
 fn load(scenario: &Scenario) -> Option<&Body> {
     chain(scenario)?.bodies()[1..].last()
 }
@@ -115,7 +115,7 @@ pub(crate) fn limits_of_moves(scenario: &Scenario) -> Option<[f64; 3]> {
     })
 }
 
-/// All parameters that a part with a drive has.
+/// All parameters of a part with a drive.
 pub(crate) const OF_DRIVE: &[Parameter] = &[
     Parameter {
         name: "drive.position_gain",
@@ -171,7 +171,7 @@ pub(crate) const OF_DRIVE: &[Parameter] = &[
     },
 ];
 
-/// All parameters that a part with the mechanics has.
+/// All parameters of a part with the mechanics.
 pub(crate) const OF_MECHANICS: &[Parameter] = &[
     Parameter {
         name: "load.inertia",

@@ -1,8 +1,8 @@
-//! Which part of an axis an FMU is.
+//! Parts of an axis that an FMU can be.
 use servobench_scenario::{Actuator, AxisMechanics, Scenario};
 
 servobench_config::choices! {
-    /// Which part of an axis an FMU is.
+    /// Part of an axis that an FMU represents.
     pub enum Part default Axis {
         /// program, drive, motor and mechanics: set-points or targets in, motion out
         Axis = "axis",
@@ -14,12 +14,12 @@ servobench_config::choices! {
 }
 
 impl Part {
-    /// What of `scenario` this part is, with every channel.
+    /// The subset of `scenario` for this part, with every channel.
     pub(crate) fn of(self, scenario: &Scenario) -> Scenario {
         let mut own = scenario.clone();
         own.record.channels.clear();
         if self == Self::Mechanics {
-            // All that acts on the mechanics comes in from outside.
+            // All influences on the mechanics come from outside.
             own.actuator = Actuator::Off(None);
             (own.bus, own.plc, own.interpolation) = (None, None, None);
             own.program.clear();
@@ -30,7 +30,7 @@ impl Part {
     }
 }
 
-/// Whether the motor is the load too.
+/// True if motor and load are one body.
 pub(crate) fn has_one_body(scenario: &Scenario) -> bool {
     match &scenario.axis.mechanics {
         AxisMechanics::Bodies(chain) => chain.bodies().len() == 1,

@@ -1,9 +1,9 @@
-//! What an FMU carries beside its library: part, scenario, and the models and tables that the scenario names.
+//! Resources of an FMU besides its library: part, scenario, and the models and tables named in the scenario.
 //!
 //! ```text
-//! resources/contents.txt        the part, where the scenario is, and the overrides that it is read with, each on a line
+//! resources/contents.txt        the part, the place of the scenario, and its overrides, each on a line
 //!          /scenario.toml       with as many folders before it as its tables are above it
-//!          /models/…            the models that it names
+//!          /models/…            the models named in it
 //! ```
 use crate::error::FmuError;
 use crate::machine::Model;
@@ -24,7 +24,7 @@ pub(crate) struct Resources {
 }
 
 impl Resources {
-    /// What `part` of `loaded` needs.
+    /// The resources of `part` of `loaded`.
     ///
     /// # Errors
     /// [`FmuError::Path`] for a table whose path is absolute or leads above four folders.
@@ -66,10 +66,10 @@ impl Resources {
         Ok(Self { files })
     }
 
-    /// Those in `folder`.
+    /// The resources in `folder`.
     ///
     /// # Errors
-    /// What is wrong with them, in words.
+    /// The mistake, in words.
     pub(crate) fn read(folder: &Path) -> Result<Self, String> {
         let mut files = vec![];
         collect(folder, "", 0, &mut files)?;
@@ -77,10 +77,10 @@ impl Resources {
         Ok(Self { files })
     }
 
-    /// The model that they are, when they are in `folder`.
+    /// The model built from the resources in `folder`.
     ///
     /// # Errors
-    /// What is wrong with them, in words.
+    /// The mistake, in words.
     pub(crate) fn model(&self, folder: &Path) -> Result<Model, String> {
         let contents = self.files.iter().find(|(path, _)| path == CONTENTS).map(|(_, text)| text.lines());
         let mut lines = contents.ok_or_else(|| format!("there is no `{CONTENTS}` in `{}`", folder.display()))?;
@@ -94,7 +94,7 @@ impl Resources {
         Model::new(part, &loaded.scenario).map_err(|error| error.to_string())
     }
 
-    /// By what library, description and resources know that they belong together: the hash of the resources and the version of
+    /// Token by which library, description and resources recognise each other: the hash of the resources and of the version of
     /// this crate, in the form of a GUID.
     pub(crate) fn token(&self) -> String {
         let mut hash = Sha256::new();
@@ -114,7 +114,7 @@ impl Resources {
     }
 }
 
-/// How many folders above its own a path leads at most; `None` for one that is absolute or leads further than anybody needs.
+/// Number of folders that a path leads above its own; `None` for one that is absolute or leads too far.
 fn steps_above(path: &str) -> Option<usize> {
     let (mut depth, mut most) = (0_usize, 0_usize);
     for component in Path::new(path).components() {
@@ -163,8 +163,8 @@ mod tests {
         assert_eq!(steps_above("../../../../../a.csv"), None);
     }
 
-    /// Oracle: the scenario itself. It is found with its table above it and its models from a folder of its own, wherever that is
-    /// unpacked, and the token is that of the same files only.
+    /// Oracle: the scenario itself. It is found with its table above it and its models in a separate folder, wherever it is
+    /// unpacked, and the token is the same only for the same files.
     #[test]
     fn what_a_scenario_names_is_packed_where_it_is_looked_for() {
         let room = tempfile::tempdir().unwrap();
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(model.scenario.program, loaded.scenario.program);
         assert_eq!(model.scenario.axis, loaded.scenario.axis);
 
-        // What is overridden is packed with it, and makes another FMU.
+        // Overrides are packed as well, and make another FMU.
         let overrides = ["axis.load.mass=7 kg".parse().unwrap()];
         let overridden = load(&overrides).unwrap_or_else(|error| panic!("{error}"));
         let other = Resources::of(Part::Axis, &overridden).unwrap();

@@ -1,4 +1,4 @@
-//! A state of an instance as bytes, all of it: its size and the time that it takes do not depend on how long the run was.
+//! The state of an instance as bytes: its size and the time to write it do not depend on the length of the run.
 //!
 //! ```text
 //! token of the FMU | count of all words | phase, start, stop | count, values | with a loop: its state | checksum
@@ -32,10 +32,10 @@ pub(crate) fn write(state: &State, token: &str) -> Vec<u8> {
     bytes
 }
 
-/// The state that `bytes` are, of `model` with this token.
+/// The state in `bytes`, of `model` with this token.
 ///
 /// # Errors
-/// [`Refusal::State`] for bytes that are not a state of this FMU, or damaged.
+/// [`Refusal::State`] for bytes that are damaged, or not a state of this FMU.
 pub(crate) fn read(bytes: &[u8], model: &Model, token: &str) -> Result<State, Refusal> {
     let wrong = |why| Refusal::State { why };
     let too_early = |_| wrong("they end too early");
@@ -75,7 +75,7 @@ pub(crate) fn read(bytes: &[u8], model: &Model, token: &str) -> Result<State, Re
     Ok(State { phase, experiment, values, machine })
 }
 
-/// The token as words, zeros behind it.
+/// The token as words, padded with zeros.
 fn token_words(token: &str) -> [u64; TOKEN] {
     let mut bytes = [0; 8 * TOKEN];
     bytes.iter_mut().zip(token.bytes()).for_each(|(to, from)| *to = from);

@@ -1,4 +1,4 @@
-//! Units of recordings as units of FMI: exponents of the SI base units, and what people read.
+//! Units of recordings as units of FMI: exponents of the SI base units, and display units.
 use servobench_fmi::{BaseUnit, DisplayUnit, Exponents, Unit};
 use std::f64::consts::PI;
 use thiserror::Error;
@@ -10,7 +10,7 @@ pub(crate) struct NoUnit {
     symbol: String,
 }
 
-/// The unit that recordings write as `symbol`: products with a space, one stroke, superscripts.
+/// The unit written as `symbol` in recordings: products with a space, one stroke, superscripts.
 ///
 /// # Errors
 /// [`NoUnit`].
@@ -59,7 +59,7 @@ pub(crate) fn definition(symbol: &str) -> Result<Unit, NoUnit> {
     Ok(Unit { name: ascii(symbol), base, display: display.iter().map(shown).collect() })
 }
 
-/// Exponents of a unit with a name of its own.
+/// Exponents of a named unit.
 fn derived(symbol: &str) -> Option<Exponents> {
     let none = Exponents::default();
     Some(match symbol {
@@ -76,7 +76,7 @@ fn derived(symbol: &str) -> Option<Exponents> {
     })
 }
 
-/// The name as the standard recommends it: `kg.m2`, `N.m.s/rad`.
+/// The name in the form recommended by the standard: `kg.m2`, `N.m.s/rad`.
 fn ascii(symbol: &str) -> String {
     symbol.replace('°', "deg").replace(' ', ".").replace('²', "2").replace('³', "3").replace('⁴', "4")
 }

@@ -1,4 +1,4 @@
-//! What a host has before it instantiates an FMU: the folder of its resources, its token, a log; and what is expected of it.
+//! Environment of a host before it instantiates an FMU: the folder of its resources, its token, a log; and the expected results.
 use crate::interface::Role;
 use crate::machine::Model;
 use crate::part::Part;
@@ -21,12 +21,12 @@ pub(super) struct Room {
     pub(super) log: Messages,
 }
 
-/// What was logged: status, category and text.
+/// Logged messages: status, category and text.
 #[derive(Default)]
 pub(super) struct Messages(Mutex<Vec<(i32, String, String)>>);
 
 impl Messages {
-    /// By this a callback finds it.
+    /// Pointer by which a callback finds the messages.
     pub(super) fn environment(&self) -> *mut c_void {
         std::ptr::from_ref(self).cast_mut().cast()
     }
@@ -35,19 +35,19 @@ impl Messages {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push((status, category, text));
     }
 
-    /// All since the last time.
+    /// All messages since the last call.
     pub(super) fn take(&self) -> Vec<(i32, String, String)> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// The demo that a plain `servobench run` runs first.
+/// The first demo that a plain `servobench run` runs.
 pub(super) fn demo() -> Loaded {
     let (name, text) = embedded_demo()[0];
     parse(name, text, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What `servobench run` records of it in so many ticks.
+/// Recording of the demo by `servobench run` over `ticks`.
 pub(super) fn recording(ticks: u32) -> Recording {
     let mut scenario = demo().scenario;
     scenario.duration = Some(f64::from(ticks) / f64::from(scenario.base_rate.hertz()));

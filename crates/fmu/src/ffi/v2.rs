@@ -47,12 +47,12 @@ impl Log for Logger {
         // The message is a format of `printf`.
         let Ok(message) = CString::new(message.to_string_lossy().replace('%', "%%")) else { return };
         let (environment, name) = (self.environment, self.instance_name.as_ptr());
-        // SAFETY: the host gave the function for this, and the texts live until it returns.
+        // SAFETY: the host passed the function for this, and the texts live until it returns.
         unsafe { function(environment, name, outcome.into(), category.as_ptr(), message.as_ptr()) };
     }
 }
 
-/// The folder that a URI of the scheme `file` names, or a path as some hosts give it.
+/// The folder named by a URI of the scheme `file`, or by a path as some hosts pass it.
 fn folder(uri: &CStr) -> Result<PathBuf, String> {
     let text = uri.to_bytes();
     let path = match text.strip_prefix(b"file:") {
@@ -95,10 +95,10 @@ unsafe extern "C" fn fmi2Instantiate(
     _visible: Boolean,
     _logging_on: Boolean,
 ) -> Component {
-    // SAFETY: the host gives its functions, and they stay (§2.1.5).
+    // SAFETY: the host passes its functions, and they stay (§2.1.5).
     let functions = unsafe { functions.as_ref() };
     let told = |pointer, argument| {
-        // SAFETY: the host gives texts that end with a zero byte.
+        // SAFETY: the host passes texts that end with a zero byte.
         unsafe { text(pointer, argument) }.map_err(|refusal| refusal.to_string())
     };
     let log = Logger {
@@ -113,7 +113,7 @@ unsafe extern "C" fn fmi2Instantiate(
         let guid = told(guid, "fmuGUID")?.to_string_lossy().into_owned();
         Ok((folder(told(resource_location, "fmuResourceLocation")?)?, guid))
     };
-    // Errors are said in any case: `loggingOn` is about debugging.
+    // Errors are logged in any case: `loggingOn` is about debugging.
     give("fmi2Instantiate", Box::new(log), true, place())
 }
 
@@ -126,10 +126,10 @@ unsafe extern "C" fn fmi2FreeInstance(c: Component) {
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetDebugLogging(c: Component, on: Boolean, count: usize, categories: *const Text) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many texts.
+        // SAFETY: the host passes this number of texts.
         handle.set_logging(on != v2::FALSE, &unsafe { texts(categories, count)? })
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2SetDebugLogging", body) }.into()
 }
 
@@ -143,16 +143,16 @@ unsafe extern "C" fn fmi2SetupExperiment(
     stop: Real,
 ) -> Status {
     let experiment = Experiment { start, stop: (stop_defined != v2::FALSE).then_some(stop) };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2SetupExperiment", |handle| handle.instance.set_experiment(experiment)) }.into()
 }
 
-/// Functions that lead from one state to another.
+/// Functions that change the state.
 macro_rules! transitions {
     ($($name:ident = $body:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(c: Component) -> Status {
-            // SAFETY: the host gives what `fmi2Instantiate` returned.
+            // SAFETY: the host passes the pointer from `fmi2Instantiate`.
             unsafe { call(c, stringify!($name), $body) }.into()
         }
         const _: v2::Transition = $name;
@@ -167,13 +167,13 @@ transitions! {
     fmi2CancelStep = |_| Err(Refusal::Unsupported { why: "steps do not run by themselves" });
 }
 
-/// Functions that read numbers, and those that set them.
+/// Functions that read numbers, and functions that set them.
 macro_rules! numbers {
     ($($get:ident $set:ident $number:ty, $asked:expr, $out:expr, $in:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $get(c: Component, vr: *const ValueReference, nvr: usize, value: *mut $number) -> Status {
             let body = |handle: &mut super::Handle| {
-                // SAFETY: the host gives so many references.
+                // SAFETY: the host passes an array of this length.
                 for (at, reference) in unsafe { slice(vr, nvr, "vr")? }.iter().enumerate() {
                     let number = handle.instance.get(*reference, &$asked)?;
                     // SAFETY: the host has room for as many values, unless it is NULL, which `put` refuses.
@@ -181,7 +181,7 @@ macro_rules! numbers {
                 }
                 Ok(())
             };
-            // SAFETY: the host gives what `fmi2Instantiate` returned.
+            // SAFETY: the host passes the pointer from `fmi2Instantiate`.
             unsafe { call(c, stringify!($get), body) }.into()
         }
         const _: v2::Get<$number> = $get;
@@ -189,11 +189,11 @@ macro_rules! numbers {
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $set(c: Component, vr: *const ValueReference, nvr: usize, value: *const $number) -> Status {
             let body = |handle: &mut super::Handle| {
-                // SAFETY: the host gives so many references and values.
+                // SAFETY: the host passes arrays of these lengths.
                 let (references, values) = unsafe { (slice(vr, nvr, "vr")?, slice(value, nvr, "value")?) };
                 references.iter().zip(values).try_for_each(|(one, value)| handle.instance.set(*one, &$asked, $in(*value)))
             };
-            // SAFETY: the host gives what `fmi2Instantiate` returned.
+            // SAFETY: the host passes the pointer from `fmi2Instantiate`.
             unsafe { call(c, stringify!($set), body) }.into()
         }
         const _: v2::Set<$number> = $set;
@@ -218,7 +218,7 @@ numbers! {
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetString(c: Component, vr: *const ValueReference, nvr: usize, value: *mut Text) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many references.
+        // SAFETY: the host passes an array of this length.
         for (at, reference) in unsafe { slice(vr, nvr, "vr")? }.iter().enumerate() {
             let found = handle.instance.get_text(*reference, &STRING)?.as_ptr();
             // SAFETY: the host has room for as many values, unless it is NULL, which `put` refuses.
@@ -226,7 +226,7 @@ unsafe extern "C" fn fmi2GetString(c: Component, vr: *const ValueReference, nvr:
         }
         Ok(())
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2GetString", body) }.into()
 }
 const _: v2::Get<Text> = fmi2GetString;
@@ -234,25 +234,25 @@ const _: v2::Get<Text> = fmi2GetString;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetString(c: Component, vr: *const ValueReference, nvr: usize, _value: *const Text) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many references.
+        // SAFETY: the host passes an array of this length.
         let references = unsafe { slice(vr, nvr, "vr")? };
         references.iter().try_for_each(|one| handle.instance.set(*one, &STRING, f64::NAN))
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2SetString", body) }.into()
 }
 const _: v2::Set<Text> = fmi2SetString;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetFMUstate(c: Component, place: *mut FmuState) -> Status {
-    // SAFETY: the host gives what `fmi2Instantiate` returned, and NULL or a state of it to write over.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`, and NULL or a state of it to overwrite.
     unsafe { call(c, "fmi2GetFMUstate", |handle| save(handle, place)) }.into()
 }
 const _: v2::GetFmuState = fmi2GetFMUstate;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SetFMUstate(c: Component, saved: FmuState) -> Status {
-    // SAFETY: the host gives what `fmi2Instantiate` returned, and a state that this library gave.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`, and a state returned by this library.
     unsafe { call(c, "fmi2SetFMUstate", |handle| handle.instance.restore(state(saved)?)) }.into()
 }
 const _: v2::SetFmuState = fmi2SetFMUstate;
@@ -260,11 +260,11 @@ const _: v2::SetFmuState = fmi2SetFMUstate;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2FreeFMUstate(c: Component, place: *mut FmuState) -> Status {
     let body = |_: &mut super::Handle| {
-        // SAFETY: the host gives NULL or a state that this library gave.
+        // SAFETY: the host passes NULL or a state returned by this library.
         unsafe { free_state(place) };
         Ok(())
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2FreeFMUstate", body) }.into()
 }
 const _: v2::FreeFmuState = fmi2FreeFMUstate;
@@ -272,10 +272,10 @@ const _: v2::FreeFmuState = fmi2FreeFMUstate;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Component, saved: FmuState, size: *mut usize) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives a state that this library gave, and room for the size.
+        // SAFETY: the host passes a state returned by this library, and room for the size.
         unsafe { put(size, handle.serialize(state(saved)?).len(), "size") }
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2SerializedFMUstateSize", body) }.into()
 }
 const _: v2::SerializedFmuStateSize = fmi2SerializedFMUstateSize;
@@ -283,10 +283,10 @@ const _: v2::SerializedFmuStateSize = fmi2SerializedFMUstateSize;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, saved: FmuState, to: *mut c_char, size: usize) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives a state that this library gave, and room for so many bytes.
+        // SAFETY: the host passes a state returned by this library, and room for this number of bytes.
         unsafe { copy_bytes(&handle.serialize(state(saved)?), to.cast(), size) }
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2SerializeFMUstate", body) }.into()
 }
 const _: v2::SerializeFmuState = fmi2SerializeFMUstate;
@@ -299,17 +299,17 @@ unsafe extern "C" fn fmi2DeSerializeFMUstate(
     place: *mut FmuState,
 ) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many bytes, and room for the state.
+        // SAFETY: the host passes this number of bytes, and room for the state.
         unsafe { keep(handle.deserialize(slice(bytes.cast(), size, "serializedState")?)?, place) }
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2DeSerializeFMUstate", body) }.into()
 }
 const _: v2::DeSerializeFmuState = fmi2DeSerializeFMUstate;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2DoStep(c: Component, point: Real, length: Real, _no_set_state_prior: Boolean) -> Status {
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2DoStep", |handle| handle.instance.step(point, length)) }.into()
 }
 const _: v2::DoStep = fmi2DoStep;
@@ -321,7 +321,7 @@ unsafe extern "C" fn fmi2GetRealStatus(c: Component, kind: StatusKind, value: *m
         StatusKind::LAST_SUCCESSFUL_TIME => unsafe { put(value, handle.instance.last_successful_time(), "value") },
         _ => Err(Refusal::Unsupported { why: "there is no such status of this type" }),
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2GetRealStatus", body) }.into()
 }
 const _: v2::GetStatus<Real> = fmi2GetRealStatus;
@@ -333,18 +333,18 @@ unsafe extern "C" fn fmi2GetBooleanStatus(c: Component, kind: StatusKind, value:
         StatusKind::TERMINATED => unsafe { put(value, v2::FALSE, "value") },
         _ => Err(Refusal::Unsupported { why: "there is no such status of this type" }),
     };
-    // SAFETY: the host gives what `fmi2Instantiate` returned.
+    // SAFETY: the host passes the pointer from `fmi2Instantiate`.
     unsafe { call(c, "fmi2GetBooleanStatus", body) }.into()
 }
 const _: v2::GetStatus<Boolean> = fmi2GetBooleanStatus;
 
-/// Functions that are there, as the standard demands, for what this FMU has not.
+/// Functions required by the standard for features that this FMU lacks.
 macro_rules! unsupported {
     ($($name:ident($($argument:ident: $of:ty),*) $why:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(c: Component, $($argument: $of),*) -> Status {
             let _unused = ($($argument,)*);
-            // SAFETY: the host gives what `fmi2Instantiate` returned.
+            // SAFETY: the host passes the pointer from `fmi2Instantiate`.
             unsafe { call(c, stringify!($name), |_| Err(Refusal::Unsupported { why: $why })) }.into()
         }
     )*};

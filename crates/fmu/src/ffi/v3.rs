@@ -29,7 +29,7 @@ const INT64: Asked = Asked { name: "Int64", takes: |kind| matches!(kind, Kind::E
 const BOOLEAN: Asked = Asked { name: "Boolean", takes: |kind| kind == Kind::Boolean, name_of };
 const STRING: Asked = Asked { name: "String", takes: |kind| kind == Kind::Text, name_of };
 
-/// A type that no variable is of.
+/// A type that no variable has.
 const fn absent(name: &'static str) -> Asked {
     Asked { name, takes: |_| false, name_of }
 }
@@ -49,7 +49,7 @@ struct Logger {
 impl Log for Logger {
     fn say(&self, outcome: Outcome, category: &CStr, message: &CStr) {
         if let Some(function) = self.function {
-            // SAFETY: the host gave the function for this, and the texts live until it returns.
+            // SAFETY: the host passed the function for this, and the texts live until it returns.
             unsafe { function(self.environment, outcome.into(), category.as_ptr(), message.as_ptr()) };
         }
     }
@@ -77,7 +77,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _intermediate_update: Option<v3::IntermediateUpdateCallback>,
 ) -> Instance {
     let told = |pointer, argument| {
-        // SAFETY: the host gives texts that end with a zero byte.
+        // SAFETY: the host passes texts that end with a zero byte.
         unsafe { text(pointer, argument) }.map_err(|refusal| refusal.to_string())
     };
     let place = || {
@@ -88,7 +88,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
         Ok((folder, told(token, "instantiationToken")?.to_string_lossy().into_owned()))
     };
     let log = Logger { function: log_message, environment };
-    // Errors are said in any case: `loggingOn` is about debugging.
+    // Errors are logged in any case: `loggingOn` is about debugging.
     give("fmi3InstantiateCoSimulation", Box::new(log), true, place())
 }
 const _: v3::InstantiateCoSimulation = fmi3InstantiateCoSimulation;
@@ -142,10 +142,10 @@ unsafe extern "C" fn fmi3SetDebugLogging(
     categories: *const Text,
 ) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many texts.
+        // SAFETY: the host passes this number of texts.
         handle.set_logging(on != v3::FALSE, &unsafe { texts(categories, count)? })
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3SetDebugLogging", body) }.into()
 }
 const _: v3::SetDebugLogging = fmi3SetDebugLogging;
@@ -164,17 +164,17 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
         handle.instance.set_experiment(Experiment { start, stop })?;
         handle.instance.enter_initialization()
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3EnterInitializationMode", body) }.into()
 }
 const _: v3::EnterInitializationMode = fmi3EnterInitializationMode;
 
-/// Functions that lead from one state to another.
+/// Functions that change the state.
 macro_rules! transitions {
     ($($name:ident = $body:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(instance: Instance) -> Status {
-            // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+            // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
             unsafe { call(instance, stringify!($name), $body) }.into()
         }
         const _: v3::Transition = $name;
@@ -193,12 +193,12 @@ transitions! {
     fmi3EnterContinuousTimeMode = |_| Err(Refusal::Unsupported { why: "this FMU is for co-simulation" });
 }
 
-/// As many values as references: all variables are scalars.
+/// Checks for as many values as references: all variables are scalars.
 fn same_length(references: usize, values: usize) -> Result<(), Refusal> {
     if references == values { Ok(()) } else { Err(Refusal::Length { given: values, wanted: references }) }
 }
 
-/// Functions that read numbers, and those that set them.
+/// Functions that read numbers, and functions that set them.
 macro_rules! numbers {
     ($($get:ident $set:ident $number:ty, $asked:expr, $out:expr, $in:expr;)*) => {$(
         #[unsafe(no_mangle)]
@@ -207,7 +207,7 @@ macro_rules! numbers {
         ) -> Status {
             let body = |handle: &mut super::Handle| {
                 same_length(nvr, n_values)?;
-                // SAFETY: the host gives so many references.
+                // SAFETY: the host passes an array of this length.
                 for (at, reference) in unsafe { slice(vr, nvr, "valueReferences")? }.iter().enumerate() {
                     let number = handle.instance.get(*reference, &$asked)?;
                     // SAFETY: the host has room for as many values, unless it is NULL, which `put` refuses.
@@ -215,7 +215,7 @@ macro_rules! numbers {
                 }
                 Ok(())
             };
-            // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+            // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
             unsafe { call(instance, stringify!($get), body) }.into()
         }
         const _: v3::Get<$number> = $get;
@@ -226,12 +226,12 @@ macro_rules! numbers {
         ) -> Status {
             let body = |handle: &mut super::Handle| {
                 same_length(nvr, n_values)?;
-                // SAFETY: the host gives so many references and values.
+                // SAFETY: the host passes arrays of these lengths.
                 let (references, values) =
                     unsafe { (slice(vr, nvr, "valueReferences")?, slice(values, n_values, "values")?) };
                 references.iter().zip(values).try_for_each(|(one, value)| handle.instance.set(*one, &$asked, $in(*value)))
             };
-            // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+            // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
             unsafe { call(instance, stringify!($set), body) }.into()
         }
         const _: v3::Set<$number> = $set;
@@ -280,7 +280,7 @@ unsafe extern "C" fn fmi3GetString(
 ) -> Status {
     let body = |handle: &mut super::Handle| {
         same_length(nvr, n_values)?;
-        // SAFETY: the host gives so many references.
+        // SAFETY: the host passes an array of this length.
         for (at, reference) in unsafe { slice(vr, nvr, "valueReferences")? }.iter().enumerate() {
             let found = handle.instance.get_text(*reference, &STRING)?.as_ptr();
             // SAFETY: the host has room for as many values, unless it is NULL, which `put` refuses.
@@ -288,7 +288,7 @@ unsafe extern "C" fn fmi3GetString(
         }
         Ok(())
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3GetString", body) }.into()
 }
 const _: v3::Get<Text> = fmi3GetString;
@@ -303,25 +303,25 @@ unsafe extern "C" fn fmi3SetString(
 ) -> Status {
     let body = |handle: &mut super::Handle| {
         same_length(nvr, n_values)?;
-        // SAFETY: the host gives so many references.
+        // SAFETY: the host passes an array of this length.
         let references = unsafe { slice(vr, nvr, "valueReferences")? };
         references.iter().try_for_each(|one| handle.instance.set(*one, &STRING, f64::NAN))
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3SetString", body) }.into()
 }
 const _: v3::Set<Text> = fmi3SetString;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetFMUState(instance: Instance, place: *mut FmuState) -> Status {
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned, and NULL or a state of it to write over.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`, and NULL or a state of it to overwrite.
     unsafe { call(instance, "fmi3GetFMUState", |handle| save(handle, place)) }.into()
 }
 const _: v3::GetFmuState = fmi3GetFMUState;
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SetFMUState(instance: Instance, saved: FmuState) -> Status {
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned, and a state that this library gave.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`, and a state returned by this library.
     unsafe { call(instance, "fmi3SetFMUState", |handle| handle.instance.restore(state(saved)?)) }.into()
 }
 const _: v3::SetFmuState = fmi3SetFMUState;
@@ -329,11 +329,11 @@ const _: v3::SetFmuState = fmi3SetFMUState;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3FreeFMUState(instance: Instance, place: *mut FmuState) -> Status {
     let body = |_: &mut super::Handle| {
-        // SAFETY: the host gives NULL or a state that this library gave.
+        // SAFETY: the host passes NULL or a state returned by this library.
         unsafe { free_state(place) };
         Ok(())
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3FreeFMUState", body) }.into()
 }
 const _: v3::FreeFmuState = fmi3FreeFMUState;
@@ -341,10 +341,10 @@ const _: v3::FreeFmuState = fmi3FreeFMUState;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SerializedFMUStateSize(instance: Instance, saved: FmuState, size: *mut usize) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives a state that this library gave, and room for the size.
+        // SAFETY: the host passes a state returned by this library, and room for the size.
         unsafe { put(size, handle.serialize(state(saved)?).len(), "size") }
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3SerializedFMUStateSize", body) }.into()
 }
 const _: v3::SerializedFmuStateSize = fmi3SerializedFMUStateSize;
@@ -352,10 +352,10 @@ const _: v3::SerializedFmuStateSize = fmi3SerializedFMUStateSize;
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3SerializeFMUState(instance: Instance, saved: FmuState, to: *mut Byte, size: usize) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives a state that this library gave, and room for so many bytes.
+        // SAFETY: the host passes a state returned by this library, and room for this number of bytes.
         unsafe { copy_bytes(&handle.serialize(state(saved)?), to, size) }
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3SerializeFMUState", body) }.into()
 }
 const _: v3::SerializeFmuState = fmi3SerializeFMUState;
@@ -368,10 +368,10 @@ unsafe extern "C" fn fmi3DeserializeFMUState(
     place: *mut FmuState,
 ) -> Status {
     let body = |handle: &mut super::Handle| {
-        // SAFETY: the host gives so many bytes, and room for the state.
+        // SAFETY: the host passes this number of bytes, and room for the state.
         unsafe { keep(handle.deserialize(slice(bytes, size, "serializedState")?)?, place) }
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3DeserializeFMUState", body) }.into()
 }
 const _: v3::DeserializeFmuState = fmi3DeserializeFMUState;
@@ -397,7 +397,7 @@ unsafe extern "C" fn fmi3DoStep(
         unsafe { put(last_successful_time, handle.instance.last_successful_time(), "lastSuccessfulTime")? };
         done
     };
-    // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+    // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
     unsafe { call(instance, "fmi3DoStep", body) }.into()
 }
 const _: v3::DoStep = fmi3DoStep;

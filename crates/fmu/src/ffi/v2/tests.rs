@@ -1,4 +1,4 @@
-//! The functions of FMI 2.0 as a host calls them.
+//! The functions of FMI 2.0 as called by a host.
 use super::*;
 use crate::ffi::host::{Messages, Room, recording};
 use crate::interface::{Kind, Role};
@@ -56,7 +56,7 @@ fn instantiate(room: &Room) -> Fmu<'_> {
     fmu
 }
 
-/// An instance that is initialised.
+/// An initialised instance.
 fn begun(room: &Room) -> Fmu<'_> {
     let fmu = instantiate(room);
     fmu.initialise();
@@ -103,7 +103,7 @@ impl Fmu<'_> {
         assert_eq!(status, Status::OK);
     }
 
-    /// From tick `from` over `ticks`.
+    /// Steps from tick `from` over `ticks`.
     fn step(&self, from: u32, ticks: f64) -> Status {
         // SAFETY: the instance lives.
         unsafe { fmi2DoStep(self.c, f64::from(from) / RATE, ticks / RATE, 1) }
@@ -115,7 +115,7 @@ impl Fmu<'_> {
         }
     }
 
-    /// The message of the last refusal.
+    /// Text of the last refusal.
     fn said(&self) -> String {
         self.room.log.take().pop().map(|(_, _, message)| message).unwrap_or_default()
     }
@@ -128,7 +128,7 @@ fn outputs(room: &Room) -> Vec<(u32, &str)> {
     all.filter(|(_, one)| is_real(&one.role, one.kind)).map(|(at, one)| (at, one.name.as_str())).collect()
 }
 
-/// Whether a step leaves its value at its end; of others, that of the tick before.
+/// True for outputs of the end of a step; the others are those of the tick before.
 fn is_of_a_body(name: &str) -> bool {
     ["motor.", "table.", "load."].iter().any(|body| name.starts_with(body))
 }
@@ -157,7 +157,7 @@ fn what_it_computes_is_what_a_run_records() {
     assert!(one.get(&[room.output("load.position")])[0] > 0.05, "it has moved");
 }
 
-/// Oracle: the axis in one. Drive first, mechanics with what it gives, measurements back: the loop's own order.
+/// Oracle: the axis in one piece. Drive first, mechanics with its output, measurements back: the loop's own order.
 #[test]
 fn drive_and_mechanics_apart_are_the_axis_to_the_bit() {
     let rooms = [Part::Axis, Part::Drive, Part::Mechanics].map(Room::new);
@@ -180,7 +180,7 @@ fn drive_and_mechanics_apart_are_the_axis_to_the_bit() {
     assert!(axis.get(&of_axis)[0] > 0.04, "it has moved");
 }
 
-/// Steps over `ticks` under inputs that change in every one; the outputs of each.
+/// Steps over `ticks` with inputs that change in each one; returns the outputs of each.
 fn outputs_of(fmu: &Fmu, references: &[u32], ticks: std::ops::Range<u32>) -> Vec<f64> {
     let name = if fmu.room.model.part == Part::Drive { "shaft.velocity" } else { "force.load" };
     let steps = ticks.flat_map(|tick| {
@@ -191,7 +191,7 @@ fn outputs_of(fmu: &Fmu, references: &[u32], ticks: std::ops::Range<u32>) -> Vec
     steps.collect()
 }
 
-/// Oracle: the run itself, which goes on from the state.
+/// Oracle: the run itself, continued from the state.
 #[test]
 fn a_saved_state_goes_on_to_the_bit_and_so_do_its_bytes() {
     for &(_, part, _) in Part::ALL {
@@ -200,7 +200,7 @@ fn a_saved_state_goes_on_to_the_bit_and_so_do_its_bytes() {
         let (one, other) = (begun(&room), begun(&room));
         outputs_of(&one, &references, 0..500);
         let (mut state, mut copy, mut size) = (ptr::null_mut(), ptr::null_mut(), 0);
-        // SAFETY: places and buffers are those of living values, of the size that was asked for.
+        // SAFETY: places and buffers are those of living values, of the requested size.
         let bytes = unsafe {
             assert_eq!(fmi2GetFMUstate(one.c, &raw mut state), Status::OK);
             assert_eq!(fmi2SerializedFMUstateSize(one.c, state, &raw mut size), Status::OK);
@@ -248,8 +248,8 @@ fn a_saved_state_goes_on_to_the_bit_and_so_do_its_bytes() {
     }
 }
 
-/// A word of the state that is another, under a checksum that is right: who does that is refused, or has an axis that nobody simulated, and
-/// the host lives.
+/// A changed word of the state with a valid checksum is refused, or gives an axis that was never simulated; the host
+/// survives either way.
 #[test]
 fn a_forged_state_ends_no_host() {
     let mut random = Random::seeded(41);
@@ -257,7 +257,7 @@ fn a_forged_state_ends_no_host() {
     let (one, other) = (begun(&room), begun(&room));
     one.step_to(0..300);
     let (mut state, mut size) = (ptr::null_mut(), 0);
-    // SAFETY: places and buffers are those of living values, of the size that was asked for.
+    // SAFETY: places and buffers are those of living values, of the requested size.
     let bytes = unsafe {
         assert_eq!(fmi2GetFMUstate(one.c, &raw mut state), Status::OK);
         assert_eq!(fmi2SerializedFMUstateSize(one.c, state, &raw mut size), Status::OK);
@@ -279,7 +279,7 @@ fn a_forged_state_ends_no_host() {
         put(&mut forged, word, random.one_of(&value));
         let unsigned: Vec<u8> = forged[..size - 8].iter().map(|byte| byte.cast_unsigned()).collect();
         put(&mut forged, words - 1, twox_hash::XxHash64::oneshot(0, &unsigned));
-        // SAFETY: as above; a state that is given is freed.
+        // SAFETY: as above; an accepted state is freed.
         unsafe {
             if fmi2DeSerializeFMUstate(other.c, forged.as_ptr(), size, &raw mut copy) != Status::OK {
                 continue;
@@ -302,7 +302,7 @@ fn a_forged_state_ends_no_host() {
     unsafe { assert_eq!(fmi2FreeFMUstate(one.c, &raw mut state), Status::OK) };
 }
 
-/// Oracle: §4.2.4. After an error only reset, a saved state and the end are left.
+/// Oracle: §4.2.4. After an error only reset, a saved state and the end are allowed.
 #[test]
 fn a_call_in_the_wrong_state_is_refused() {
     let room = Room::new(Part::Axis);
@@ -374,7 +374,7 @@ fn references_types_and_values_are_checked() {
     assert!(fmu.said().contains("`vr` is NULL"));
 }
 
-/// A step of no whole number of ticks never fits: to discard it would have importers ask for it again without end, as FMPy does.
+/// A step that is not a whole number of ticks never fits: to discard it would make importers repeat it endlessly, as FMPy does.
 #[test]
 fn steps_are_whole_ticks_from_the_time_of_the_fmu_to_the_stop_time() {
     let room = Room::new(Part::Axis);
@@ -424,17 +424,17 @@ fn a_target_is_moved_to_when_execute_rises() {
     fmu.step_to(0..100);
     assert_eq!(fmu.get(&position)[0].to_bits(), 0.0_f64.to_bits(), "nothing executes");
     fmu.set_boolean("execute", true);
-    // 0.25 + 0.1 + 0.05 s; the set-point is that of the tick that has ended.
+    // 0.25 + 0.1 + 0.05 s; the set-point is that of the last tick.
     fmu.step_to(100..6_490);
     assert!(fmu.get(&position)[0] < 0.05 - 1e-12);
     fmu.step_to(6_490..6_502);
     assert!((fmu.get(&position)[0] - 0.05).abs() < 1e-12);
     fmu.step_to(6_502..16_000);
-    // The load sways on, by less than in the move of the demo at ten times the jerk: half a millimetre.
+    // The load keeps swaying, by less than in the move of the demo at ten times the jerk: half a millimetre.
     assert!((fmu.get(&position)[1] - 0.05).abs() < 5e-4);
 }
 
-/// Oracle: the same run, later.
+/// Oracle: the same run, started later.
 #[test]
 fn the_program_waits_for_start() {
     let (room, expected) = (Room::new(Part::Axis), recording(2_000));

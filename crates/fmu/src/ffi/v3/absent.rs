@@ -1,4 +1,4 @@
-//! Functions of FMI 3.0 that are there, as the standard demands, for what this FMU has not.
+//! Functions of FMI 3.0 required by the standard for features that this FMU lacks.
 #![expect(unsafe_code, reason = "functions that other programs call, with pointers of theirs")]
 
 use crate::error::Refusal;
@@ -7,13 +7,13 @@ use servobench_fmi::abi::v3::{
     self, Binary, Boolean, Clock, DependencyKind, Float64, Instance, IntervalQualifier, Status, ValueReference,
 };
 
-/// Functions that refuse, and why.
+/// Functions that refuse, with their reasons.
 macro_rules! unsupported {
     ($($name:ident($($argument:ident: $of:ty),*) $why:literal;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(instance: Instance, $($argument: $of),*) -> Status {
             let _unused = ($($argument,)*);
-            // SAFETY: the host gives what `fmi3InstantiateCoSimulation` returned.
+            // SAFETY: the host passes the pointer from `fmi3InstantiateCoSimulation`.
             unsafe { call(instance, stringify!($name), |_| Err(Refusal::Unsupported { why: $why })) }.into()
         }
     )*};

@@ -1,4 +1,4 @@
-//! The functions of FMI 3.0 as a host calls them.
+//! The functions of FMI 3.0 as called by a host.
 use super::*;
 use crate::ffi::host::{Messages, Room, recording};
 use crate::part::Part;
@@ -67,7 +67,7 @@ impl Fmu<'_> {
         value
     }
 
-    /// From tick `from` over `ticks`; the status and the last successful time.
+    /// Steps from tick `from` over `ticks`; returns the status and the last successful time.
     fn step(&self, from: u32, ticks: f64) -> (Status, f64) {
         let (mut flags, mut time) = ([7; 3], f64::NAN);
         let [event, terminate, early] = flags.each_mut().map(ptr::from_mut);
@@ -108,7 +108,7 @@ fn a_step_of_no_whole_number_of_ticks_is_an_error() {
     assert_eq!(fmu.step(3, 1.0).0, Status::ERROR, "it stays so");
 }
 
-/// Oracle: §2.3 and §4.2; an error ends the instance, but for reset and saved states.
+/// Oracle: §2.3 and §4.2; an error ends the instance, except for reset and saved states.
 #[test]
 fn what_it_has_not_is_refused_by_name() {
     let room = Room::new(Part::Axis);
@@ -160,14 +160,14 @@ fn other_types_and_other_lengths_are_refused() {
     }
 }
 
-/// Oracle: the run that goes on.
+/// Oracle: the run, continued.
 #[test]
 fn a_state_and_its_bytes_go_on_to_the_bit() {
     let room = Room::new(Part::Axis);
     let (one, other) = (begun(&room), begun(&room));
     assert_eq!(one.step(0, 1_500.0).0, Status::OK);
     let (mut state, mut copy, mut size) = (ptr::null_mut(), ptr::null_mut(), 0);
-    // SAFETY: places and buffers are those of living values, of the size that was asked for.
+    // SAFETY: places and buffers are those of living values, of the requested size.
     unsafe {
         assert_eq!(fmi3GetFMUState(one.instance, &raw mut state), Status::OK);
         assert_eq!(fmi3SerializedFMUStateSize(one.instance, state, &raw mut size), Status::OK);
