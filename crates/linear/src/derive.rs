@@ -1,20 +1,20 @@
-//! Matrices of the kinds of ticks of a loop that runs.
+//! Matrices of the kinds of ticks of a running loop.
 use crate::{CONTROLLERS, Factors, LinearError, MECHANICS, Pattern, Running};
 use nalgebra::DMatrix;
 use servobench_base::state::{Form, Number, Part, Reader, Writer, words};
 use std::collections::HashMap;
 
-/// Exponent of two of what a number is moved by that is zero at rest: its square underflows, and what a thousand times a thousand units
-/// make of it does not.
+/// Exponent of two of the deviation of a number that is zero at rest: its square underflows, and the deviation scaled by 1e6 or
+/// its inverse does not.
 const SMALL: i32 = -600;
-/// Share of the parts of a sum that is left where they meet: roundings of some ten numbers.
+/// Relative remainder of terms of a sum that cancel: roundings of some ten numbers.
 const MEETS: f64 = 4096.0 * f64::EPSILON;
-/// Places that are tried.
+/// Most places tried.
 const PLACES: u32 = 64;
-/// Share of a number at rest that it may change by in a tick: roundings of a sum of some ten numbers.
+/// Largest relative change of a number at rest in a tick: roundings of a sum of some ten numbers.
 const REST: f64 = 64.0 * f64::EPSILON;
 
-/// The loop at rest before a tick of a kind, and after it.
+/// The loop at rest before and after a tick of a kind.
 struct Kind {
     words: Vec<u64>,
     before: Vec<f64>,
@@ -26,7 +26,7 @@ struct Kind {
 pub struct TickMatrix {
     /// A.
     pub matrix: DMatrix<f64>,
-    /// Magnitudes of the sums that the entries are, to which their roundings are in proportion; `None` where they are the entries themselves.
+    /// Magnitudes of the sums that the entries are, to which their roundings are proportional; `None` if equal to the entries.
     pub magnitude: Option<DMatrix<f64>>,
 }
 
@@ -43,26 +43,26 @@ pub struct System {
     pub d: DMatrix<f64>,
 }
 
-/// A loop that runs, and the matrices of its ticks as far as they were asked for.
+/// A running loop, with the matrices of its ticks derived so far.
 pub struct Matrices<'a> {
     running: Box<dyn Running + 'a>,
     numbers: Vec<Number>,
     kinds: Vec<Kind>,
-    /// Every number when the loop rests elsewhere, less what it is here; by the position there; and the number from which positions
-    /// are told.
+    /// Difference of every number between rest at another place and rest here; the same per position there; and the number from which
+    /// positions are measured.
     elsewhere: Vec<f64>,
     place: Vec<f64>,
     origin: Option<usize>,
-    /// True where controllers hold something at rest.
+    /// True if controllers hold a value that is not zero at rest.
     is_operated: bool,
-    /// Numbers that are states.
+    /// Indices of the numbers that are states.
     states: Vec<usize>,
-    /// Matrices that were derived, by their kind and the bits of their factors.
+    /// Derived matrices, by their kind and the bits of their factors.
     known: HashMap<(usize, u8), DMatrix<f64>>,
     scratch: (Vec<u64>, Vec<f64>),
 }
 
-/// Size by which a number moves that is zero at rest.
+/// Deviation of a number that is zero at rest.
 fn small() -> f64 {
     f64::from(SMALL).exp2()
 }
@@ -74,10 +74,10 @@ fn values(running: &mut dyn Running) -> Result<Vec<f64>, LinearError> {
 }
 
 impl<'a> Matrices<'a> {
-    /// The matrices of `running`, whose first tick is number 0; of kind i is tick number `ticks[i]`, each larger than 0.
+    /// The matrices of `running`, whose first tick is number 0; the tick of kind i is number `ticks[i]`, each larger than 0.
     ///
     /// # Errors
-    /// [`LinearError`] where it does not run, or does not stay at rest.
+    /// [`LinearError`] if it does not run, or does not stay at rest.
     pub fn new(mut running: Box<dyn Running + 'a>, ticks: &[u32]) -> Result<Self, LinearError> {
         let last = ticks.iter().copied().max().unwrap_or(0);
         running.set(&Factors { position: 0.0, ..Factors::ONE });
@@ -125,7 +125,7 @@ impl<'a> Matrices<'a> {
         self.states.len()
     }
 
-    /// Numbers that everything but the controllers acts on, directly or not, and that lie on a ring.
+    /// Finds the states: numbers on a ring that are reached, directly or not, from numbers outside of the controllers.
     fn find_states(&mut self) -> Result<(), LinearError> {
         let count = self.numbers.len();
         let is_start = |number: &Number| !number.name.starts_with(CONTROLLERS) && !number.is_derived;
@@ -171,7 +171,7 @@ impl<'a> Matrices<'a> {
     fn column(&mut self, kind: usize, number: usize) -> Result<Vec<f64>, LinearError> {
         let mut column = self.moved(kind, number)?;
         if self.origin == Some(number) && self.is_operated {
-            // Parts of the place that are turned with it meet again but for roundings: what is left of their sum is none.
+            // Terms of the place that are rotated with it cancel except for roundings: the remainder of their sum is zero.
             let mut sums = vec![0.0; column.len()];
             let shares = self.place.clone();
             for (other, share) in shares.iter().enumerate().filter(|(other, share)| *other != number && **share != 0.0)
@@ -214,7 +214,7 @@ impl<'a> Matrices<'a> {
         running.save(&mut Values(after))?;
         let mut column: Vec<f64> =
             after.iter().zip(&of.after).map(|(other, at_rest)| by(*other, *at_rest, size)).collect();
-        // All places are told from the origin.
+        // All places are measured from the origin.
         if let Some(travel) = origin.map(|origin| column[origin]).filter(|travel| *travel != 0.0) {
             for (other, (entry, share)) in column.iter_mut().zip(place.iter()).enumerate() {
                 if *share != 0.0 && *origin != Some(other) {
@@ -228,7 +228,7 @@ impl<'a> Matrices<'a> {
     /// The matrix of a tick of this kind with these gains.
     ///
     /// # Errors
-    /// [`LinearError`] where it does not run.
+    /// [`LinearError`] if it does not run.
     pub fn matrix(&mut self, kind: usize, factors: &Factors) -> Result<TickMatrix, LinearError> {
         let corners = factors.corners();
         for (corner, _) in &corners {
@@ -243,7 +243,7 @@ impl<'a> Matrices<'a> {
         let first = of(&corners[0].0);
         for (corner, share) in &corners {
             let matrix = of(corner);
-            // What no gain acts on stays what it is, to the bit.
+            // Entries on which no gain acts stay unchanged, to the bit.
             sum.matrix.zip_zip_apply(matrix, first, |entry, corner, first| *entry += share * (corner - first));
             if let Some(magnitude) = &mut sum.magnitude {
                 magnitude.zip_zip_apply(matrix, first, |entry, corner, first| {
@@ -259,11 +259,11 @@ impl<'a> Matrices<'a> {
         Ok(sum)
     }
 
-    /// A tick of this kind with the gains as they are, from states and `inputs` to states and `outputs`: numbers by their names, of several
-    /// with one name the first. A number that a tick sets before it reads it is no input.
+    /// A tick of this kind with unchanged gains, from states and `inputs` to states and `outputs`: numbers by their names, the first
+    /// of several with one name. A number that a tick sets before it reads it is not an input.
     ///
     /// # Errors
-    /// [`LinearError`] where it does not run, or has no such number.
+    /// [`LinearError`] if it does not run, or has no such number.
     pub fn system(&mut self, kind: usize, inputs: &[&str], outputs: &[&str]) -> Result<System, LinearError> {
         let index = |name: &&str| {
             let found = self.numbers.iter().position(|number| number.name == **name);
@@ -289,7 +289,7 @@ impl<'a> Matrices<'a> {
         Ok(())
     }
 
-    /// Has these gains from now on, with which the loop at rest may be another by roundings.
+    /// Sets these gains, with which the loop at rest may differ by roundings.
     fn at_rest(&mut self, kind: usize, factors: &Factors) -> Result<(), LinearError> {
         self.running.set(factors);
         let of = &mut self.kinds[kind];
@@ -312,12 +312,12 @@ impl<'a> Matrices<'a> {
     }
 }
 
-/// Every number at a place at which the bodies stay to the bit, less what it is at 0; where a position is multiplied on its way from tick to
-/// tick, not all places are such. What changes there, as an integral does, is not of the place.
+/// Difference of every number between a place at which the bodies stay to the bit and the place 0; if a position is multiplied from tick
+/// to tick, not all places are suitable. Numbers that keep changing there, such as an integral, do not belong to the place.
 fn elsewhere(running: &mut dyn Running, numbers: &[Number], last: u32) -> Result<Vec<f64>, LinearError> {
     let mut at = |position: f64| {
         running.place(position)?;
-        // The period is over when everything that a task holds is what it is at rest.
+        // The period is over when everything held by a task has its value at rest.
         (0..=last).try_for_each(|_| running.tick())?;
         let first = values(running)?;
         (0..last).try_for_each(|_| running.tick())?;
@@ -350,12 +350,12 @@ const fn is_same(one: f64, other: f64) -> bool {
     one.to_bits() == other.to_bits()
 }
 
-/// The difference of two numbers, by `size`; none of the same number, even where it is not finite.
+/// The difference of two numbers, by `size`; zero for equal numbers, even if they are not finite.
 fn by(other: f64, at_rest: f64, size: f64) -> f64 {
     if is_same(other, at_rest) { 0.0 } else { (other - at_rest) / size }
 }
 
-/// The numbers alone.
+/// Writer of the numbers alone.
 struct Values<'a>(&'a mut Vec<f64>);
 
 impl Writer for Values<'_> {

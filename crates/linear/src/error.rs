@@ -1,8 +1,8 @@
-//! Why a loop has no matrices.
+//! Errors while deriving the matrices of a loop.
 use servobench_base::state::Damaged;
 use thiserror::Error;
 
-/// Why a loop has no matrices.
+/// Reasons why a loop has no matrices.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LinearError {
     /// A state that was saved cannot be restored.
@@ -14,7 +14,7 @@ pub enum LinearError {
     /// The loop does not stay where it is brought to rest.
     #[error("the loop that is to be made linear does not stay at rest: `{0}` changes")]
     NotAtRest(String),
-    /// A number that its rest is told by.
+    /// A number that defines its rest is missing.
     #[error("the loop that is to be made linear has no number `{0}`")]
     NoSuchNumber(String),
 }

@@ -1,25 +1,25 @@
-//! Gains of a cascade by factors.
+//! Factors on the gains of a cascade.
 use servobench_base::Dq;
 
-/// Factors on the gains of a cascade, 1 as they are, 0 without them.
+/// Factors on the gains of a cascade: 1 leaves a gain unchanged, 0 removes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
-    /// On the gain of the position loop.
+    /// Factor on the gain of the position loop.
     pub position: f64,
-    /// On the gain of the velocity loop.
+    /// Factor on the gain of the velocity loop.
     pub velocity: f64,
-    /// On what the velocity loop has beside its gain: the compensation of an observed disturbance.
+    /// Factor on the part of the velocity loop besides its gain: the compensation of an observed disturbance.
     pub compensation: f64,
-    /// On the gains of both axes of the current loop.
+    /// Factors on the gains of both axes of the current loop.
     pub current: Dq,
 }
 
 impl Factors {
-    /// The gains as they are.
+    /// Unchanged gains.
     pub const ONE: Self = Self { position: 1.0, velocity: 1.0, compensation: 1.0, current: Dq { d: 1.0, q: 1.0 } };
 
     /// Factors of 0 and 1 between which these lie, or beyond which they go, and their shares, which add up to 1. Both axes of the
-    /// current loop go together where they are by the same factor.
+    /// current loop share a corner if their factors are equal.
     pub(crate) fn corners(&self) -> Vec<(Self, f64)> {
         let mut corners = vec![(*self, 1.0)];
         let mut split = |value: f64, put: &dyn Fn(&mut Self, f64)| {
@@ -58,7 +58,7 @@ impl Factors {
 mod tests {
     use super::*;
 
-    /// Oracle: a function that is affine in each factor is what its corners say, by their shares.
+    /// Oracle: a function that is affine in each factor equals the sum over its corners, weighted by their shares.
     #[test]
     fn corners_say_what_is_affine_in_each_factor() {
         let of = |f: &Factors| {

@@ -1,24 +1,24 @@
-//! The linear loop by differences of the tick that runs.
+//! The linear loop by differences of the running tick.
 //!
-//! No equation is written a second time: a loop at rest is saved, one of its numbers is moved, it goes a tick, and what is different then,
-//! by what was moved, is a column of the matrix of that tick.
+//! No equation is written a second time: a loop at rest is saved, one of its numbers is moved, it runs a tick, and the resulting
+//! differences, divided by the move, are a column of the matrix of that tick.
 //!
 //! ```text
-//! x(k+1) = A_i·x(k)         i the kind of the tick: which tasks have their turn
+//! x(k+1) = A_i·x(k)         i the kind of the tick: the tasks that are due
 //! A_i·e_j = (tick_i(x₀ + δ·e_j) − tick_i(x₀))/δ
 //! ```
-//! **Exact.** A number that is zero at rest is moved by δ = 2⁻⁶⁰⁰: products of two deviations underflow to zero, so that what is left
-//! is the derivative but for the rounding of the tick itself, and what does not act gives exactly zero. A number that is not zero at rest is
-//! moved by as much as it is; what it acts on must be a straight line in it.
+//! **Exact.** A number that is zero at rest is moved by δ = 2⁻⁶⁰⁰: products of two deviations underflow to zero, so that the result
+//! is the derivative except for the rounding of the tick itself, and numbers that do not act give exactly zero. A number that is not
+//! zero at rest is moved by its own magnitude; everything that it acts on must be linear in it.
 //!
-//! **Positions.** The whole loop at rest at another place is at rest, too. This direction w, found by bringing it there, takes the
-//! place of the first position: all others are told from it. A loop that no position closes then does not depend on it, exactly.
+//! **Positions.** The whole loop at rest at another place is at rest, too. This direction w, found by bringing it there, replaces
+//! the first position: all others are measured from it. A loop that no position closes then does not depend on it, exactly.
 //!
-//! **Gains.** Within a tick each gain acts once on the way of a signal, so that the matrix is affine in each: it is derived with
-//! a gain as it is and without it, and anything between or beyond lies on a line ([`Factors`]).
+//! **Gains.** Within a tick each gain acts once on the path of a signal, so that the matrix is affine in each: it is derived with
+//! the unchanged gain and without it, and anything between or beyond lies on a line ([`Factors`]).
 //!
-//! **States.** Only numbers that lie on a ring are states of the matrix: what nothing reads, and what only acts from outside, such as
-//! a set-point, is in no loop.
+//! **States.** Only numbers on a ring are states of the matrix: numbers that nothing reads, and numbers that only act from outside, such as
+//! a set-point, are in no loop.
 
 mod derive;
 mod error;
@@ -32,37 +32,37 @@ pub use structure::Pattern;
 
 use servobench_base::state::{Reader, Writer};
 
-/// Name that the numbers of the mechanics begin with.
+/// Prefix of the names of the numbers of the mechanics.
 pub const MECHANICS: &str = "mechanics.";
-/// Name that the numbers of the controllers begin with; all others are of what they control.
+/// Prefix of the names of the numbers of the controllers; all others belong to the controlled system.
 pub const CONTROLLERS: &str = "controllers.";
 
-/// A loop that runs.
+/// A running loop.
 pub trait Running {
     /// Writes its state, all of it within [`MECHANICS`], [`CONTROLLERS`] and other parts.
     ///
     /// # Errors
-    /// [`LinearError`] where it cannot be saved.
+    /// [`LinearError`] if it cannot be saved.
     fn save(&mut self, to: &mut dyn Writer) -> Result<(), LinearError>;
 
-    /// Takes a state that was saved.
+    /// Restores a saved state.
     ///
     /// # Errors
-    /// [`LinearError`] where it cannot be restored.
+    /// [`LinearError`] if it cannot be restored.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), LinearError>;
 
     /// Brings it to rest at `position`, before its first tick.
     ///
     /// # Errors
-    /// [`LinearError`] where it cannot be brought there.
+    /// [`LinearError`] if it cannot be brought there.
     fn place(&mut self, position: f64) -> Result<(), LinearError>;
 
-    /// Goes a tick.
+    /// Runs one tick.
     ///
     /// # Errors
-    /// [`LinearError`] where it cannot go on.
+    /// [`LinearError`] if it cannot continue.
     fn tick(&mut self) -> Result<(), LinearError>;
 
-    /// Has its gains by `factors` from now on.
+    /// Sets its gains, scaled by `factors`.
     fn set(&mut self, factors: &Factors);
 }

@@ -1,14 +1,14 @@
-//! Which states are in a loop that a controller closes, by what acts on what and nothing else.
+//! States in a loop that a controller closes, found only from the structure of the matrices.
 //!
 //! State j acts on state i when entry (i, j) of the matrix of a tick is not zero. Over the common period that is a graph,
 //! whose strongly connected components are the blocks on the diagonal of the block-triangular matrix M: the eigenvalues
-//! of M are theirs. A component without a controller's state is not closed by any loop: the position of an axis that nobody
-//! holds, bodies and springs that the drive does not act on; their poles are on the circle or inside, by physics. Neither is one
+//! of M are theirs. A component without a controller's state is not closed by any loop: the position of an axis that is not
+//! held, bodies and springs that the drive does not act on; their poles are on the circle or inside, by physics. Neither is one
 //! of controllers' states alone: an integrator without input, a filter.
 //! Source: Tarjan, *SIAM J. Comput.* 1(2), 1972 (components); Murota, *Matrices and Matroids for Systems Analysis*, §2.
 use nalgebra::DMatrix;
 
-/// What acts on what: bit j of row i says whether state j acts on state i.
+/// Structure of a matrix: bit j of row i is set if state j acts on state i.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern(Vec<Row>);
 
@@ -30,7 +30,7 @@ fn unite(row: &mut Row, other: &Row) {
 }
 
 impl Pattern {
-    /// Of `size` states, each of which acts on those of its row.
+    /// The structure of `size` states in which state j acts on state i if `acts(j, i)`.
     #[must_use]
     pub fn with_rows(size: usize, acts: impl Fn(usize, usize) -> bool) -> Self {
         let row = |i: usize| {
@@ -41,19 +41,19 @@ impl Pattern {
         Self((0..size).map(row).collect())
     }
 
-    /// Every one of `size` states acts on itself alone.
+    /// The structure of `size` states that act only on themselves.
     #[must_use]
     pub fn identity(size: usize) -> Self {
         Self::with_rows(size, |j, i| i == j)
     }
 
-    /// Of a matrix: where it is not exactly zero.
+    /// The structure of a matrix: set where it is not exactly zero.
     #[must_use]
     pub fn of(matrix: &DMatrix<f64>) -> Self {
         Self::with_rows(matrix.nrows(), |j, i| matrix[(i, j)] != 0.0)
     }
 
-    /// What acts on what when `first` comes before this one.
+    /// The structure of the product with `first`, which comes before this one.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         let through = |row: &Row| {
@@ -64,7 +64,7 @@ impl Pattern {
         Self(self.0.iter().map(through).collect())
     }
 
-    /// The strongly connected components that hold states of a controller, those that `is_controllers` says, and of what it controls.
+    /// The strongly connected components with states of both a controller, as given by `is_controllers`, and the controlled system.
     #[must_use]
     pub fn loops(&self, is_controllers: &[bool]) -> Vec<Vec<usize>> {
         let is_controllers = |j: &usize| is_controllers[*j];
@@ -72,7 +72,7 @@ impl Pattern {
         self.components().into_iter().filter(holds_both).collect()
     }
 
-    /// The strongly connected components; a state that does not act on itself is none.
+    /// The strongly connected components; a state that does not act on itself is not one.
     #[must_use]
     pub fn components(&self) -> Vec<Vec<usize>> {
         let size = self.0.len();
@@ -102,7 +102,7 @@ impl Pattern {
 mod tests {
     use super::*;
 
-    /// Two words.
+    /// Number of states, which takes two words.
     const SIZE: usize = 100;
     const CONTROLLER: usize = 12;
 

@@ -1,4 +1,4 @@
-//! A loop whose matrices are known by hand.
+//! A loop with matrices known by hand.
 use super::*;
 use servobench_base::state::{Part, Stateful as _, Writer};
 
@@ -6,7 +6,7 @@ const H: f64 = 1e-3;
 const GAIN: f64 = 0.25;
 const INTEGRAL: f64 = 0.125;
 
-/// A speed under a PI controller that forms differences of positions; every other tick it holds what it asked for.
+/// A speed under a PI controller that forms differences of positions; every other tick it holds its command.
 #[derive(Default)]
 struct Speed {
     position: f64,
@@ -98,8 +98,8 @@ fn derived() -> Matrices<'static> {
     Matrices::new(Box::new(Speed { gain: GAIN, ..Speed::default() }), &[2, 1]).unwrap()
 }
 
-/// Oracle: by hand. Positions are told from the motor's, so that differences of them do not depend on it, and the position, which only
-/// integrates, is in no loop.
+/// Oracle: by hand. Positions are measured from the motor's, so that differences of them do not depend on it, and the position, which is
+/// only integrated, is in no loop.
 #[test]
 fn a_loop_by_hand() {
     let mut derived = derived();
@@ -112,7 +112,7 @@ fn a_loop_by_hand() {
         let expected = DMatrix::from_row_slice(3, 3, &[1.0 - g, g, 0.0, -INTEGRAL, 1.0, 0.0, -g, g, 0.0]);
         let found = derived.matrix(0, &Factors { velocity, ..Factors::ONE }).unwrap();
         for (found, expected) in found.matrix.iter().zip(expected.iter()) {
-            // Powers of two: h·v/h alone rounds.
+            // Powers of two: only h·v/h rounds.
             assert!((found - expected).abs() < 1e-15, "{velocity}: {found} {expected}");
             assert_eq!(*found == 0.0, *expected == 0.0, "{velocity}");
         }
