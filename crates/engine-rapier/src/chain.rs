@@ -5,7 +5,7 @@
 //! drift          x(k+1) = x(k) + h·v½                          Rapier's, see `lumps`
 //! half kick      M·(v(k+1) − v½) = h/2·F(x(k+1), v, u(k))      ours
 //! ```
-//! Second order, with damping and behind a prescribed base too; a mode of ω rings by (ω·h)²/24 too fast and keeps its
+//! Second order, with damping and behind a prescribed base too; a mode of ω oscillates too fast by (ω·h)²/24 and keeps its
 //! amplitude. Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed., §I.1.4 (Störmer–Verlet).
 use crate::NAME;
 use crate::half_kick::HalfKick;
@@ -17,26 +17,26 @@ use servobench_plant::{
     MechanicsSetup, check_states,
 };
 
-/// A chain in Rapier.
+/// A chain simulated in Rapier.
 #[derive(Stateful)]
 pub(crate) struct LumpChain<const N: usize> {
     identity: Identity,
     #[state(constant)]
     parameters: Parameters<N>,
     friction: GroundFriction<N>,
-    /// Body 0 follows a set-point and is no lump.
+    /// True if body 0 follows a set-point and is not a lump.
     #[state(constant)]
     prescribed: bool,
     /// Tick length (s).
     #[state(constant)]
     step: f64,
-    /// A tick begins with that of the bodies that are held in it.
+    /// The half kick that a tick begins with, with the bodies held in it.
     #[state(recomputed)]
     kick: HalfKick<N>,
     #[state(derived)]
     lumps: Lumps,
     positions: Positions<N>,
-    /// m/s or rad/s.
+    /// Velocities (m/s or rad/s).
     velocities: [f64; N],
     /// Stretch of each link when both its ends are at their centres (m or rad).
     #[state(recomputed)]
@@ -45,12 +45,12 @@ pub(crate) struct LumpChain<const N: usize> {
     bodies: [BodyState; N],
 }
 
-/// The chain's numbers side by side; zero where there is no such body or link.
+/// The chain's parameters in arrays; zero for a missing body or link.
 struct Parameters<const N: usize> {
     transmission: [f64; N],
     viscous: [f64; N],
     bias: [f64; N],
-    /// Of link i, between bodies i and i+1.
+    /// Stiffness of link i, between bodies i and i+1.
     stiffness: [f64; N],
     damping: [f64; N],
 }
@@ -90,7 +90,7 @@ impl<const N: usize> LumpChain<N> {
         }
     }
 
-    /// `constant` plus links, viscous friction and bias, as [`Chain`] writes them.
+    /// `constant` plus efforts of links, viscous friction and bias, as defined in [`Chain`].
     #[inline]
     fn with_passive(&self, constant: &[f64; N]) -> [f64; N] {
         let Parameters { transmission: r, viscous, bias, stiffness, damping, .. } = &self.parameters;
@@ -105,19 +105,19 @@ impl<const N: usize> LumpChain<N> {
         efforts
     }
 
-    /// Adds dry friction to the efforts and stops the bodies that it holds; `all` are the efforts of everything else.
+    /// Adds dry friction to the efforts and stops the bodies that it holds; `all` are all other efforts.
     fn grip(&mut self, constant: &mut [f64; N], all: &mut [f64; N]) {
         let Grips { held, forces } = self.friction.before_tick(self.velocities, *all);
         for (i, force) in forces.into_iter().enumerate() {
             constant[i] += force;
             all[i] += force;
         }
-        // A held body can have come to rest by a half kick that Rapier has not seen.
+        // A half kick unknown to Rapier can have brought a held body to rest.
         self.stop(held);
         self.kick.hold(held | usize::from(self.prescribed));
     }
 
-    /// Stops the bodies of the set `at_rest`, body i being bit i, in Rapier too.
+    /// Stops the bodies of the set `at_rest`, body i being bit i, also in Rapier.
     fn stop(&mut self, at_rest: usize) {
         for i in (0..N).filter(|i| at_rest & (1 << i) != 0) {
             self.velocities[i] = 0.0;
@@ -125,7 +125,7 @@ impl<const N: usize> LumpChain<N> {
         }
     }
 
-    /// Puts body 0 where the set-point says.
+    /// Moves body 0 to the set-point.
     fn follow(&mut self, setpoint: &Setpoint) {
         let r = self.parameters.transmission[0];
         self.positions.from_centre[0] = setpoint.x / r;
@@ -165,7 +165,7 @@ impl<const N: usize> Mechanics for LumpChain<N> {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        // Efforts that do not change during the tick, without the bias (N or N·m).
+        // Efforts that are constant during the tick, without the bias (N or N·m).
         let mut constant = [0.0; N];
         match (&input.actuation, self.prescribed) {
             (Actuation::Effort(effort), false) => constant[0] = *effort,
@@ -218,7 +218,7 @@ impl<const N: usize> Parameters<N> {
     }
 }
 
-/// Refuses a chain with a mode of ω·h ≥ 2, which half kick – drift – half kick blows up.
+/// Refuses a chain with a mode of ω·h ≥ 2, for which half kick – drift – half kick diverges.
 ///
 /// Every mode is below λ = 4/h² when K − λ·M is negative definite: every pivot of its elimination is negative.
 fn check_stability(chain: &Chain, prescribed: bool, step: f64) -> Result<(), MechanicsError> {

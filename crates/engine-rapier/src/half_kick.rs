@@ -1,21 +1,21 @@
-//! Half a kick: what the efforts of one instant do to the velocities in half a tick, positions standing still.
+//! Half a kick: effect of the efforts of one instant on the velocities in half a tick, with positions fixed.
 //!
 //! ```text
 //! M·Δv = h/2·(F − D·(v + Δv/2))      trapezoidal rule in the damping
 //! (M + h/4·D)·Δv = h/2·(F − D·v)     M diagonal, D tridiagonal: a chain
 //! ```
-//! Each half kick is its own mirror image in time, and so is half kick – drift – half kick: the scheme is of second
+//! Each half kick is symmetric in time, and so is half kick – drift – half kick: the scheme is of second
 //! order with damping too, and no damper is too strong for it. Source: Hairer, Lubich & Wanner, *Geometric Numerical
 //! Integration*, 2nd ed., §II.3 (symmetric methods), §II.5 (splitting).
 use servobench_plant::Chain;
 
-/// Half a kick of a chain of which some bodies are held.
+/// Half a kick of a chain with some bodies held.
 pub(crate) struct HalfKick<const N: usize> {
     /// Half a tick (s).
     half_tick: f64,
     /// Entries (i, i) of `M + h/4·D`.
     diagonal: [f64; N],
-    /// Entries (i, i+1).
+    /// Entries (i, i+1) of `M + h/4·D`.
     off_diagonal: [f64; N],
     /// Held bodies, body i being bit i: their velocity does not change.
     held: usize,
@@ -41,7 +41,7 @@ impl<const N: usize> HalfKick<N> {
         kick
     }
 
-    /// Says which bodies are held from now on.
+    /// Sets the held bodies.
     #[inline]
     pub(crate) fn hold(&mut self, held: usize) {
         if self.held != held {
@@ -62,7 +62,7 @@ impl<const N: usize> HalfKick<N> {
         change
     }
 
-    /// Column by column: elimination downwards, substitution upwards.
+    /// Computes `response` column by column: elimination downwards, substitution upwards.
     fn respond(&mut self) {
         // Reciprocal pivots; zero drops a held body's row and column.
         let mut reciprocal = [0.0; N];
@@ -114,7 +114,7 @@ mod tests {
         .unwrap()
     }
 
-    /// Oracle: the dense system, by nalgebra's LU. A held body's row and column are struck out of it.
+    /// Oracle: the dense system, by nalgebra's LU. A held body's row and column are removed.
     #[test]
     fn the_tridiagonal_solution_is_that_of_the_dense_system() {
         let damping = Matrix3::new(0.02 + 20.0, -2e3, 0.0, -2e3, 300.0 + 9e5, -7e5, 0.0, -7e5, 10.0 + 7e5);

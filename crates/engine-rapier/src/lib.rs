@@ -8,25 +8,25 @@
 //! | dry friction of a chain | see [`servobench_plant::GroundFriction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
 //! | a user's MJCF | a multibody of joints (`linkage.rs`), efforts as in a chain | second; Coriolis forces of hinges on hinges first |
 //!
-//! A mode of ω rings too fast by the factor 1 + (ω·h)²/24 (84 Hz at 16 kHz: 5e-5; 1 kHz: 6e-3) and keeps its amplitude:
+//! A mode of ω oscillates too fast by the factor 1 + (ω·h)²/24 (84 Hz at 16 kHz: 5e-5; 1 kHz: 6e-3) and keeps its amplitude:
 //! numerical damping is below 1e-7 of critical over ten seconds. A chain with a mode of ω·h ≥ 2 is refused.
 //!
 //! Chains are built from [`Chain`] and not from its MJCF text, because mjcf-rs skips the spring and the damper of a
-//! tendon. Both ways are held against each other in a test.
+//! tendon. A test compares both paths.
 //!
-//! Joints of MJCF files are those of a multibody, in reduced coordinates. Rapier's impulse joints were measured too: a
-//! pendulum with one of them opens by 17 nm at its pivot and loses 0.2 % of its amplitude in ten seconds at 16 kHz, that
-//! in a multibody nothing and 1e-8.
+//! Joints of MJCF files are those of a multibody, in reduced coordinates. Rapier's impulse joints were measured too: with
+//! one of them a pendulum opens by 17 nm at its pivot and loses 0.2 % of its amplitude in ten seconds at 16 kHz; in a
+//! multibody it does not open and loses 1e-8.
 //!
-//! A tick allocates nothing of ours; Rapier 0.36.1 allocates once in each step, and several times with a multibody.
+//! A tick makes no allocations of its own; Rapier 0.36.1 allocates once in each step, and several times with a multibody.
 //! Chains give the same bits on every machine of the same target; MJCF files with hinges do so with the same C library,
-//! whose sine Rapier takes for them.
+//! whose sine Rapier uses for them.
 //!
 //! # The subset of MJCF
 //!
-//! Everything else is refused by its name, all of it in one go.
+//! Everything else is refused by name, all of it at once.
 //!
-//! | element | what of it |
+//! | element | supported |
 //! |---|---|
 //! | `<body>` | nested (100 elements deep), with one joint or rigid; `pos` and any of the rotations |
 //! | `<joint>` | `hinge`, `slide`: `pos`, `axis`, `damping`, `stiffness`, `springref`, `frictionloss`, `armature` |
@@ -38,7 +38,7 @@
 //! | `<compiler>`, `<option>` | `angle`, `eulerseq`, `inertiafromgeom`; `gravity`, contacts off; the tick is the base rate's |
 //! | `<contact><exclude>` | |
 //!
-//! Materials, lights, cameras, sites, sensors and the like are read over: they move nothing.
+//! Materials, lights, cameras, sites, sensors and the like are ignored: they move nothing.
 
 mod chain;
 mod half_kick;

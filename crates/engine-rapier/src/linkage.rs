@@ -1,20 +1,20 @@
-//! A mechanism from an MJCF file as a Rapier multibody: reduced coordinates, so joints neither drift nor give.
+//! A mechanism from an MJCF file as a Rapier multibody: reduced coordinates, so that joints neither drift nor yield.
 //!
 //! ```text
 //! (M + h/2·D)·v(k+½) = (M − h/2·D)·v(k−½) + h·Q(k)       Rapier's: M(q), gravity, Coriolis forces; ours are in Q
 //! q(k+1) = q(k) + h·v(k+½)                               Rapier's
-//! v(k+1) = v(k+½) + h/2·a(k+1)                           ours, for who reads it: a(k+1) = a(k) + M⁻¹·ΔQ
+//! v(k+1) = v(k+½) + h/2·a(k+1)                           ours, for readers: a(k+1) = a(k) + M⁻¹·ΔQ
 //! ```
-//! This is half kick – drift – half kick with the two half kicks between drifts done at once: `Q(k)` holds springs and
+//! This is half kick – drift – half kick with the two half kicks between drifts combined: `Q(k)` holds springs and
 //! tendons at q(k) and the mean of the efforts before and after tick k; the first kick is half as strong. Joint dampers
 //! are D. Rapier's own joint damping is that of backward Euler, of first order, but half of it there and half of it in Q
-//! is the trapezoidal rule. A tendon's damper takes the velocity v(k) and is explicit.
+//! is the trapezoidal rule. A tendon's damper uses the velocity v(k) and is explicit.
 //!
 //! Second order, but Coriolis forces are taken at v(k−½): of first order. Dry friction (`frictionloss`) is Rapier's own,
-//! a bound on what it takes to stop the joint.
+//! a bound on the effort that stops the joint.
 //!
-//! Rapier takes forces on bodies only, and every changed body costs it a rebuilt active set. Its joint springs act where
-//! `Q` does and cost nothing: one of stiffness 2⁻¹⁰⁰ that is at rest at 2¹⁰⁰·Q pulls with Q, exactly.
+//! Rapier takes forces on bodies only, and every changed body costs it a rebuilt active set. Its joint springs act like
+//! `Q` and cost nothing: one of stiffness 2⁻¹⁰⁰ that is at rest at 2¹⁰⁰·Q pulls with Q, exactly.
 mod assembly;
 
 use crate::mjcf::{Axis, Mechanism, MjcfRefusal, Tendon};
@@ -28,12 +28,12 @@ use servobench_plant::{
 };
 use std::f64::consts::TAU;
 
-/// 2¹⁰⁰: how far off a spring's rest position is per unit of effort.
+/// 2¹⁰⁰: distance of a spring's rest position per unit of effort.
 const FAR: f64 = 1_267_650_600_228_229_401_496_703_205_376.0;
-/// A joint with dry friction that is slower than this is at rest (m/s or rad/s): what Rapier's solver leaves of zero.
+/// A joint with dry friction that is slower than this is at rest (m/s or rad/s): the remainder of zero in Rapier's solver.
 const REST: f64 = 1e-12;
 
-/// A mechanism in Rapier.
+/// A mechanism simulated in Rapier.
 #[derive(Stateful)]
 pub(crate) struct Linkage {
     identity: Identity,
@@ -41,7 +41,7 @@ pub(crate) struct Linkage {
     world: PhysicsWorld,
     #[state(constant)]
     multibody: MultibodyIndex,
-    /// m/s².
+    /// Gravity (m/s²).
     #[state(constant)]
     gravity: Vector,
     /// Tick length (s).
@@ -55,16 +55,16 @@ pub(crate) struct Linkage {
     axis: Axis,
     /// Efforts of the last tick on motor joint and load (N or N·m).
     last: [f64; 2],
-    /// Whether no tick has passed.
+    /// True before the first tick.
     fresh: bool,
-    /// One number for each joint, of the tick under way.
+    /// Scratch: one number for each joint, within the current tick.
     #[state(recomputed)]
     work: DVector<f64>,
     #[state(recomputed)]
     bodies: Vec<BodyState>,
 }
 
-/// A joint and its coordinate.
+/// A joint with its coordinate.
 #[derive(Debug, Clone, Copy, Stateful)]
 struct Coordinate {
     /// Number of its link in the multibody.
@@ -73,13 +73,13 @@ struct Coordinate {
     /// Rapier's number of its axis: 0 for a slide along x, 3 for a hinge about x.
     #[state(constant)]
     axis: usize,
-    /// N/m or N·m/rad.
+    /// Stiffness (N/m or N·m/rad).
     #[state(constant)]
     stiffness: f64,
-    /// m or rad.
+    /// Rest position of the spring (m or rad).
     #[state(constant)]
     spring_rest: f64,
-    /// N·s/m or N·m·s/rad.
+    /// Damping (N·s/m or N·m·s/rad).
     #[state(constant)]
     damping: f64,
     /// Dry friction (N or N·m).
@@ -87,28 +87,28 @@ struct Coordinate {
     friction: f64,
     /// Rapier's coordinate (m or rad).
     position: f64,
-    /// Whole turns that Rapier's coordinate does not hold: it alone varies continuously.
+    /// Whole turns removed from Rapier's coordinate, which alone varies continuously.
     #[state(derived)]
     turns: f64,
     /// Velocity at the tick (m/s or rad/s).
     velocity: f64,
     /// Rapier's velocity: that of the last drift (m/s or rad/s).
     drift: f64,
-    /// Effort in the last kick, without the damper's (N or N·m).
+    /// Effort in the last kick, without that of the damper (N or N·m).
     #[state(derived)]
     effort: f64,
 }
 
-/// Why a mechanism could not be put into Rapier.
+/// Reasons why a mechanism cannot be put into Rapier.
 #[derive(Debug)]
 pub(crate) enum LinkageError {
-    /// There is something in the file that it cannot be.
+    /// The file has unsupported parts.
     Refused(Vec<MjcfRefusal>),
     /// Rapier failed.
     Engine(MechanicsError),
 }
 
-/// Whether the mechanism can be put into Rapier.
+/// Checks that the mechanism can be put into Rapier.
 pub(crate) fn check(mechanism: &Mechanism) -> Result<(), Vec<MjcfRefusal>> {
     match assemble(mechanism, 1.0) {
         Err(LinkageError::Refused(refusals)) => Err(refusals),
@@ -149,10 +149,10 @@ impl Linkage {
         Ok(linkage)
     }
 
-    /// Puts Rapier's joints where ours are; it computes the rest anew in each tick.
+    /// Sets Rapier's joints to our coordinates; Rapier recomputes the rest in each tick.
     fn put(&mut self) -> Result<(), MechanicsError> {
         let links = links(&mut self.world.multibody_joints, self.multibody)?;
-        // Rapier adds to its coordinate. The first sum may be rounded, the second one is of neighbours, and exact.
+        // Rapier adds to its coordinate. The first sum may be rounded; the second one is of neighbouring numbers, and exact.
         for _ in 0..2 {
             for (way, joint) in self.work.iter_mut().zip(&self.joints) {
                 let now = links.link(joint.link).map_or(0.0, |link| link.joint().coords()[joint.axis]);
@@ -184,7 +184,7 @@ impl Linkage {
         }
     }
 
-    /// Kick and drift by Rapier; `share` is the part of a kick.
+    /// Kick and drift by Rapier; `share` is the fraction of a kick.
     fn kick_and_drift(&mut self, share: f64) -> Result<(), MechanicsError> {
         let links = links(&mut self.world.multibody_joints, self.multibody)?;
         for (i, joint) in self.joints.iter().enumerate() {
@@ -200,7 +200,7 @@ impl Linkage {
         scene::step(&mut self.world)
     }
 
-    /// Reads what Rapier made of the coordinates, and takes whole turns out of them.
+    /// Reads the coordinates from Rapier, and removes whole turns from them.
     fn read(&mut self, share: f64) -> Result<(), MechanicsError> {
         let links = links(&mut self.world.multibody_joints, self.multibody)?;
         self.work.fill(0.0);
@@ -231,7 +231,7 @@ impl Linkage {
         Ok(())
     }
 
-    /// Velocities at the tick: `read` took the acceleration for constant; this adds what the efforts have changed since.
+    /// Velocities at the tick: `read` assumed constant acceleration; this adds the effect of the efforts that have changed since.
     fn correct_velocities(&mut self, now: [f64; 2], share: f64) -> Result<(), MechanicsError> {
         self.passive();
         self.work[self.axis.motor] += now[0];
@@ -314,13 +314,13 @@ impl Coordinate {
         (self.position, self.velocity, self.drift) = (state.position, state.velocity, state.velocity);
     }
 
-    /// m or rad.
+    /// Coordinate (m or rad).
     fn coordinate(&self) -> f64 {
         self.turns * TAU + self.position
     }
 }
 
-/// The multibody; Rapier keeps it as long as nobody removes a joint.
+/// The multibody, which Rapier keeps as long as no joint is removed.
 fn links(joints: &mut MultibodyJointSet, multibody: MultibodyIndex) -> Result<&mut Multibody, MechanicsError> {
     joints
         .get_multibody_mut(multibody)

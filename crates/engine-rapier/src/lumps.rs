@@ -1,26 +1,26 @@
-//! The bodies of a chain in Rapier: each slides along an axis of its own.
+//! The bodies of a chain in Rapier, each sliding along a separate axis.
 //!
 //! Rapier takes a force on a body only through a changed body, and a changed body makes it rebuild its active set, half
-//! as long again as the whole step. What it takes for nothing is gravity. So three lumps share a scene, each free along
+//! as long again as the whole step. Gravity is free. So three lumps share a scene, each free along
 //! one of its axes, and the scene's gravity holds the acceleration of each along its axis. A rotary lump slides too, one
-//! metre for each radian, its inertia being its mass: nothing wraps, and there is no quaternion to be normalised.
+//! metre for each radian, with its inertia as mass: nothing wraps, and no quaternion has to be normalised.
 //!
-//! Rapier's coordinate of a lump is counted from a whole number, its centre, that follows the lump in steps of about
+//! Rapier's coordinate of a lump is relative to a whole number, its centre, which follows the lump in steps of about
 //! [`SPAN`]. At 3000 rpm a coordinate that grew without bound would lose 1e-8 rad in ten seconds to rounding.
 use crate::scene;
 use rapier3d_f64::prelude::{LockedAxes, MassProperties, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector};
 use servobench_base::state::Stateful;
 use servobench_plant::{BodyState, Chain, MechanicsError};
 
-/// Lumps to a scene: one to an axis.
+/// Lumps per scene: one for each axis.
 const PER_SCENE: usize = 3;
-/// A lump farther than this from its centre gets a new one (m or rad).
+/// Distance from its centre at which a lump gets a new one (m or rad).
 const SPAN: f64 = 4.0;
 
-/// Where the bodies are, each in its own coordinate.
+/// Positions of the bodies, each in its own coordinate.
 #[derive(Debug, Clone, Copy, Stateful)]
 pub(crate) struct Positions<const N: usize> {
-    /// Whole numbers that Rapier's coordinates are counted from (m or rad): they alone vary continuously.
+    /// Whole numbers to which Rapier's coordinates are relative (m or rad), which alone vary continuously.
     #[state(derived)]
     pub(crate) centre: [f64; N],
     /// Rapier's coordinates (m or rad).
@@ -42,22 +42,22 @@ pub(crate) struct Lumps {
 /// One lump.
 #[derive(Stateful)]
 struct Lump {
-    /// Its number in the chain.
+    /// Index in the chain.
     #[state(constant)]
     body: usize,
     #[state(constant)]
     scene: usize,
-    /// Its axis of the scene: 0, 1, 2.
+    /// Axis of the scene: 0, 1, 2.
     #[state(constant)]
     axis: usize,
     #[state(constant)]
     handle: RigidBodyHandle,
-    /// Velocity in Rapier (m/s or rad/s): that of the body as the last drift left it, which the next one replaces but for roundings.
+    /// Velocity in Rapier (m/s or rad/s) after the last drift; the next one replaces it except for roundings.
     velocity: f64,
 }
 
 impl Lumps {
-    /// Bodies `first` and up of `chain`, in these states.
+    /// The lumps of bodies `first` and up of `chain`, in these states.
     pub(crate) fn new<const N: usize>(
         chain: &Chain,
         first: usize,
@@ -89,8 +89,8 @@ impl Lumps {
         Ok((Self { scenes, members, rate: 1.0 / step }, positions))
     }
 
-    /// One tick of Rapier in which the lumps move with `velocities`; these and `positions` become what Rapier made of
-    /// them. Whether a lump got a new centre.
+    /// One tick of Rapier in which the lumps move with `velocities`; updates these and `positions` from Rapier. Returns true if
+    /// a lump got a new centre.
     #[inline]
     pub(crate) fn drift<const N: usize>(
         &mut self,
@@ -112,7 +112,7 @@ impl Lumps {
             let position = rigid.translation()[lump.axis];
             positions.from_centre[lump.body] = position;
             if position.abs() > SPAN {
-                // Both sums are exact: whole numbers, and a difference to the nearest one.
+                // Both sums are exact: whole numbers, and a difference from the nearest one.
                 positions.centre[lump.body] += position.round();
                 positions.from_centre[lump.body] = position - position.round();
                 let translation = along(lump.axis, positions.from_centre[lump.body]);
@@ -123,7 +123,7 @@ impl Lumps {
         Ok(recentred)
     }
 
-    /// Puts the lumps in Rapier at `positions`, with their velocities there.
+    /// Moves the lumps in Rapier to `positions`, with their velocities there.
     pub(crate) fn put<const N: usize>(&mut self, positions: &Positions<N>) {
         for lump in &self.members {
             let rigid = &mut self.scenes[lump.scene].bodies[lump.handle];
@@ -132,7 +132,7 @@ impl Lumps {
         }
     }
 
-    /// Stops a body in Rapier too, if it moves there.
+    /// Stops a body in Rapier, if it moves there.
     pub(crate) fn stop(&mut self, body: usize) {
         if let Some(lump) = self.members.iter_mut().find(|lump| lump.body == body && lump.velocity != 0.0) {
             lump.velocity = 0.0;

@@ -1,4 +1,4 @@
-//! A user's own MJCF file: what of MJCF is simulated, and what a file says.
+//! A user's MJCF file: the supported subset of MJCF, and the contents of a file.
 mod contact;
 mod depth;
 mod grammar;

@@ -9,26 +9,26 @@ pub(crate) fn empty(step: f64) -> PhysicsWorld {
         dt: step,
         // With more, Rapier applies the force of the tick's start in every substep: a spring then gains energy.
         num_solver_iterations: 1,
-        // What is left off here belongs to contacts, and there are none.
+        // These settings only concern contacts, which do not occur.
         num_internal_stabilization_iterations: 0,
         max_ccd_substeps: 0,
         warmstart_coefficient: 0.0,
-        // 400 m/s otherwise: a coordinate in radians can be faster.
+        // The default is 400 m/s: a coordinate in radians can be faster.
         normalized_max_linear_velocity: f64::MAX,
         ..IntegrationParameters::default()
     };
     PhysicsWorld { gravity: Vector::ZERO, integration_parameters, ..PhysicsWorld::default() }
 }
 
-/// One tick.
+/// Runs one tick.
 ///
-/// Rapier does not report a body that went to infinity: it stops the body where it was and puts it into quarantine.
+/// Rapier does not report a body that went to infinity: it stops the body where it was and quarantines it.
 pub(crate) fn step(scene: &mut PhysicsWorld) -> Result<(), MechanicsError> {
     scene.step();
     if scene.quarantine().is_empty() { Ok(()) } else { Err(diverged()) }
 }
 
-/// Lets Rapier take in what was added (mass properties, joints); no time passes.
+/// Lets Rapier process additions (mass properties, joints); no time passes.
 pub(crate) fn take_in(scene: &mut PhysicsWorld) -> Result<(), MechanicsError> {
     let tick = std::mem::replace(&mut scene.integration_parameters.dt, 0.0);
     step(scene)?;
@@ -36,7 +36,7 @@ pub(crate) fn take_in(scene: &mut PhysicsWorld) -> Result<(), MechanicsError> {
     Ok(())
 }
 
-/// A state has left the finite numbers.
+/// Error of a state that is no longer finite.
 pub(crate) fn diverged() -> MechanicsError {
     MechanicsError::Diverged { engine: NAME, message: "a position or velocity is not finite".into() }
 }

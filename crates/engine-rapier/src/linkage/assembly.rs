@@ -1,4 +1,4 @@
-//! Puts the links and joints of a mechanism into a Rapier scene.
+//! Assembly of the links and joints of a mechanism in a Rapier scene.
 use super::{Coordinate, LinkageError, links};
 use crate::mjcf::{Freedom, Joint, Mechanism, MjcfRefusal};
 use crate::scene;
@@ -9,7 +9,7 @@ use rapier3d_f64::prelude::{
 };
 use servobench_plant::MechanicsError;
 
-/// Stiffness of what stops a joint by dry friction: so stiff that a joint at rest stays where it is bit for bit.
+/// Stiffness of the stop of a joint by dry friction: so stiff that a joint at rest stays where it is, bit for bit.
 const STOP: SpringCoefficients<f64> = SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
 
 /// The scene, the multibody that holds all links, and the joints in order.
@@ -50,7 +50,7 @@ pub(super) fn assemble(
     if links.ndofs() != joints.len() {
         return Err(native("another number of degrees of freedom than of joints"));
     }
-    // Rapier gives hinges a damping of their own.
+    // Rapier gives hinges a default damping.
     links.damping_mut().fill(0.0);
     for (armature, (_, joint)) in links.armature_mut().iter_mut().zip(mechanism.joints()) {
         *armature = joint.armature;
@@ -78,9 +78,9 @@ impl Coordinate {
     }
 }
 
-/// Refuses joints whose motion moves no inertia: the mass matrix would be singular.
+/// Refuses joints that move no inertia: the mass matrix would be singular.
 fn check_inertia(mechanism: &Mechanism, links: &mut Multibody, bodies: &RigidBodySet) -> Result<(), Vec<MjcfRefusal>> {
-    // Sets up the factorised mass matrix for the present coordinates.
+    // Sets up the factorised mass matrix for the current coordinates.
     links.dof_inverse_inertia(bodies);
     let (rows, lower, upper) = links.inv_augmented_mass().clone().unpack();
     let mut mass = lower * upper;
@@ -90,7 +90,7 @@ fn check_inertia(mechanism: &Mechanism, links: &mut Multibody, bodies: &RigidBod
     let whole = mass.diagonal();
     for (i, (_, joint)) in mechanism.joints().enumerate() {
         let pivot = mass[(i, i)];
-        // What is left of a joint's inertia when the joints before it are free to evade; rounding leaves 1e-16.
+        // Remaining inertia of a joint when the joints before it are free to yield; rounding leaves 1e-16.
         if !(pivot > 1e-12 * whole[i] && pivot > 0.0) {
             let what = if joint.freedom == Freedom::Slide { "mass" } else { "inertia about its axis" };
             refusals.push(MjcfRefusal::Massless { joint: mechanism.joint_name(i), what });

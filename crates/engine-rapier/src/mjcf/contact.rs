@@ -1,4 +1,4 @@
-//! Which geoms could touch, by MuJoCo's filter: bit masks, rigidly joined bodies, parent and child, excluded pairs.
+//! Geoms that could touch, by MuJoCo's filter: bit masks, rigidly joined bodies, parent and child, excluded pairs.
 use super::refusal::MjcfRefusal;
 use mjcf_rs::Model;
 use mjcf_rs::body::Geom;
@@ -38,7 +38,7 @@ fn filtered(model: &Model, first: usize, second: usize) -> bool {
     a == b || family || excluded
 }
 
-/// The body that `id` is rigidly joined to and that has a joint, or the world.
+/// The nearest body with a joint to which `id` is rigidly joined, or the world.
 fn rigid_root(model: &Model, mut id: usize) -> usize {
     while let Some(parent) = model.bodies[id].parent.filter(|_| model.bodies[id].body.joints.is_empty()) {
         id = parent;

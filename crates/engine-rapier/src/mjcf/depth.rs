@@ -1,11 +1,11 @@
-//! How deep elements are nested, told before anything reads the file that calls itself for each of them.
+//! Nesting depth of elements, checked before the file is read by recursive functions.
 use super::refusal::MjcfRefusal;
 use servobench_files::{XmlBounds, XmlExcess};
 
-/// Elements within each other, at most. 700 bodies have filled the 2 MiB that a thread has as its stack.
+/// Deepest nesting of elements. 700 bodies have filled the 2 MiB of a thread's stack.
 const DEEPEST: usize = 100;
 
-/// That elements of `xml` are nested too deep, if they are. What is no XML is left to who reads it.
+/// Refuses an `xml` with elements nested too deep. Invalid XML is left to its reader.
 pub(super) fn check(xml: &str) -> Result<(), MjcfRefusal> {
     const ANY: usize = usize::MAX;
     let bounds = XmlBounds { bytes: ANY, depth: DEEPEST, attributes: ANY, attributes_in_all: ANY };

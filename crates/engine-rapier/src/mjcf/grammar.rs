@@ -1,25 +1,25 @@
-//! The subset of MJCF that this engine simulates, as a table: elements, where they may stand, their attributes.
+//! The subset of MJCF that this engine simulates, as a table: elements, their places, and their attributes.
 //!
-//! What MuJoCo simulates and this engine does not is left out, so that it is refused by its name. What only looks good,
-//! measures or tunes MuJoCo's own solver is accepted without effect.
+//! Features that MuJoCo simulates and this engine does not are left out, so that they are refused by name. Features that only concern
+//! looks, measurement or tuning of MuJoCo's own solver are accepted without effect.
 
 /// An element.
 pub(crate) struct Element {
     pub(crate) name: &'static str,
-    /// The attributes it may have.
+    /// Allowed attributes.
     pub(crate) attributes: &'static [(&'static str, Values)],
-    /// The elements that may stand in it.
+    /// Allowed child elements.
     pub(crate) children: &'static [&'static Element],
-    /// Has no effect on the motion, nor has anything in it: it is not looked into.
+    /// True if neither the element nor its contents affect the motion: it is not examined.
     pub(crate) idle: bool,
 }
 
-/// What an attribute may hold.
+/// Values that an attribute may hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Values {
-    /// Anything: a name, or what has no effect here.
+    /// Anything: a name, or a value without effect here.
     Any,
-    /// From so many numbers to so many.
+    /// A list of numbers, from the first to the second length.
     Numbers(usize, usize),
     /// One number that is not negative.
     NotNegative,
@@ -69,7 +69,7 @@ static OPTION: Element = element(
     "option",
     &[
         ("gravity", Numbers(3, 3)),
-        // The tick is the base rate's, the method is this engine's.
+        // The tick comes from the base rate, the method from this engine.
         ("timestep", Any),
         ("integrator", Any),
         ("solver", Any),
@@ -141,7 +141,7 @@ const JOINT_ATTRIBUTES: &[(&str, Values)] = &[
 ];
 
 static GEOM: Element = element("geom", PLACED_GEOM_ATTRIBUTES, &[]);
-/// In `<default>`: without a place.
+/// Attributes of a geom in `<default>`: without a place.
 const GEOM_ATTRIBUTES: &[(&str, Values)] = PLACED_GEOM_ATTRIBUTES.split_at(18).0;
 const PLACED_GEOM_ATTRIBUTES: &[(&str, Values)] = &[
     ("class", Any),
@@ -154,7 +154,7 @@ const PLACED_GEOM_ATTRIBUTES: &[(&str, Values)] = &[
     ("rgba", Any),
     ("material", Any),
     ("group", Any),
-    // Of contacts, and a file in which geoms can touch is refused.
+    // Attributes of contacts; a file in which geoms can touch is refused.
     ("condim", Any),
     ("friction", Any),
     ("margin", Any),

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of a body, from its `<inertial>` or from its geoms as MuJoCo does it.
+//! Mass, centre of mass and inertia of a body, from its `<inertial>` or from its geoms, as in MuJoCo.
 use super::refusal::MjcfRefusal;
 use mjcf_rs::body::{Body, Geom, GeomType, InertiaSpec, Inertial};
 use mjcf_rs::compiler::{Compiler, InertiaFromGeom};
@@ -7,10 +7,10 @@ use nalgebra::{Matrix3, SymmetricEigen};
 use rapier3d_f64::prelude::MassProperties;
 use std::f64::consts::PI;
 
-/// A mass that is not a point.
+/// A mass with extent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Lump {
-    /// kg.
+    /// Mass (kg).
     mass: f64,
     /// Centre of mass in the body's frame (m).
     centre: DVec3,
@@ -18,7 +18,7 @@ struct Lump {
     inertia: DMat3,
 }
 
-/// What `body` weighs; all zero without `<inertial>` and geoms.
+/// Mass properties of `body`; all zero without `<inertial>` and geoms.
 pub(crate) fn mass_properties(body: &Body, compiler: &Compiler) -> Result<MassProperties, MjcfRefusal> {
     let name = || body.name.clone().unwrap_or_else(|| "(without a name)".into());
     let from_geoms = match compiler.inertia_from_geom {
@@ -55,8 +55,8 @@ pub(crate) fn mass_properties(body: &Body, compiler: &Compiler) -> Result<MassPr
 
 /// Principal inertias, and the rotation from their axes to the body's.
 ///
-/// By nalgebra's QR iteration: Rapier's own closed form loses half the digits when two of the three are equal, which
-/// those of every shaft are.
+/// By nalgebra's QR iteration: Rapier's own closed form loses half the digits when two of the three are equal, as
+/// for every shaft.
 fn principal_axes(inertia: DMat3) -> (DVec3, DQuat) {
     if inertia == DMat3::from_diagonal(inertia.diagonal()) {
         return (inertia.diagonal(), DQuat::IDENTITY);
@@ -86,7 +86,7 @@ fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// `diagonal` in axes that are turned by `rotation` against the body's.
+/// `diagonal` in axes that are rotated by `rotation` against the body's.
 fn turned(diagonal: DMat3, rotation: DQuat) -> DMat3 {
     let turn = DMat3::from_quat(rotation);
     turn * diagonal * turn.transpose()
@@ -128,7 +128,7 @@ fn of_geom(geom: &Geom, compiler: &Compiler) -> Option<Lump> {
             (2.0 * PI * a * a * b, [across, across, a * a / 2.0])
         }
         GeomType::Capsule => {
-            // A cylinder and two half spheres, the centre of mass of each of which is 3/8 of the radius off its base.
+            // A cylinder and two half spheres, whose centres of mass are 3/8 of the radius off their bases.
             let (cylinder, ball) = (2.0 * PI * a * a * b, 4.0 / 3.0 * PI * a.powi(3));
             let off = b + 3.0 / 8.0 * a;
             let across = cylinder * (a * a / 4.0 + b * b / 3.0) + ball * (83.0 / 320.0 * a * a + off * off);

@@ -1,4 +1,4 @@
-//! What an MJCF file of the subset says, resolved: links with their joints, tendons, motors.
+//! Contents of an MJCF file of the subset, resolved: links with their joints, tendons, motors.
 use super::contact::possible_contacts;
 use super::depth;
 use super::mass::mass_properties;
@@ -19,32 +19,32 @@ use std::path::Path;
 /// A mechanism.
 #[derive(Debug, Clone)]
 pub(crate) struct Mechanism {
-    /// m/s².
+    /// Gravity (m/s²).
     pub(crate) gravity: Vector,
-    /// In the order of the file: a parent before its children.
+    /// Links in the order of the file: a parent before its children.
     pub(crate) links: Vec<Link>,
     pub(crate) tendons: Vec<Tendon>,
     motors: Vec<Motor>,
 }
 
-/// A body and how it hangs on its parent.
+/// A body and its attachment to its parent.
 #[derive(Debug, Clone)]
 pub(crate) struct Link {
-    /// Number of the parent; the world without.
+    /// Index of the parent; `None` for the world.
     pub(crate) parent: Option<usize>,
-    /// Place in the parent when the joint is at zero.
+    /// Pose in the parent when the joint is at zero.
     pub(crate) pose: Pose,
     pub(crate) mass: MassProperties,
-    /// Rigid without.
+    /// Joint; `None` if rigid.
     pub(crate) joint: Option<Joint>,
 }
 
-/// Whether a joint slides or turns.
+/// Degree of freedom of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Freedom {
-    /// m, N.
+    /// Translation (m, N).
     Slide,
-    /// rad, N·m.
+    /// Rotation (rad, N·m).
     Hinge,
 }
 
@@ -53,28 +53,28 @@ pub(crate) enum Freedom {
 pub(crate) struct Joint {
     name: Option<String>,
     pub(crate) freedom: Freedom,
-    /// Frame in the link whose x is the axis and whose origin a hinge turns about.
+    /// Frame in the link, with the axis as x, and the pivot of a hinge as origin.
     pub(crate) frame: Pose,
-    /// N·s/m or N·m·s/rad.
+    /// Damping (N·s/m or N·m·s/rad).
     pub(crate) damping: f64,
-    /// N/m or N·m/rad.
+    /// Stiffness (N/m or N·m/rad).
     pub(crate) stiffness: f64,
-    /// Where the spring is at rest (m or rad).
+    /// Rest position of the spring (m or rad).
     pub(crate) spring_rest: f64,
     /// Dry friction (N or N·m).
     pub(crate) friction: f64,
-    /// Inertia of the joint's own (kg or kg·m²).
+    /// Additional inertia of the joint (kg or kg·m²).
     pub(crate) armature: f64,
 }
 
 /// Spring and damper along `Σ coefficient·coordinate`.
 #[derive(Debug, Clone)]
 pub(crate) struct Tendon {
-    /// Number of the joint, coefficient.
+    /// Index of the joint, and coefficient.
     pub(crate) terms: Vec<(usize, f64)>,
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
-    /// Length at which the spring is at rest.
+    /// Rest length of the spring.
     pub(crate) rest: f64,
 }
 
@@ -86,7 +86,7 @@ struct Motor {
     gear: f64,
 }
 
-/// The joints of the axis, by their number.
+/// The joints of the axis, by index.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Axis {
     pub(crate) motor: usize,
@@ -96,7 +96,7 @@ pub(crate) struct Axis {
 }
 
 impl Mechanism {
-    /// Reads a file's text.
+    /// Reads the text of a file.
     pub(crate) fn read(xml: &str) -> Result<Self, Vec<MjcfRefusal>> {
         let unreadable = |error: &dyn std::fmt::Display| {
             vec![MjcfRefusal::Unreadable { message: with_short_quotes(&error.to_string()) }]
@@ -107,7 +107,7 @@ impl Mechanism {
         if !refusals.is_empty() {
             return Err(refusals);
         }
-        // The folder is that of included files, and <include> is none of the subset.
+        // Included files would come from this folder, and <include> is not in the subset.
         let model = Model::from_str(xml, Path::new("")).map_err(|error| unreadable(&error))?;
         Self::resolve(&model, document.root_element())
     }
@@ -153,12 +153,12 @@ impl Mechanism {
         if refusals.is_empty() { Ok(Self { gravity, links, tendons, motors }) } else { Err(refusals) }
     }
 
-    /// The joints in order, each with its link's number.
+    /// The joints in order, each with the index of its link.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &Joint)> {
         self.links.iter().enumerate().filter_map(|(i, link)| link.joint.as_ref().map(|joint| (i, joint)))
     }
 
-    /// Finds the parts that are the axis.
+    /// Finds the joints and the motor of the axis.
     pub(crate) fn axis(&self, file: &MjcfModel) -> Result<Axis, Vec<MjcfRefusal>> {
         let mut refusals = vec![];
         let names = || self.joints().filter_map(|(_, joint)| joint.name.as_deref());
@@ -199,7 +199,7 @@ impl Mechanism {
         }
     }
 
-    /// What of motor joint and load joint is not what the axis has there.
+    /// Mismatches between the kinds of motor and load joint and those of the axis.
     fn misfits(&self, file: &MjcfModel, motor: usize, load: usize) -> Vec<MjcfRefusal> {
         let kinds: Vec<Coordinate> = self.joints().map(|(_, joint)| joint.freedom.coordinate()).collect();
         let all = file.misfits(kinds[motor], kinds[load]);
@@ -210,9 +210,9 @@ impl Mechanism {
         named.collect()
     }
 
-    /// The load's coordinate, from the numbers of the motor joint and the load joint.
+    /// The load's coordinate, from the indices of the motor joint and the load joint.
     fn load_coordinate(&self, motor: usize, load: usize) -> LoadCoordinate {
-        // Of each link how it is turned in the world, and the joints that move it; of each joint those that it stands on.
+        // For each link its rotation in the world and the joints that move it; for each joint the joints below it.
         let mut ways: Vec<(DQuat, Vec<PosedJoint>)> = vec![];
         let mut joints: Vec<(PosedJoint, Vec<PosedJoint>)> = vec![];
         for link in &self.links {
@@ -284,7 +284,7 @@ impl Tendon {
             refusals.push(MjcfRefusal::Missing { line: line(node), element: "fixed", attribute });
             return None;
         }
-        // To MuJoCo this one value says: as long as at the start.
+        // In MuJoCo this one value means: the length at the start.
         if rest == Some(-1.0) {
             refusals.push(MjcfRefusal::Value {
                 line: line(node),

@@ -1,16 +1,16 @@
-//! Why an MJCF file is refused.
+//! Reasons for refusing an MJCF file.
 use servobench_files::{listed, named, quoted};
 use servobench_plant::{Refusal, RefusedAt};
 use thiserror::Error;
 
-/// One thing in an MJCF file that the engine `rapier` does not simulate, by its name.
+/// A part of an MJCF file that the engine `rapier` does not simulate, by name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub(crate) enum MjcfRefusal {
-    /// The text is no XML, or no MJCF.
+    /// The text is not XML, or not MJCF.
     #[error("{message}")]
     Unreadable {
-        /// The reader's own words.
+        /// Message of the reader.
         message: String,
     },
     /// An element outside the subset.
@@ -20,9 +20,9 @@ pub(crate) enum MjcfRefusal {
         line: u32,
         /// The element.
         element: String,
-        /// The element that it stands in.
+        /// The parent element.
         parent: &'static str,
-        /// What may stand there.
+        /// Allowed elements.
         supported: String,
     },
     /// An attribute outside the subset.
@@ -34,7 +34,7 @@ pub(crate) enum MjcfRefusal {
         element: &'static str,
         /// The attribute.
         attribute: String,
-        /// The attributes that it may have.
+        /// Allowed attributes.
         supported: String,
     },
     /// A value outside the subset.
@@ -48,10 +48,10 @@ pub(crate) enum MjcfRefusal {
         attribute: String,
         /// Its value.
         value: String,
-        /// What it may be.
+        /// Allowed values.
         supported: String,
     },
-    /// Elements within elements without end.
+    /// Elements nested too deep.
     #[error(
         "line {line}: `<{element}>` is nested more than {depth} elements deep; put bodies beside each other, or leave out those without a joint"
     )]
@@ -60,10 +60,10 @@ pub(crate) enum MjcfRefusal {
         line: u32,
         /// The element.
         element: String,
-        /// How deep elements may be nested.
+        /// Largest nesting depth.
         depth: usize,
     },
-    /// An attribute without which the engine would have to guess.
+    /// A missing attribute that the engine would have to guess.
     #[error("line {line}: `<{element}>` needs the attribute `{attribute}`")]
     Missing {
         /// Line in the file, from 1.
@@ -95,14 +95,14 @@ pub(crate) enum MjcfRefusal {
         /// Name of the other.
         second: String,
     },
-    /// A body whose mass or inertia no body can have.
+    /// A body with an impossible mass or inertia.
     #[error("body {} has {what}; it must be {bound}", names([&**.body]))]
     Mass {
         /// Name of the body.
         body: String,
         /// The quantity and its value.
         what: String,
-        /// What it must be.
+        /// Bound of the quantity.
         bound: &'static str,
     },
     /// A joint that moves no inertia.
@@ -113,34 +113,34 @@ pub(crate) enum MjcfRefusal {
         /// Mass, or inertia about the axis.
         what: &'static str,
     },
-    /// A name that nothing has.
+    /// An unknown name.
     #[error("there is no {what} {}; there is {known}", names([&**.name]))]
     Unknown {
-        /// What it would be the name of: joint, motor, default class.
+        /// Kind of the name: joint, motor, default class.
         what: &'static str,
         /// The name.
         name: String,
-        /// The names that there are.
+        /// Known names.
         known: String,
     },
-    /// An actuator that cannot bring the drive's effort to the motor joint.
+    /// An actuator that cannot apply the drive's effort to the motor joint.
     #[error("motor `{actuator}` {what}; it must act on joint `{joint}` with a gear other than zero")]
     Actuator {
         /// Name of the actuator.
         actuator: String,
-        /// What is wrong.
+        /// The mistake.
         what: String,
         /// The motor joint.
         joint: String,
     },
-    /// A joint that slides where the axis turns, or the other way round.
+    /// A joint that slides where the axis turns, or the reverse.
     #[error("{message}")]
     Misfit {
         /// Name of the joint.
         joint: String,
-        /// Whether it is that of the motor.
+        /// True for the motor joint.
         is_motor: bool,
-        /// What does not fit, and what to write.
+        /// The mismatch, and its remedy.
         message: String,
     },
 }
@@ -174,7 +174,7 @@ pub(crate) fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     listed(names, "none")
 }
 
-/// Words of ours in a list for a message.
+/// Our own words in a list for a message.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     if names.is_empty() { "none".into() } else { names.join(", ") }

@@ -1,10 +1,10 @@
-//! Holds a file against the grammar: every element, attribute and value outside it is found in one go.
+//! Checks a file against the grammar: all elements, attributes and values outside of it are found at once.
 use super::grammar::{Element, ROOT, Values};
 use super::refusal::{MjcfRefusal, list, names};
 use roxmltree::{Document, Node};
 use servobench_files::quoted;
 
-/// All that is outside the grammar.
+/// Everything outside of the grammar.
 pub(crate) fn scan(document: &Document) -> Vec<MjcfRefusal> {
     let root = document.root_element();
     if root.tag_name().name() != ROOT.name {
@@ -18,7 +18,7 @@ pub(crate) fn scan(document: &Document) -> Vec<MjcfRefusal> {
     refusals
 }
 
-/// Default classes: each has a name that others can find, and what is asked for is there.
+/// Checks default classes: each has a name, and all classes referred to exist.
 fn classes(root: Node, refusals: &mut Vec<MjcfRefusal>) {
     let mut known = vec!["main"];
     for node in root.descendants().filter(|node| node.has_tag_name("default")) {
@@ -51,7 +51,7 @@ pub(crate) fn line(node: Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
-/// Refusals at most: nobody reads more, and to find the line of each takes as long as the file is.
+/// Most refusals: nobody reads more, and finding the line of each takes time in proportion to the file.
 const MOST_REFUSALS: usize = 100;
 
 fn visit(node: Node, element: &'static Element, refusals: &mut Vec<MjcfRefusal>) {
@@ -94,7 +94,7 @@ fn visit(node: Node, element: &'static Element, refusals: &mut Vec<MjcfRefusal>)
     }
 }
 
-/// What the value should have been, if it is not.
+/// Allowed value, if this one is not.
 fn objection(values: Values, value: &str) -> Option<String> {
     let number = |word: &str| word.parse().ok().filter(|x: &f64| x.is_finite());
     match values {
