@@ -1,36 +1,36 @@
 //! A base that moves as prescribed, over one tick.
 //!
-//! The base is the frame of reference. In it each body feels an inertial force and the viscous friction of the moving
+//! The base is the frame of reference. In it each body is subject to an inertial force and the viscous friction of the moving
 //! ground, `f(t) = −(m·a(t) + b·v(t))/r`, where a and v are those of the base and r is the transmission. `MuJoCo` holds
-//! forces over a tick, so f becomes its mean, which leaves the velocity at the end of the tick right, and a shift makes
-//! up for the position:
+//! forces over a tick, so f becomes its mean, which leaves the velocity at the end of the tick correct, and a shift
+//! corrects the position:
 //!
 //! ```text
 //! f̄ = 1/h·∫ f dt        δ = 1/m·(∫ (h − t)·f dt − f̄·h²/2)
 //! q ← q + δ/2,  step with f̄,  q ← q + δ/2
 //! ```
 //! One half before and one half after the step: within it the path then differs from the true one by a term of mean
-//! zero, and a spring on the body notices it in the fourth order only. Dampers notice in the second order: δ over h is a
+//! zero, which affects a spring on the body in the fourth order only. It affects dampers in the second order: δ over h is a
 //! velocity.
 use servobench_base::Setpoint;
 
 /// The motion of the base over one tick, in the axis coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct BaseTick {
-    /// At the start of the tick.
+    /// State at the start of the tick.
     pub(crate) start: Setpoint,
-    /// At its end.
+    /// State at its end.
     pub(crate) end: Setpoint,
     /// Mean velocity (m/s or rad/s) and acceleration.
     mean_v: f64,
     mean_a: f64,
-    /// What the means miss of the position at the end: `∫ (h − t)·y dt − ȳ·h²/2` for y = v and y = a.
+    /// Error of the means in the position at the end: `∫ (h − t)·y dt − ȳ·h²/2` for y = v and y = a.
     miss_v: f64,
     miss_a: f64,
 }
 
 impl BaseTick {
-    /// From tick to tick `h` seconds later.
+    /// The motion from one tick to the next, `h` seconds later.
     pub(crate) fn new(start: Setpoint, h: f64) -> Self {
         let Setpoint { v, a, j, s, .. } = start;
         let twelfth = h * h * h / 12.0;

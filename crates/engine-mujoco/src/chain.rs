@@ -1,6 +1,6 @@
 //! A chain of lumped bodies in `MuJoCo`.
 //!
-//! `MuJoCo` holds bodies, springs and dampers; everything else that acts is one generalised force per body, held over
+//! `MuJoCo` contains bodies, springs and dampers; all other efforts are one generalised force per body, held over
 //! the tick. Behind a prescribed base its coordinates are relative to the base, else the base rests at zero.
 use crate::base::BaseTick;
 use crate::simulation::{self, Data};
@@ -57,7 +57,7 @@ impl MujocoChain {
         Ok(Self { chain, data, friction, first, step: setup.step, bodies, identity })
     }
 
-    /// How the base moves in this tick, when it does.
+    /// Motion of the base in this tick; `None` for a resting base.
     fn base(&self, actuation: Actuation) -> Result<Option<BaseTick>, MechanicsError> {
         match (actuation, self.first) {
             (Actuation::Effort(_), 0) => Ok(None),
@@ -66,7 +66,7 @@ impl MujocoChain {
         }
     }
 
-    /// Drive and disturbances, each body in its own coordinate (N or N·m).
+    /// Efforts of drive and disturbances on each body in its own coordinate (N or N·m).
     fn external_efforts(&self, input: &Input) -> [f64; Chain::MAX_BODIES] {
         let mut efforts = [0.0; Chain::MAX_BODIES];
         let last = self.bodies.len() - 1;
@@ -94,8 +94,8 @@ impl MujocoChain {
         }
         let Grips { held, forces } = self.friction.before_tick(self.velocities(), others);
         for (i, force) in (self.first..).zip(self.data.qfrc_applied_mut()) {
-            // A held body feels no net effort: it stays where it is during the step but for what its neighbours' motion
-            // within the tick adds, which `read` takes back.
+            // A held body has no net effort: it stays where it is during the step except for the effect of its neighbours' motion
+            // within the tick, which `read` reverts.
             *force += if held & (1 << i) == 0 { forces[i] } else { -others[i] };
         }
         held
@@ -105,7 +105,7 @@ impl MujocoChain {
         std::array::from_fn(|i| self.bodies.get(i).map_or(0.0, |body| body.velocity))
     }
 
-    /// Goes over to the moving base: velocities relative to it, its inertial forces, the first half of the shifts.
+    /// Changes to the frame of the moving base: velocities relative to it, its inertial forces, the first half of the shifts.
     fn mount(&mut self, base: &BaseTick) {
         for (dof, body) in self.chain.bodies()[1..].iter().enumerate() {
             let (m, b, r) = (body.inertia, body.friction.linear(), body.transmission);
@@ -115,7 +115,7 @@ impl MujocoChain {
         }
     }
 
-    /// The second half of the shifts; the base itself has arrived.
+    /// Applies the second half of the shifts, and moves the base itself to its end.
     fn shift(&mut self, base: &BaseTick) {
         let (motor, others) = (&self.chain.bodies()[0], &self.chain.bodies()[1..]);
         self.bodies[0] =
@@ -125,7 +125,7 @@ impl MujocoChain {
         }
     }
 
-    /// Takes over the state at the end of the tick, `MuJoCo`'s being relative to a base at `end`.
+    /// Reads the state at the end of the tick, which in `MuJoCo` is relative to a base at `end`.
     fn read(&mut self, held: usize, end: Setpoint) {
         let moved = self.data.qpos().iter().zip(self.data.qvel());
         let bodies = self.chain.bodies().iter().zip(&mut self.bodies).enumerate().skip(self.first);
@@ -137,7 +137,7 @@ impl MujocoChain {
         if self.friction.is_linear() {
             return;
         }
-        // Bodies that `MuJoCo` has moved on, though friction holds or has stopped them.
+        // Bodies moved by `MuJoCo`, although friction holds or has stopped them.
         let at_rest = held | self.friction.after_tick(self.velocities());
         for i in (self.first..self.bodies.len()).filter(|i| at_rest & (1 << i) != 0) {
             self.bodies[i].velocity = 0.0;
@@ -155,7 +155,7 @@ impl Stateful for MujocoChain {
         to.enter(Part::field("bodies"));
         bodies.save_fixed(to);
         to.leave();
-        // Behind a base that moves they keep digits that the bodies do not.
+        // Behind a moving base they keep digits that the bodies do not.
         to.enter(Part::derived("qpos"));
         data.qpos().save_fixed(to);
         to.leave();
@@ -173,7 +173,7 @@ impl Stateful for MujocoChain {
         if self.first == 0 {
             self.data.qpos_mut().iter_mut().zip(bodies).for_each(|(q, body)| *q = body.position);
         }
-        // Behind a base that moves each tick sets them.
+        // Behind a moving base they are set in each tick.
         self.data.qvel_mut().iter_mut().zip(bodies).for_each(|(v, body)| *v = body.velocity);
         Ok(())
     }
@@ -189,7 +189,7 @@ impl Mechanics for MujocoChain {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        // MuJoCo takes 0 for what is not a number.
+        // MuJoCo replaces NaN by 0.
         input.check(crate::NAME)?;
         let base = self.base(input.actuation)?;
         let held = self.apply(input);
@@ -201,7 +201,7 @@ impl Mechanics for MujocoChain {
             self.shift(base);
         }
         self.read(held, base.map_or(Setpoint::default(), |base| base.end));
-        // `MuJoCo` itself looks only before the next step.
+        // `MuJoCo` itself checks only before the next step.
         check_states(crate::NAME, self.bodies.iter().copied())
     }
 }

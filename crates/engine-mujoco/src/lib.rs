@@ -7,11 +7,11 @@
 //! | dry friction | see [`servobench_plant::GroundFriction`]; stuck bodies keep their position bit for bit | second between the stops, first at each stop |
 //! | a user's MJCF | the integrator of the file | as `MuJoCo` documents it |
 //!
-//! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain that it
-//! would blow up, undamped from ω·h = 2.83 on, is refused (`stability.rs`).
+//! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain for which it
+//! would diverge, undamped from ω·h = 2.83 on, is refused (`stability.rs`).
 //!
-//! A fatal error of `MuJoCo` **ends the process with exit code 1** after a line on standard error. Whoever must survive
-//! that runs the engine in a process of its own.
+//! A fatal error of `MuJoCo` **ends the process with exit code 1** after a line on standard error. A caller that must survive
+//! that runs the engine in a separate process.
 
 mod base;
 mod chain;

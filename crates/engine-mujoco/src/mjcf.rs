@@ -1,4 +1,4 @@
-//! A user's own MJCF file: some joints and one motor of it are the axis, the rest is simulated along with them.
+//! A user's MJCF file: some of its joints and one motor are the axis, the rest is simulated along with them.
 mod limits;
 mod parts;
 
@@ -30,7 +30,7 @@ pub(crate) struct MujocoMjcf {
     identity: Identity,
 }
 
-/// Parts of `MuJoCo`'s state that a step continues from, in the order in which it writes them. Those after `act` are set in each tick, or
+/// Parts of `MuJoCo`'s state from which a step continues, in the order in which it writes them. Those after `act` are set in each tick, or
 /// only start an iteration.
 const PARTS: [(u32, Part); 5] = [
     (MjtState::mjSTATE_TIME as u32, Part::derived("time")),
@@ -72,7 +72,7 @@ impl MujocoMjcf {
         Ok(mechanics)
     }
 
-    /// Puts the model into the states of the bodies; what is neither motor nor load stays where it is.
+    /// Sets the model to the states of the bodies; joints other than motor and load stay where they are.
     fn start(&mut self) {
         let [motor, load] = [self.motor, self.load.joint()].map(|id| self.joints[id]);
         let (data, joints) = (&mut self.data, &self.joints);
@@ -115,13 +115,13 @@ impl Stateful for MujocoMjcf {
         self.identity.restore(from)?;
         let numbers = (0..self.data.model().state_size(ALL)).map(|_| from.number());
         let state = numbers.collect::<Result<Vec<f64>, Damaged>>()?;
-        // A number that `MuJoCo` refuses is an index into a history.
+        // `MuJoCo` only refuses numbers that are an index into a history.
         self.data.set_state(&state, ALL).map_err(|_| Damaged)
     }
 }
 
 impl Mechanics for MujocoMjcf {
-    /// Which bodies sleep is not in `MuJoCo`'s state.
+    /// Unsupported with sleeping, because the set of sleeping bodies is not in `MuJoCo`'s state.
     fn state(&mut self) -> Option<&mut dyn Stateful> {
         let sleeps = self.data.model().opt().enableflags & MjtEnableBit::mjENBL_SLEEP as i32 != 0;
         if sleeps { None } else { Some(self) }
@@ -137,7 +137,7 @@ impl Mechanics for MujocoMjcf {
     }
 
     fn advance(&mut self, input: &Input) -> Result<(), MechanicsError> {
-        // MuJoCo takes 0 for what is not a number.
+        // MuJoCo replaces NaN by 0.
         input.check(NAME)?;
         let Actuation::Effort(effort) = input.actuation else { return Err(MechanicsError::wrong_actuation(NAME)) };
         self.data.ctrl_mut()[self.actuator.ctrl] = self.actuator.ctrl(effort)?;
@@ -149,7 +149,7 @@ impl Mechanics for MujocoMjcf {
         forces[self.joints[self.motor].dof] += input.motor_disturbance;
         simulation::step(&mut self.data)?;
         self.read();
-        // `MuJoCo` itself looks only before the next step.
+        // `MuJoCo` itself checks only before the next step.
         check_states(NAME, self.bodies.iter().copied())
     }
 

@@ -1,4 +1,4 @@
-//! A model and its data, stepped so that nothing goes wrong in silence.
+//! A model and its data, stepped so that no error goes unnoticed.
 use crate::{NAME, messages};
 use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
 use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The data of one simulation.
 pub(crate) type Data = MjData<Arc<MjModel>>;
 
-/// Compiles MJCF text. `path` is where the text came from: what it includes is looked up beside it.
+/// Compiles MJCF text. `path` is the origin of the text: included files are looked up beside it.
 pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError> {
     messages::install();
     let model_error = |message: String| MechanicsError::Model { engine: NAME, message: of_a_file(&message, path) };
@@ -24,25 +24,25 @@ pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError>
         .map_err(|e| model_error(e.to_string()))
 }
 
-/// What `MuJoCo` says of the file at `path`, with no more than a few characters of what is in it. The path itself stays.
+/// Message of `MuJoCo` about the file at `path`, with at most a few characters of its contents. The path itself stays.
 fn of_a_file(message: &str, path: &Path) -> String {
     let path = path.display().to_string();
     let parts: Vec<String> = message.split(path.as_str()).map(with_short_quotes).collect();
     parts.join(&path)
 }
 
-/// Starts a simulation of `model` with steps of `step` seconds and the flags `disable` switched off beside its own.
+/// Starts a simulation of `model` with steps of `step` seconds, with the features `disable` switched off in addition to its own.
 pub(crate) fn start(mut model: MjModel, step: f64, disable: &[MjtDisableBit]) -> Result<Data, MechanicsError> {
     let options = model.opt_mut();
     options.timestep = step;
-    // A diverged step would otherwise start again from time zero, without a word.
+    // A diverged step would otherwise restart from time zero without notice.
     for flag in disable.iter().chain([&MjtDisableBit::mjDSBL_AUTORESET]) {
         options.disableflags |= *flag as i32;
     }
     MjData::try_new(Arc::new(model)).map_err(|e| MechanicsError::Native { engine: NAME, message: e.to_string() })
 }
 
-/// One step.
+/// Runs one step.
 ///
 /// # Errors
 /// [`MechanicsError::Diverged`] or [`MechanicsError::Native`] when `MuJoCo` warned during the step.

@@ -1,6 +1,6 @@
-//! Chains that RK4 blows up.
+//! Chains for which RK4 diverges.
 //!
-//! A step takes a mode e^(λt) by the factor
+//! A step scales a mode e^(λt) by the factor
 //!
 //! ```text
 //! R(z) = 1 + z + z²/2 + z³/6 + z⁴/24      z = λ·h
@@ -11,7 +11,7 @@ use crate::NAME;
 use servobench_plant::{Chain, Drive, Integrator, MechanicsError, MechanicsSetup};
 use std::f64::consts::TAU;
 
-/// What rounding makes of a factor of one.
+/// Rounding of a factor of one.
 const ROUNDING: f64 = 1e-9;
 
 /// Refuses a chain that grows from step to step by itself.

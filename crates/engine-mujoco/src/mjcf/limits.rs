@@ -1,4 +1,4 @@
-//! Ends of the ranges of a model's joints, and whether a joint is at one.
+//! Ends of the ranges of a model's joints, and detection of joints at an end.
 //!
 //! A limit of `MuJoCo` is a soft constraint: it pushes as soon as the joint is within the margin of its end, and lets it
 //! go a little beyond.
@@ -8,7 +8,7 @@ use servobench_plant::JointLimit;
 /// Ends of ranges.
 pub(super) struct Limits {
     ends: Vec<End>,
-    /// One for each of them.
+    /// The limit of each end.
     said: Vec<JointLimit>,
 }
 
@@ -16,13 +16,13 @@ pub(super) struct Limits {
 struct End {
     /// Index of the joint's position.
     qpos: usize,
-    /// Where the limit begins to push (m or rad).
+    /// Position from which the limit pushes (m or rad).
     from: f64,
     is_upper: bool,
 }
 
 impl Limits {
-    /// Of every slide and hinge of the model that has a range.
+    /// The limits of all slides and hinges of the model with a range.
     pub(super) fn of(model: &MjModel) -> Self {
         let (mut ends, mut said) = (Vec::new(), Vec::new());
         let off = MjtDisableBit::mjDSBL_CONSTRAINT as i32 | MjtDisableBit::mjDSBL_LIMIT as i32;
@@ -47,7 +47,7 @@ impl Limits {
         Self { ends, said }
     }
 
-    /// Looks where the joints are.
+    /// Updates the limits from the positions of the joints.
     #[inline]
     pub(super) fn watch(&mut self, positions: &[f64]) {
         for (end, said) in self.ends.iter().zip(&mut self.said) {

@@ -1,4 +1,4 @@
-//! The joints and the motor of a model that are the axis.
+//! The joints and the motor of a model that form the axis.
 use crate::NAME;
 use crate::simulation::Data;
 use mujoco_rs::prelude::{MjModel, MjtBias, MjtDisableBit, MjtDyn, MjtGain, MjtJoint, MjtObjBase, MjtTrn};
@@ -7,7 +7,7 @@ use servobench_files::listed;
 use servobench_plant::{LoadCoordinate, MechanicsError, MjcfModel, PosedJoint, Refusal, RefusedAt};
 use std::iter::successors;
 
-/// What the axis is made of.
+/// Parts of a model that form the axis.
 pub(super) struct Parts {
     /// Id of the motor joint.
     pub(super) motor: usize,
@@ -22,7 +22,7 @@ pub(super) struct LoadJoint {
     kind: Coordinate,
 }
 
-/// Where a joint is in the arrays; of one with several degrees of freedom, its first.
+/// Place of a joint in the arrays; the first one for a joint with several degrees of freedom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Joint {
     /// Index of its position.
@@ -39,7 +39,7 @@ pub(super) struct Motor {
     pub(super) ctrl: usize,
     /// Effort on the joint per unit of control: gain times gear.
     effort_per_ctrl: f64,
-    /// Efforts that no limit of the model clips (N or N·m).
+    /// Efforts within all limits of the model (N or N·m).
     range: [f64; 2],
 }
 
@@ -47,7 +47,7 @@ impl Parts {
     /// Finds the parts that `file` names.
     ///
     /// # Errors
-    /// [`MechanicsError::Refused`] with everything that is not there or cannot be what it is named for.
+    /// [`MechanicsError::Refused`] with everything that is missing or unsuitable.
     pub(super) fn find(model: &MjModel, file: &MjcfModel) -> Result<Self, MechanicsError> {
         let motor = joint(model, &file.motor_joint);
         let load = joint(model, &file.load_joint);
@@ -78,7 +78,7 @@ fn refused(file: &MjcfModel, refusals: Vec<Refusal>) -> MechanicsError {
 }
 
 impl Motor {
-    /// The control that makes `effort` at the joint.
+    /// The control that produces `effort` at the joint.
     pub(super) fn ctrl(&self, effort: f64) -> Result<f64, MechanicsError> {
         let [low, high] = self.range;
         if (low..=high).contains(&effort) {
@@ -103,7 +103,7 @@ fn refusal(name: &str, message: String) -> Refusal {
     Refusal { place: RefusedAt::Name(name.to_owned()), message }
 }
 
-/// The id of the element called `name`; the refusal lists the names that there are.
+/// The id of the element called `name`; the refusal lists the existing names.
 fn find(model: &MjModel, kind: MjtObjBase, what: &str, name: &str) -> Result<usize, Refusal> {
     let count = match kind {
         MjtObjBase::mjOBJ_JOINT => model.jnt_type().len(),
@@ -139,7 +139,7 @@ pub(super) fn load_coordinate(data: &mut Data, motor: usize, load: LoadJoint) ->
     data.kinematics();
     let (model, axes) = (data.model(), data.xaxis());
     let posed = |id: usize, kind| PosedJoint { number: id, kind, axis: axes[id] };
-    // Ids go up the tree, and within a body from the joint next to the parent to the one next to the body.
+    // Ids ascend from the root of the tree, and within a body from the joint next to the parent to the one next to the body.
     let below = |joint: usize| {
         let parent = |body: &usize| (*body > 0).then(|| index(model.body_parentid()[*body]));
         let bodies: Vec<usize> = successors(Some(index(model.jnt_bodyid()[joint])), parent).collect();
@@ -149,7 +149,7 @@ pub(super) fn load_coordinate(data: &mut Data, motor: usize, load: LoadJoint) ->
     LoadCoordinate::new(posed(load.id, load.kind), &below(load.id), &below(motor))
 }
 
-/// The actuator of the axis, when it is a motor on the motor joint without dynamics of its own; without a motor joint it
+/// The actuator of the axis, if it is a motor on the motor joint without dynamics of its own; without a motor joint it
 /// may act on any.
 fn actuator(model: &MjModel, file: &MjcfModel, joint: Option<usize>) -> Result<Motor, Refusal> {
     let name = &file.actuator;
