@@ -11,15 +11,15 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// Number of changes that make one of the other, when they are near.
+/// Number of edits that turn one into the other, if they are similar.
 fn changes(name: &str, other: &str) -> Option<usize> {
     let (letters, others) = (name.chars().count(), other.chars().count());
     let (difference, most) = (letters.abs_diff(others), letters.max(others) / 3);
-    // A name cut short or drawn out is near whatever its length.
+    // A shortened or extended name is similar whatever its length.
     if letters >= 3 && (other.starts_with(name) || name.starts_with(other)) {
         return Some(difference);
     }
-    // Each letter too many is a change: what is far by its length need not be compared, however long it is.
+    // Each surplus letter is an edit: names of very different length need no comparison.
     let changes = (difference <= most).then(|| strsim::damerau_levenshtein(name, other));
     changes.filter(|changes| *changes <= most)
 }

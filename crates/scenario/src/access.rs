@@ -1,54 +1,54 @@
-//! What a scenario may read: regular files of bounded size within its root, each of which is noted with its digest.
+//! Files that a scenario may read: regular files of bounded size within its root, each recorded with its digest.
 //!
-//! A scenario is somebody else's text as soon as it comes by a pull request. The files that it names are read on a machine with keys
-//! and tokens on it, so that it must not lead out of its own project: symbolic links are resolved before it is asked where a file
-//! is. The rule for the root: see [`root_of`]. Whoever reads a file for a scenario asks here and nowhere else.
+//! A scenario that arrives by a pull request is foreign text. The files it names are read on a machine with keys and tokens, so
+//! it must not reach outside its own project: symbolic links are resolved before a path is checked. The rule for the root: see
+//! [`root_of`]. Every file of a scenario is read through this module.
 use servobench_files::{FileRole, MadeOf, is_shortage, metadata, open, read, sha256};
 use std::collections::{HashMap, HashSet};
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// What makes a folder the root of a project, as a folder or a file (of a worktree).
+/// Folder, or file of a worktree, that marks the root of a project.
 const PROJECT: &str = ".git";
 
-/// Bytes of a scenario at most: the longest that anybody writes have some hundred thousand, and may have long texts in them.
+/// Largest size of a scenario (bytes): the longest in practice have some hundred thousand, and may contain long texts.
 pub const MOST_OF_A_SCENARIO: u64 = 16 << 20;
-/// Bytes of a model: data sheets have some kilobytes.
+/// Largest size of a model (bytes): data sheets have some kilobytes.
 const MOST_OF_A_MODEL: u64 = 1 << 20;
-/// Bytes of a table: two million points. It is held as a whole, beside what is made of it.
+/// Largest size of a table (bytes): two million points. It is held in memory as a whole, in addition to the values read from it.
 const MOST_OF_A_TABLE: u64 = 64 << 20;
-/// Bytes of the text of an MJCF file: a model of a humanoid has 100 kB.
+/// Largest size of an MJCF file (bytes): a model of a humanoid has 100 kB.
 const MOST_OF_AN_MJCF: u64 = 16 << 20;
-/// Bytes of a mesh or a texture, which is only looked through here.
+/// Largest size of a mesh or a texture (bytes), which is only hashed here.
 const MOST_OF_AN_ASSET: u64 = 256 << 20;
-/// Bytes of an FMU: some carry a whole interpreter with them.
+/// Largest size of an FMU (bytes): some carry a whole interpreter.
 const MOST_OF_AN_FMU: u64 = 1 << 30;
-/// Bytes of all files of a scenario, so that a thousand names do not add up to hours.
+/// Largest size of all files of a scenario together (bytes), so that a thousand names do not add up to hours.
 const MOST_OF_ALL: u64 = 2 << 30;
 
-/// What a scenario may read, and what was read of that.
+/// Files that a scenario may read, and the record of those that it has read.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FileAccess {
-    /// Where all files are, links resolved; without one only what is built in can be read.
+    /// Folder of all files, links resolved; `None`: only embedded files can be read.
     root: Option<PathBuf>,
     made_of: Vec<MadeOf>,
-    /// What was read or looked through, by its resolved path.
+    /// Files read or hashed so far, by resolved path.
     known: HashSet<(PathBuf, FileRole)>,
     texts: HashMap<PathBuf, Arc<str>>,
     total: u64,
-    /// The file that could not be read for want of something that the machine has too little of, and the system's number of that.
+    /// File that could not be read for a shortage of a system resource, with the system's error number.
     shortage: Option<(PathBuf, i32)>,
 }
 
-/// Why a file is not read, and the way out.
+/// Reason why a file is not read, with advice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refused {
     pub(crate) message: String,
     pub(crate) help: &'static str,
 }
 
-/// The same before it is known what it stops.
+/// Reason why a file is not read, without a message.
 #[derive(Debug)]
 enum Refusal {
     Unreadable(io::Error),
@@ -57,17 +57,17 @@ enum Refusal {
     NoFolder,
 }
 
-/// Said of a path that leads nowhere.
+/// Help for a path that does not exist.
 pub(crate) const RELATIVE: &str = "the path is relative to this file";
 
 const WAY_OUT: &str = "files of a scenario stay within its project, the nearest folder above it with a `.git`, or else within its own folder; \
                        a folder that holds both is allowed by `--root DIR`";
 
-/// The folder that all files of a scenario in `folder` are below, links resolved: `given`; without it the nearest folder from there
-/// upwards that has a `.git`; without one `folder` itself.
+/// Folder above all files of a scenario in `folder`, links resolved: `given`, else the nearest folder from `folder` upwards that has a
+/// `.git`, else `folder` itself.
 ///
 /// # Errors
-/// Those of the operating system, when there is no such folder.
+/// Errors of the operating system, if the folder does not exist.
 pub fn root_of(folder: &Path, given: Option<&Path>) -> io::Result<PathBuf> {
     let resolved = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
     let root = if let Some(given) = given {
@@ -81,10 +81,10 @@ pub fn root_of(folder: &Path, given: Option<&Path>) -> io::Result<PathBuf> {
 }
 
 impl FileAccess {
-    /// What a scenario in `folder` may read: what is below its root.
+    /// Access for a scenario in `folder`: to everything below its root.
     ///
     /// # Errors
-    /// Those of the operating system, when there is no such folder.
+    /// Errors of the operating system, if the folder does not exist.
     pub(crate) fn of_folder(folder: &Path, given: Option<&Path>) -> io::Result<Self> {
         Ok(Self { root: Some(root_of(folder, given)?), ..Self::default() })
     }
@@ -94,17 +94,17 @@ impl FileAccess {
         self.root.as_deref()
     }
 
-    /// The files that were read, in the order in which they were.
+    /// Files read, in the order of reading.
     pub(crate) fn into_made_of(self) -> Vec<MadeOf> {
         self.made_of
     }
 
-    /// The file that the machine, and not the scenario, kept from being read.
+    /// File that could not be read for a shortage of a system resource, with the error.
     pub(crate) fn shortage(&self) -> Option<(PathBuf, io::Error)> {
         self.shortage.as_ref().map(|(path, code)| (path.clone(), io::Error::from_raw_os_error(*code)))
     }
 
-    /// Why the file at `path` cannot be read.
+    /// Refusal of the file at `path` for an error of the system; notes a shortage.
     fn unreadable(&mut self, path: &Path, error: io::Error) -> Refusal {
         if is_shortage(&error) {
             self.shortage = error.raw_os_error().map(|code| (path.to_owned(), code));
@@ -112,7 +112,7 @@ impl FileAccess {
         Refusal::Unreadable(error)
     }
 
-    /// Why the file at `path` is not read, for a message about the key that names it.
+    /// Reason why the file at `path` is not read, for a message about the key that names it.
     fn told(&self, path: &Path, refusal: &Refusal) -> Refused {
         let name = path.display();
         match refusal {
@@ -129,13 +129,13 @@ impl FileAccess {
         format!("outside of the root of this scenario, `{}`", self.root().unwrap_or(Path::new("")).display())
     }
 
-    /// Whether a folder is within the root.
+    /// True if a folder is within the root.
     pub(crate) fn has_folder(&self, folder: &Path) -> bool {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         self.root.as_ref().zip(folder.canonicalize().ok()).is_some_and(|(root, real)| real.starts_with(root))
     }
 
-    /// The text of the file at `path`. One that is named again is not read again.
+    /// The text of the file at `path`. A file named again is not read again.
     pub(crate) fn text(&mut self, path: &Path, role: FileRole) -> Result<Arc<str>, Refused> {
         self.read(path, role).map_err(|refusal| self.told(path, &refusal))
     }
@@ -143,7 +143,7 @@ impl FileAccess {
     /// The text of the scenario at `path` itself.
     ///
     /// # Errors
-    /// Those of the operating system, or why it is not read; its name is not in it.
+    /// Errors of the operating system, or the reason why it is not read, without its name.
     pub(crate) fn scenario(&mut self, path: &Path) -> io::Result<Arc<str>> {
         self.read(path, FileRole::Scenario).map_err(|refusal| match refusal {
             Refusal::Unreadable(error) => error,
@@ -170,7 +170,7 @@ impl FileAccess {
         Ok(text)
     }
 
-    /// Looks through the file at `path`, which somebody else reads.
+    /// Hashes and records the file at `path`, which a library reads.
     pub(crate) fn look_through(&mut self, path: &Path, role: FileRole) -> Result<(), Refused> {
         let real = self.within(path).map_err(|refusal| self.told(path, &refusal))?;
         if self.known.contains(&(real.clone(), role)) {
@@ -188,7 +188,7 @@ impl FileAccess {
         Ok(())
     }
 
-    /// Whether there is a regular file at `path`; it may be outside, which is an error then.
+    /// True if there is a regular file at `path`; a file outside the root is an error.
     pub(crate) fn has_file(&self, path: &Path, role: FileRole) -> Result<bool, Refused> {
         if path.symlink_metadata().is_err() {
             return Ok(false);
@@ -197,7 +197,7 @@ impl FileAccess {
         found.map(|_| true).map_err(|refusal| self.told(path, &refusal))
     }
 
-    /// Notes what is built in.
+    /// Records an embedded file.
     pub(crate) fn embedded(&mut self, path: String, role: FileRole, text: &str) -> Arc<str> {
         let place = PathBuf::from(&path);
         if self.known.insert((place.clone(), role)) {
@@ -206,13 +206,13 @@ impl FileAccess {
         Arc::clone(self.texts.entry(place).or_insert_with(|| text.into()))
     }
 
-    /// Notes the scenario itself, whose text came by another way.
+    /// Records the scenario itself, whose text was not read from a file here.
     pub(crate) fn note_scenario(&mut self, name: &str, text: &str) {
         self.made_of.insert(0, MadeOf::of_bytes(name.to_owned(), FileRole::Scenario, text.as_bytes()));
     }
 
-    /// The path with links resolved, when that is within the root. A file outside is refused whether it is there or not: what is
-    /// there is nobody's business either.
+    /// The path with links resolved, if it is within the root. A path outside is refused alike whether it exists or not: the scenario
+    /// must not learn which.
     fn within(&self, path: &Path) -> Result<PathBuf, Refusal> {
         let root = self.root.as_ref().ok_or(Refusal::NoFolder)?;
         match path.canonicalize() {
@@ -222,7 +222,7 @@ impl FileAccess {
         }
     }
 
-    /// Bytes that may still be read of a file.
+    /// Bytes that may still be read from a file.
     fn left(&self, role: FileRole) -> u64 {
         most_of(role).min(MOST_OF_ALL.saturating_sub(self.total))
     }
@@ -244,7 +244,7 @@ const fn most_of(role: FileRole) -> u64 {
     }
 }
 
-/// Where a path leads that stands for nothing: links resolved as far as there are such, the rest as it is written.
+/// Target of a path that does not exist: links resolved as far as they exist, the rest as written.
 fn lexical(path: &Path) -> Option<PathBuf> {
     let mut real = std::env::current_dir().ok()?.canonicalize().ok()?;
     for part in path.components() {
@@ -267,7 +267,7 @@ mod tests {
     use std::fs;
     use std::os::unix::fs::symlink;
 
-    /// A project with a scenario in a folder, and something beside the project.
+    /// A project with a scenario in a folder, and a file beside the project.
     fn room() -> tempfile::TempDir {
         let room = tempfile::tempdir().unwrap();
         fs::create_dir_all(room.path().join("project/.git")).unwrap();

@@ -23,21 +23,21 @@ pub enum Derivative {
     Snap,
 }
 
-/// A quantity that is not what the argument needs.
+/// A quantity of another kind than the argument needs.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("`{text}`: {message}")]
 pub struct ArgumentError {
-    /// What was written.
+    /// The text as given.
     pub text: String,
-    /// What is wrong with it, and what to write instead.
+    /// The mistake with its correction.
     pub message: String,
 }
 
-/// Reads a position or one of its derivatives (SI), on an axis that is linear or rotary, or either when `motion` is
-/// `None`; and says which it is.
+/// Reads a position or one of its derivatives (SI), on an axis that is linear or rotary, or either when `motion` is `None`; returns
+/// the value and its coordinate.
 ///
 /// # Errors
-/// [`ArgumentError`] for what is no quantity, has no unit or another dimension.
+/// [`ArgumentError`] for a text that is not a quantity, has no unit or another dimension.
 pub fn axis_quantity(
     derivative: Derivative,
     motion: Option<Coordinate>,
@@ -60,14 +60,13 @@ pub fn axis_quantity(
     }
 }
 
-/// Reads a number with any unit: its value in SI, and the exponents of kilogram, metre, second and ampere; `None` if it is no
-/// such thing.
+/// Reads a number with any unit: its value in SI, and the exponents of kilogram, metre, second and ampere; `None` for any other text.
 pub(crate) fn any_quantity(text: &str) -> Option<(f64, [i32; 4])> {
     let quantity = quantity::parse(text).ok().filter(|quantity| quantity.has_unit)?;
     Some((quantity.value, quantity.dimension.mechanical()))
 }
 
-/// The SI unit of this name; `None` for what has none.
+/// The SI unit of this name; `None` if it is not a unit.
 #[must_use]
 pub fn si_unit(name: &str) -> Option<SiUnit> {
     let (_, exponents) = any_quantity(&format!("1 {name}"))?;
@@ -90,7 +89,7 @@ pub fn frequency(text: &str) -> Result<f64, ArgumentError> {
     Ok(read(&[&FREQUENCY], text)?.0)
 }
 
-/// Reads a value of a metric (SI) as a limit of it is read, on an axis whose load and whose motor move so.
+/// Reads a value of a metric (SI) in the same way as a limit of it; `axis` and `motor` are the coordinates of load and motor.
 ///
 /// # Errors
 /// As [`axis_quantity`].
@@ -107,7 +106,7 @@ pub fn ratio(text: &str) -> Result<f64, ArgumentError> {
     Ok(read(&[&RATIO], text)?.0)
 }
 
-/// The value, and which of `candidates` it is.
+/// The value, and the index of its kind in `candidates`.
 fn read(candidates: &[&Physical], text: &str) -> Result<(f64, usize), ArgumentError> {
     let wrong = |message: String| ArgumentError { text: text.to_owned(), message };
     reading::read(text, candidates).map(|(which, value)| (value, which)).map_err(|error| match error {
@@ -145,7 +144,7 @@ mod tests {
         let value = |metric, text| metric_value(metric, Linear, Rotary, text).map_err(|error| error.message);
         assert_eq!(value(Name::ResidualVibrationAmplitude, "20 um"), Ok(20e-6));
         assert_eq!(value(Name::TorquePeak, "5Nm"), Ok(5.0));
-        // An effective value is one: 4 Arms are 4√2 Apk.
+        // An effective value: 4 Arms are 4√2 Apk.
         let current = value(Name::CurrentRms, "4 Arms").unwrap();
         assert!((current - 4.0).abs() < 1e-12, "{current}");
         assert!(value(Name::TorquePeak, "5 N").unwrap_err().contains("a torque is needed, this is a force"));

@@ -1,4 +1,4 @@
-//! The function blocks that a call can name, and the keys that their inputs are: what `servobench_plcopen` lists of them.
+//! The function blocks that a call can name, and the keys of their inputs, from the list in `servobench_plcopen`.
 use crate::diagnostic::Report;
 use crate::field::{Field, Slot, key, written};
 use crate::file::{CamSwitch, TableOfPoints, TrackOptions};
@@ -54,12 +54,12 @@ pub(crate) fn conditions(block: BlockName) -> impl Iterator<Item = Output> {
     block.outputs().iter().copied().filter(|output| output.is_condition())
 }
 
-/// When inputs are given.
+/// Moment at which inputs are given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moment {
-    /// Before the block is executed: all of them.
+    /// Before the block is executed: all inputs.
     Start,
-    /// While it is: those that may change.
+    /// During execution: the inputs that may change.
     Later,
 }
 
@@ -69,13 +69,13 @@ impl Moment {
     }
 }
 
-/// An input as a file has it.
+/// An input as written in a file.
 pub(crate) type Given = Value<GivenRows>;
 
-/// The table of an input as a file has it.
+/// The table of an input as written in a file.
 pub(crate) type GivenRows = Rows<Box<At<TableOfPoints>>, Vec<At<CamSwitch>>, Vec<At<TrackOptions>>>;
 
-/// The inputs of blocks, every one of them, by their places in the list.
+/// Inputs of all blocks, indexed by `Input`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BlockInputs(Vec<Slot<Given>>);
 
@@ -139,7 +139,7 @@ impl BlockInputs {
     }
 }
 
-/// What is written to the parameter of `slot`: a velocity where that is none, as most are.
+/// Measure of the value written to the parameter in `slot`: a velocity, as most are, if the parameter is missing or cannot be written.
 fn parameter_value(slot: &Slot<Given>) -> Measure {
     let measure = match slot.given() {
         Some(Value::Choice(name)) => AxisParameter::from_name(name).and_then(AxisParameter::written_as),

@@ -1,4 +1,4 @@
-//! What is wrong with a scenario, where, and what to do about it.
+//! Mistakes in a scenario, with their places and corrections.
 use crate::access::FileAccess;
 use crate::points::Counts;
 use crate::source::{SourceId, Sources, Span};
@@ -10,20 +10,20 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// One mistake or doubt, at its place.
+/// One mistake or warning, with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// File it is in.
+    /// File.
     pub source: SourceId,
-    /// Bytes of that file.
+    /// Byte range in that file.
     pub span: Range<usize>,
-    /// What is wrong, in a lower-case sentence.
+    /// The mistake, in a lower-case sentence.
     pub message: String,
-    /// What to do about it.
+    /// Correction.
     pub help: Option<String>,
 }
 
-/// Why a scenario could not be loaded.
+/// Reason why a scenario could not be loaded.
 #[derive(Debug, Error)]
 pub enum LoadError {
     /// The scenario file cannot be read.
@@ -31,7 +31,7 @@ pub enum LoadError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         error: std::io::Error,
     },
     /// The file holds mistakes: all of them.
@@ -40,30 +40,29 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// Whether the machine had too little of something, and the scenario may be right: descriptors, memory, room on a disk.
+    /// True if the machine ran short of descriptors, memory or disk space; the scenario may be right.
     #[must_use]
     pub fn is_shortage(&self) -> bool {
         matches!(self, Self::Read { error, .. } if servobench_files::is_shortage(error))
     }
 }
 
-/// Everything that is wrong with a scenario and the models it names.
+/// All mistakes in a scenario and the models it names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Invalid {
     /// The mistakes, at least one, in the order of the files.
     pub diagnostics: Vec<Diagnostic>,
-    /// What is doubtful besides.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
     /// The files.
     pub sources: Sources,
 }
 
-/// Mistakes that are shown of one file; nobody reads the hundredth.
+/// Number of mistakes shown per file.
 pub const MOST_MISTAKES: usize = 20;
 
 impl Invalid {
-    /// The mistakes in lines as [`Diagnostic::line`] has them, of each file [`MOST_MISTAKES`] at most, then how many more
-    /// there are.
+    /// The mistakes as lines of [`Diagnostic::line`], at most [`MOST_MISTAKES`] per file, then the number of further mistakes.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let shown = shown(&self.diagnostics, &self.sources);
@@ -72,16 +71,16 @@ impl Invalid {
     }
 }
 
-/// What is shown of many diagnostics.
+/// The diagnostics shown out of many.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Shown<'a> {
-    /// Of each file [`MOST_MISTAKES`] at most.
+    /// At most [`MOST_MISTAKES`] of each file.
     pub diagnostics: Vec<&'a Diagnostic>,
-    /// Names of the files with more, and how many more.
+    /// Files with more, and the number of further diagnostics.
     pub more: Vec<(String, usize)>,
 }
 
-/// Of each file of `sources` the first [`MOST_MISTAKES`] of `all`.
+/// The first [`MOST_MISTAKES`] of `all` in each file of `sources`.
 #[must_use]
 pub fn shown<'a>(all: &'a [Diagnostic], sources: &Sources) -> Shown<'a> {
     let mut shown = Shown { diagnostics: Vec::new(), more: Vec::new() };
@@ -96,7 +95,7 @@ pub fn shown<'a>(all: &'a [Diagnostic], sources: &Sources) -> Shown<'a> {
     shown
 }
 
-/// `axis.toml:12:9: message; help`, a line for each mistake, as [`Invalid::lines`] has them.
+/// The lines of [`Invalid::lines`], one per mistake: `axis.toml:12:9: message; help`.
 impl fmt::Display for Invalid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.lines().join("\n"))
@@ -109,14 +108,14 @@ impl Diagnostic {
         Self { source: span.source, span: span.start..span.end, message, help }
     }
 
-    /// The diagnostic in one line: `axis.toml:12:9: message; help`, of an override `--set run.duration=1: message; help`.
+    /// The diagnostic in one line: `axis.toml:12:9: message; help`, for an override `--set run.duration=1: message; help`.
     #[must_use]
     pub fn line(&self, sources: &Sources) -> String {
         let help = self.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         format!("{}{help}", self.placed_message(sources))
     }
 
-    /// The message behind its place, without what to do about it.
+    /// The message after its place, without the correction.
     #[must_use]
     pub fn placed_message(&self, sources: &Sources) -> String {
         let place = sources.place_in_words(self.source, self.span.start);
@@ -127,32 +126,32 @@ impl Diagnostic {
 /// A file that a scenario names by its path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedFile {
-    /// The path as the scenario has it, relative to its folder.
+    /// The path as written in the scenario, relative to its folder.
     pub named: String,
     /// The text of the file.
     pub text: Arc<str>,
 }
 
-/// Collects what is found while a scenario is read, and knows what a unit's meaning depends on.
+/// Collects the diagnostics of a scenario, and holds the context on which the meaning of units depends.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Report {
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
-    /// What is missing; not said of a file with wrong syntax, where it may well be there.
+    /// Missing keys; not reported for a file with syntax errors, which may contain them.
     pub(crate) missing: Vec<Diagnostic>,
-    /// Tables whose model was not found: what they lack may well be in it.
+    /// Tables whose model was not found, which may contain the missing keys.
     pub(crate) without_model: Vec<&'static str>,
-    /// Task rates that models give.
+    /// Task rates from models.
     pub(crate) rates_of_models: Vec<Rate>,
-    /// What the scenario may read, and what was.
+    /// Access to files.
     pub(crate) files: FileAccess,
-    /// Tables of points that were read.
+    /// Tables of points read so far.
     pub(crate) tables: Vec<NamedFile>,
-    /// Their names, and which texts these are.
+    /// Names of these tables, with the address of the text.
     pub(crate) known_tables: HashSet<(String, usize)>,
-    /// Points of all of them.
+    /// Number of points of all tables.
     pub(crate) points: usize,
-    /// What a count of the bus is, once known.
+    /// Meaning of a count of the bus, once known.
     pub(crate) counts: Option<Counts>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Coordinate>,
@@ -169,14 +168,14 @@ impl Report {
         self.warnings.push(Diagnostic::new(span, message.into(), help.into()));
     }
 
-    /// Notes a table that is read under this name.
+    /// Records a table read under this name.
     pub(crate) fn note_table(&mut self, named: &str, text: &Arc<str>) {
         if self.known_tables.insert((named.to_owned(), text.as_ptr().addr())) {
             self.tables.push(NamedFile { named: named.to_owned(), text: Arc::clone(text) });
         }
     }
 
-    /// Notes that something is missing which the table `path` could hold.
+    /// Reports a missing key that the table at `path` could hold.
     pub(crate) fn lacking(&mut self, path: &str, span: Span, message: impl Into<String>, help: impl Into<String>) {
         let table = path.split('.').next().unwrap_or(path);
         if !self.without_model.contains(&table) {
@@ -185,10 +184,10 @@ impl Report {
     }
 }
 
-/// Bytes of a message: a value may be as long as its file.
+/// Longest message (bytes): a value may be as long as its file.
 const LONGEST: usize = 2000;
 
-/// A text with its middle left out when it is longer than anybody reads.
+/// A text with its middle left out if it is longer than [`LONGEST`].
 fn bounded(text: String) -> String {
     if text.len() <= LONGEST {
         return text;
@@ -209,7 +208,7 @@ mod tests {
             Err(LoadError::Invalid(invalid)) => invalid.lines(),
             other => panic!("{other:?}"),
         };
-        // Three tables are missing besides.
+        // Three tables are also missing.
         assert_eq!(lines(17).len(), 20);
         let more = lines(40);
         assert_eq!((more.len(), more.last().map(String::as_str)), (21, Some("a.toml: and 23 more")));

@@ -1,4 +1,4 @@
-//! Units in which a file gives positions and their derivatives, so that these are told as they were written.
+//! Units in which a file gives positions and their derivatives, so that results are shown in the same units.
 use crate::argument::{Derivative, axis_quantity};
 use crate::parameters::Parameter;
 use servobench_base::Coordinate;
@@ -15,10 +15,10 @@ const KEYS: [(&str, Derivative); 7] = [
     ("snap", Derivative::Snap),
 ];
 
-/// The units of an axis of this `motion`: each the first in which a key of moves is written.
+/// Display units of an axis with coordinate `motion`: for each derivative, the first unit used by a key of a move.
 pub(crate) fn display_units(parameters: &[Parameter], motion: Coordinate) -> DisplayUnits {
     let mut units = DisplayUnits::new(motion.unit());
-    // The first of a kind counts, and it is set last.
+    // The first unit of a kind counts, so it is set last.
     for Parameter { key, value, .. } in parameters.iter().rev() {
         let (table, last) = (key.split('.').next(), key.rsplit('.').next());
         if !matches!(table, Some("setpoint" | "program")) {
@@ -62,7 +62,7 @@ overshoot = "1 um"
         loaded.scenario.units.plain(k).text(value)
     }
 
-    /// Zero does not say how large its unit is: the next one counts.
+    /// Zero gives no scale of its unit: the next value counts.
     #[test]
     fn a_length_is_told_in_the_unit_of_the_first_move() {
         assert_eq!(told(TEXT, 0, 0.25), "25 cm");

@@ -1,4 +1,4 @@
-//! A scenario file that is read once, whatever values its keys take.
+//! A scenario file that is read once for any number of sets of overrides.
 use crate::access::FileAccess;
 use crate::diagnostic::{Invalid, LoadError, Report};
 use crate::display_units::display_units;
@@ -16,20 +16,20 @@ use crate::{foreign, format};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A scenario file that was read and parsed. Each set of [`Override`]s makes a scenario of it.
+/// A scenario file, read and parsed. Each set of [`Override`]s makes a scenario of it.
 #[derive(Debug, Clone)]
 pub struct Document {
     /// Its name in messages.
     name: String,
-    /// The file, where it came from one.
+    /// The path, if it came from a file.
     path: Option<PathBuf>,
     /// The file itself.
     own: Reading,
-    /// The file laid on the models that it names.
+    /// The file merged with the models it names.
     laid_on_models: Reading,
 }
 
-/// The tree of a scenario on its way to a scenario, and what was found until then.
+/// The tree of a scenario that is not resolved yet, and the diagnostics so far.
 #[derive(Debug, Clone)]
 struct Reading {
     sources: Sources,
@@ -37,16 +37,16 @@ struct Reading {
     report: Report,
     /// Syntax errors.
     syntax: Report,
-    /// Lines that they are on.
+    /// Lines with syntax errors.
     broken: Vec<(SourceId, Range<usize>)>,
 }
 
 impl Document {
-    /// Reads the scenario file at `path`. It and every file that it names must be below the folder `root`, links resolved; without it
-    /// below the nearest folder from the scenario upwards that has a `.git`, or else below that of the scenario.
+    /// Reads the scenario file at `path`. The file and every file it names must be below the folder `root`, links resolved; without `root`,
+    /// below the nearest folder from the scenario upwards that has a `.git`, or else below the scenario's own folder.
     ///
     /// # Errors
-    /// [`LoadError::Read`] when the file cannot be read, [`LoadError::Invalid`] for one that a later version has written.
+    /// [`LoadError::Read`] when the file cannot be read, [`LoadError::Invalid`] for a file written by a later version.
     pub fn open(path: &Path, root: Option<&Path>) -> Result<Self, LoadError> {
         let unreadable = |error| LoadError::Read { path: path.to_owned(), error };
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
@@ -56,15 +56,15 @@ impl Document {
         Ok(Self { path: Some(path.to_owned()), ..document })
     }
 
-    /// Reads a scenario from `text`; `name` stands for the file in messages, and its stem names a scenario that has no name of its own.
-    /// Models and files are looked up from `folder`, below `root` as [`open`](Self::open) has it; without a folder models are looked up
+    /// Reads a scenario from `text`; `name` stands for the file in messages, and its stem is the default name of the scenario.
+    /// Models and files are looked up from `folder`, below `root` as in [`open`](Self::open); without a folder, models are looked up
     /// among the embedded ones only, and no file is read.
     ///
     /// # Errors
-    /// As [`open`](Self::open); [`LoadError::Read`] when there is no such root.
+    /// Those of [`open`](Self::open); [`LoadError::Read`] when `root` does not exist.
     pub fn parse(name: &str, text: &str, folder: Option<&Path>, root: Option<&Path>) -> Result<Self, LoadError> {
         let mut files = match folder {
-            // In a folder that is not there is no file to read.
+            // A folder that does not exist has no file to read.
             Some(folder) if root.is_some() || folder.as_os_str().is_empty() || folder.exists() => {
                 access(Path::new(name), folder, root)?
             }
@@ -85,7 +85,7 @@ impl Document {
         let broken = parsed.broken.into_iter().map(|line| (id, line)).collect();
         let mut report = Report { files, ..Report::default() };
         if let Some(diagnostic) = format::newer(&parsed.table) {
-            // Whatever else is said of a file that this build does not know would mislead.
+            // Further messages about a format that this build does not know would mislead.
             let (diagnostics, warnings) = (vec![diagnostic], Vec::new());
             return Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources })));
         }
@@ -96,13 +96,13 @@ impl Document {
         Ok(Self { name: name.to_owned(), path: None, own, laid_on_models })
     }
 
-    /// The file, where the scenario came from one.
+    /// The path, if the scenario came from a file.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// The same, read from the file at `path` by other means.
+    /// The same document with the path `path`, for a file read by other means.
     #[must_use]
     pub fn at(self, path: &Path) -> Self {
         Self { path: Some(path.to_owned()), ..self }
@@ -117,8 +117,8 @@ impl Document {
     /// The scenario with the values of `overrides` in place of those of the file.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] with every mistake in the file and in the overrides; [`LoadError::Read`] where the machine kept a file that it
-    /// names from being read.
+    /// [`LoadError::Invalid`] with every mistake in the file and in the overrides; [`LoadError::Read`] when a shortage of the operating
+    /// system prevented the reading of a file that it names.
     pub fn scenario(&self, overrides: &[Override]) -> Result<Loaded, LoadError> {
         let mut reading =
             if overrides.iter().any(Override::chooses_a_model) { &self.own } else { &self.laid_on_models }.clone();
@@ -139,7 +139,7 @@ impl Reading {
         self.broken.extend(lay_on_models(&mut self.table, &mut self.sources, &mut self.report, &mut self.syntax));
     }
 
-    /// The scenario that the tree describes; `name` stands for its file, and `overrides` are in the tree already.
+    /// The scenario that the tree describes; `name` stands for its file, and `overrides` are already in the tree.
     fn resolved(self, name: &str, overrides: &[Override]) -> Result<Loaded, LoadError> {
         let Self { mut sources, table, mut report, syntax, broken } = self;
         (report.axis, report.motor) = motions(&table);
@@ -151,7 +151,7 @@ impl Reading {
         let mut warnings = in_order(std::mem::take(&mut report.warnings));
         foreign::shorten(&mut diagnostics, &sources);
         foreign::shorten(&mut warnings, &sources);
-        // What the machine kept from being read is no mistake of the scenario.
+        // A shortage that prevented reading is not a mistake of the scenario.
         if !diagnostics.is_empty()
             && let Some((path, error)) = report.files.shortage()
         {
@@ -181,7 +181,7 @@ impl Reading {
     }
 }
 
-/// Files that the scenario at `path`, in `folder`, may read.
+/// Access to the files that the scenario at `path`, in `folder`, may read.
 fn access(path: &Path, folder: &Path, root: Option<&Path>) -> Result<FileAccess, LoadError> {
     FileAccess::of_folder(folder, root).map_err(|error| {
         let path = root.unwrap_or(path).to_owned();

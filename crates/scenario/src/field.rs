@@ -1,4 +1,4 @@
-//! What the value of a key may be: how it is read, what is said when it is wrong, and its JSON Schema.
+//! Values of keys: how they are read, the messages for mistakes, and their JSON Schema.
 use crate::diagnostic::Report;
 use crate::quantity;
 use crate::reading::{self, ReadError, names, proposals};
@@ -9,15 +9,15 @@ use servobench_config::quantities::RATIO;
 use servobench_config::{Bound, Kind, Measure, Parameter, Physical};
 use std::ops::Range;
 
-/// A type that keys can have; `Spec` is what one key demands beyond the type: a dimension, a bound.
+/// A type of the value of a key; `Spec` holds requirements beyond the type: a dimension, a bound.
 pub(crate) trait Field<Spec = ()>: Sized {
-    /// Reads `node`; `path` is `drive.velocity.rate`. Says what is wrong and returns nothing when it is.
+    /// Reads `node`; `path` is `drive.velocity.rate`. Reports a mistake and returns `None`.
     fn decode(path: &str, node: &Node, spec: &Spec, report: &mut Report) -> Option<Self>;
 
-    /// JSON Schema of what [`Self::decode`] accepts.
+    /// JSON Schema of the values that [`Self::decode`] accepts.
     fn schema(spec: &Spec) -> Json;
 
-    /// What the owner of the parameter says that it means; the documentation of the key follows it.
+    /// Meaning of the parameter according to its owner; precedes the documentation of the key.
     fn meaning(_spec: &Spec) -> &'static str {
         ""
     }
@@ -28,7 +28,7 @@ pub(crate) trait Field<Spec = ()>: Sized {
 pub(crate) enum Slot<T> {
     /// The key is not in the file.
     Absent,
-    /// It is, and what is wrong with it has been said.
+    /// The value is wrong, which has been reported.
     Wrong(Span),
     /// Its value.
     Given(At<T>),
@@ -55,7 +55,7 @@ impl<T> Slot<T> {
         }
     }
 
-    /// Where the value is, right or wrong.
+    /// Place of the value, right or wrong.
     pub(crate) fn span(&self) -> Option<Span> {
         match self {
             Self::Absent => None,
@@ -64,7 +64,7 @@ impl<T> Slot<T> {
     }
 }
 
-/// Something is wrong and has been reported.
+/// A mistake has been reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Reported;
 
@@ -73,10 +73,10 @@ pub(crate) fn key(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// Number and unit; the unit itself is for `check` to judge.
+/// Number and unit; the unit itself is checked on reading.
 const QUANTITY_PATTERN: &str = r"^ *[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)? *(1/)?[A-Za-z%°µμΩΩ(].*$";
 
-/// A physical quantity, in SI.
+/// A physical quantity (SI).
 impl Field<Measure> for f64 {
     fn decode(path: &str, node: &Node, spec: &Measure, report: &mut Report) -> Option<Self> {
         let candidates: Vec<_> = spec.kind.candidates(report.axis, report.motor).collect();
@@ -162,7 +162,7 @@ pub(crate) enum Either {
     Second(f64),
 }
 
-/// What an [`Either`] demands.
+/// Requirements on an [`Either`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EitherMeasure {
     pub(crate) first: Kind,
@@ -188,7 +188,7 @@ impl Field<EitherMeasure> for Either {
     }
 }
 
-/// Reads a quantity that is one of `candidates`; returns which, and the value in the unit that it means.
+/// Reads a quantity that is one of `candidates`; returns the index of the candidate, and the value in the candidate's unit.
 pub(crate) fn physical(
     path: &str,
     node: &Node,
@@ -237,7 +237,7 @@ pub(crate) fn physical(
     None
 }
 
-/// The value as the file has it.
+/// The value as written in the file.
 pub(crate) fn written(node: &Node) -> String {
     match &node.value {
         Value::Text(text) | Value::Quantity { text, .. } => format!("\"{text}\""),
@@ -247,14 +247,13 @@ pub(crate) fn written(node: &Node) -> String {
     }
 }
 
-/// The place of `part` of a text: exact when the file holds the text as it is, without escapes. On the command line it needs
-/// no quotes.
+/// The place of `part` of a text: exact if the file holds the text without escapes. On the command line it needs no quotes.
 fn within(span: Span, text: &str, part: &Range<usize>) -> Span {
     let quotes = (span.end - span.start).checked_sub(text.len());
     if let Some(quotes @ (0 | 2)) = quotes {
         let quote = quotes / 2;
         let start = span.start + quote;
-        // An empty part would point at nothing.
+        // An empty part would mark nothing.
         let end = part.end.max(part.start + 1).min(text.len() + quote);
         Span { start: start + part.start, end: start + end, ..span }
     } else {

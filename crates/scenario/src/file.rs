@@ -1,7 +1,7 @@
-//! The tables of a scenario file, as written: every key optional, every quantity in SI, nothing decided yet.
+//! The tables of a scenario file, as written: every key optional, every quantity in SI, not resolved yet.
 //!
-//! This is the one description of the format. Keys in the motor coordinate follow the motor (rad, N·m for a rotary
-//! one), those in the axis coordinate the load.
+//! The single description of the format. Keys in the motor coordinate follow the motor (rad, N·m for a rotary one), those in the
+//! axis coordinate the load.
 
 mod axis;
 mod bus;

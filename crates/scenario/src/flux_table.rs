@@ -13,7 +13,7 @@ use servobench_plant::pmsm::FluxData;
 use std::collections::BTreeMap;
 use thiserror::Error;
 
-/// Columns, what they measure, and a unit that they might have.
+/// Columns with their quantity and a unit to propose.
 const COLUMNS: [(&str, &Physical, &str); 4] = [
     ("i_d", &CURRENT, "Apk"),
     ("i_q", &CURRENT, "Apk"),
@@ -21,10 +21,10 @@ const COLUMNS: [(&str, &Physical, &str); 4] = [
     ("psi_q", &FLUX_LINKAGE, "mV s"),
 ];
 const LIKE: &str = "i_d [Apk],i_q [Apk],psi_d [mV s],psi_q [mV s]";
-/// Rows at most.
+/// Largest number of rows.
 const MOST_ROWS: usize = FluxData::MOST * FluxData::MOST;
 
-/// What is wrong with a table of flux linkages, and where.
+/// A mistake in a table of flux linkages, with its place.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{line}:{column}: {mistake}")]
 pub struct FluxTableError {
@@ -32,52 +32,52 @@ pub struct FluxTableError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The mistake.
     pub mistake: FluxTableMistake,
 }
 
-/// What is wrong at a place of a table of flux linkages, with the way out.
+/// Mistake in a table of flux linkages, with its correction.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FluxTableMistake {
-    /// There is nothing.
+    /// The table is empty.
     #[error("the table is empty: begin with a heading like `{LIKE}`")]
     NoHeading,
-    /// A column has a name that means nothing here.
+    /// A column has an unknown name.
     #[error("unknown column `{name}`: the heading is like `{LIKE}`, its columns are separated by commas")]
     UnknownColumn {
-        /// What stands there.
+        /// The name.
         name: String,
     },
-    /// A column is there a second time.
+    /// A column appears twice.
     #[error("there are two columns `{column}`: delete one")]
     Twice {
-        /// Which.
+        /// The column.
         column: &'static str,
     },
     /// A column has no unit.
     #[error("`{column}` needs its unit in brackets: write `{column} [{proposal}]`")]
     NoUnit {
-        /// Which.
+        /// The column.
         column: &'static str,
-        /// A unit that it might have.
+        /// A unit to propose.
         proposal: &'static str,
     },
-    /// A column has another unit.
+    /// A column has a wrong unit.
     #[error("`{column}` cannot be in `{unit}`: {message}")]
     Unit {
-        /// Which.
+        /// The column.
         column: &'static str,
         /// Its unit.
         unit: String,
-        /// What is wrong with it.
+        /// Reason.
         message: String,
     },
-    /// A column is not there.
+    /// A column is missing.
     #[error("the column `{column}` is missing: add `{column} [{proposal}]`")]
     Missing {
-        /// Which.
+        /// The column.
         column: &'static str,
-        /// A unit that it might have.
+        /// A unit to propose.
         proposal: &'static str,
     },
     /// A row has more or fewer values than there are columns.
@@ -86,20 +86,20 @@ pub enum FluxTableMistake {
         /// Values of the row.
         found: usize,
     },
-    /// A value is none.
+    /// A value is not a valid number.
     #[error("`{column}` is `{text}`: {reason}")]
     Value {
-        /// Which.
+        /// The column.
         column: &'static str,
-        /// What stands there.
+        /// The text of the value.
         text: String,
-        /// What is wrong with it.
+        /// Reason.
         reason: &'static str,
     },
-    /// A pair of currents has two rows.
+    /// A pair of currents appears in two rows.
     #[error("the currents of this row are those of line {line}, too: delete one")]
     Again {
-        /// The line that had them first.
+        /// Line of the first.
         line: usize,
     },
     /// There are too many rows.
@@ -117,10 +117,10 @@ pub enum FluxTableMistake {
 
 use FluxTableMistake as Mistake;
 
-/// Reads a table; the currents are increasing in what is returned.
+/// Reads a table and sorts it by increasing currents.
 ///
 /// # Errors
-/// [`FluxTableError`] says where and what is wrong.
+/// [`FluxTableError`] with the place and the mistake.
 pub fn read_flux_table(text: &str) -> Result<FluxData, FluxTableError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows = (1..).zip(text.lines()).filter(|(_, row)| !row.trim().is_empty());
@@ -175,14 +175,14 @@ impl Ord for Ordered {
     }
 }
 
-/// Which of [`COLUMNS`] each column is, and its scale.
+/// Index into [`COLUMNS`], scale and factor of each column.
 type Heads = [(usize, Scale, f64); 4];
 
 const fn wrong(line: usize, column: usize, mistake: FluxTableMistake) -> FluxTableError {
     FluxTableError { line, column, mistake }
 }
 
-/// The cells of a row, each with the column in characters where it begins.
+/// The cells of a row, each with the column in characters of its beginning.
 fn cells(row: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut next = 0;
     row.split(',').map(move |cell| {
@@ -211,7 +211,7 @@ fn heading(line: usize, row: &str) -> Result<Heads, FluxTableError> {
             return Err(fail(Mistake::NoUnit { column, proposal }));
         }
         let refuse = |message: String| fail(Mistake::Unit { column, unit: quoted(unit).to_string(), message });
-        // What is wrong within a unit would be quoted with it.
+        // A message about a mistake within the unit would quote all of it.
         if unit.chars().count() > MOST_QUOTED {
             return Err(refuse("no unit is that long".to_owned()));
         }
@@ -227,7 +227,7 @@ fn heading(line: usize, row: &str) -> Result<Heads, FluxTableError> {
     heads.try_into().map_err(|_| wrong(line, 1, Mistake::Width { found }))
 }
 
-/// Its scale, and what that is to be multiplied by: effective values have amplitudes.
+/// Scale of `unit`, and a further factor: from effective values to amplitudes.
 fn read_unit(unit: &str, physical: &Physical) -> Result<(Scale, f64), String> {
     let with = |message: &str, help: &str| if help.is_empty() { message.into() } else { format!("{message}; {help}") };
     let candidates = [physical];
@@ -254,7 +254,7 @@ fn values(heads: &Heads, line: usize, row: &str) -> Result<[f64; 4], FluxTableEr
             let column = COLUMNS[*which].0;
             wrong(line, at, Mistake::Value { column, text: quoted(text).to_string(), reason })
         })?;
-        // -0 is 0, too.
+        // -0 becomes 0.
         values[*which] = factor * value + 0.0;
     }
     Ok(values)

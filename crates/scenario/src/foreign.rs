@@ -1,8 +1,8 @@
-//! What is said of files that a scenario names: no more than a few characters of them.
+//! Messages about files that a scenario names: quote at most a few characters of them.
 //!
-//! A message quotes the key or the value that is wrong. In the scenario itself that is what its author wrote; a file that it names may
-//! be anybody's. Of such a file what a message has in common with the lines it is about is cut to [`MOST_QUOTED`] characters, unless
-//! it is a word of the format itself.
+//! A message quotes the wrong key or value. In the scenario itself its author wrote that; a file it names may be anybody's. Any text
+//! that a message has in common with the affected lines of such a file is cut to [`MOST_QUOTED`] characters, unless it is a word of
+//! the format itself.
 use crate::diagnostic::Diagnostic;
 use crate::schema::json_schema;
 use crate::source::Sources;
@@ -11,10 +11,10 @@ use servobench_files::MOST_QUOTED;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-/// Bytes before and behind the place of a mistake with which its message is compared.
+/// Bytes before and after the place of a mistake with which its message is compared.
 const AROUND: usize = 4096;
 
-/// Shortens what `all` quote of files whose lines may not be shown.
+/// Shortens the quotations in `all` from files whose lines may not be shown.
 pub(crate) fn shorten(all: &mut [Diagnostic], sources: &Sources) {
     for one in all.iter_mut().filter(|one| !sources.may_be_shown(one.source)) {
         let lines = around(sources.text(one.source), one.span.start, one.span.end);
@@ -23,14 +23,14 @@ pub(crate) fn shorten(all: &mut [Diagnostic], sources: &Sources) {
     }
 }
 
-/// The text from somewhat before `start` to somewhat behind `end`.
+/// The text from [`AROUND`] bytes before `start` to [`AROUND`] bytes after `end`.
 fn around(text: &str, start: usize, end: usize) -> &str {
     let from = text.floor_char_boundary(start.saturating_sub(AROUND));
     let to = text.ceil_char_boundary(end.min(start.saturating_add(AROUND)).saturating_add(AROUND));
     text.get(from..to).unwrap_or_default()
 }
 
-/// `message` without what is longer than a few characters and stands in `lines` too.
+/// `message` with every passage of more than [`MOST_QUOTED`] characters that also occurs in `lines` cut.
 fn short(message: &str, lines: &str) -> String {
     let starts: Vec<usize> = message.char_indices().map(|(at, _)| at).chain([message.len()]).collect();
     let (mut shown, mut at) = (String::new(), 0);
@@ -61,7 +61,7 @@ fn short(message: &str, lines: &str) -> String {
     shown
 }
 
-/// Whether it is a key or a name of the format.
+/// True if `word` is a key or a name of the format.
 fn is_of_the_format(word: &str) -> bool {
     static WORDS: OnceLock<HashSet<String>> = OnceLock::new();
     let words = WORDS.get_or_init(|| {

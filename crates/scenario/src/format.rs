@@ -1,16 +1,16 @@
-//! The number of the format of a scenario file: it grows when a file that was valid comes to mean something else.
+//! The format number of a scenario file: it increases when the meaning of a valid file changes.
 //!
 //! | format | meaning |
 //! |---|---|
 //! | 1 | a run passes when every limit is kept |
-//! | 2 | every run is held to requirements besides, unless `[requirements]` lifts one |
+//! | 2 | a run must also meet requirements, unless `[requirements]` lifts them |
 use crate::diagnostic::{Diagnostic, Report};
 use crate::tree::{Node, Table, Value};
 
-/// The newest format: that of a file without a number.
+/// The newest format, and the default.
 pub(crate) const FORMAT: u32 = 2;
 
-/// What keeps a file of a newer format from being read; nothing of one that this build reads.
+/// Reason why a file of a newer format cannot be read; `None` for a format that this build reads.
 pub(crate) fn newer(root: &Table) -> Option<Diagnostic> {
     let (node, number) = number(root)?;
     (number > i64::from(FORMAT)).then(|| {
@@ -21,7 +21,7 @@ pub(crate) fn newer(root: &Table) -> Option<Diagnostic> {
     })
 }
 
-/// Says what a file of an older format means now.
+/// Warns of the changed meaning of a file of an older format.
 pub(crate) fn warn_of_older(root: &Table, report: &mut Report) {
     let Some((node, 1)) = number(root) else { return };
     let message = "format 1: a run passed when its limits were kept; since format 2 it is held to requirements too (arrives, \
@@ -67,7 +67,7 @@ mod tests {
         assert!(said[0].starts_with("a.toml:1:10: format 1: ") && said[0].contains("held to requirements"), "{said:?}");
     }
 
-    /// Nothing else is said of it: keys of a later format are no mistakes.
+    /// No further mistakes are reported: keys of a later format are not mistakes.
     #[test]
     fn a_newer_format_is_refused_by_its_number() {
         let expected = "a.toml:1:10: format 7 is newer than this build, which reads 1 and 2; run it with the servobench that it \

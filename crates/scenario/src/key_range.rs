@@ -1,21 +1,21 @@
-//! A key and what it may be, as on the command line: `axis.load.frequency=14 Hz..22 Hz`, `axis.load.mass=12 kg±10 %`.
+//! A key and its range, as on the command line: `axis.load.frequency=14 Hz..22 Hz`, `axis.load.mass=12 kg±10 %`.
 use crate::sweep_file::amount;
 use servobench_sweep::Value;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// A key, and the lowest and the highest value that it may have.
+/// A key with its lowest and highest value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeyRange {
     /// The key: `axis.load.frequency`.
     pub key: String,
     /// Lowest and highest value.
     pub ends: [f64; 2],
-    /// The unit of both; empty of pure numbers.
+    /// The unit of both; empty for pure numbers.
     pub unit: String,
 }
 
-/// Why a text is no range of a key.
+/// Reason why a text is not a range of a key.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}; write it as axis.load.frequency=14 Hz..22 Hz or axis.load.mass=12 kg±10 %")]
 pub struct KeyRangeError(String);

@@ -1,9 +1,9 @@
-//! The scenario file: schema, quantities with units, diagnostics with spans, look-up in `models/`.
+//! The scenario file: schema, quantities with units, diagnostics with spans, lookup in `models/`.
 //!
 //! ```text
-//! TOML → tree with places → laid on models → overrides → tables (`file`: quantities in SI) → `Scenario`
+//! TOML → tree with places → merged with models → overrides → tables (`file`: quantities in SI) → `Scenario`
 //! ```
-//! The tables in `file` are the one description of the format: decoding, unknown keys, JSON Schema and the reference in
+//! The tables in `file` are the single description of the format: decoding, unknown keys, JSON Schema and the reference in
 //! `docs/scenario.md` follow from them.
 
 mod access;

@@ -1,4 +1,4 @@
-//! `[limits]`: metrics by name, each with what it measures.
+//! `[limits]`: metrics by name, each with its limit.
 use crate::diagnostic::Report;
 use crate::field::Field;
 use crate::source::At;

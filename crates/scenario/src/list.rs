@@ -32,7 +32,7 @@ impl<Spec, T: Field<Spec>> Field<Spec> for OneOrMany<T> {
     }
 }
 
-/// A list; of tables it is written `[[name]]`.
+/// A list; a list of tables is written `[[name]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Many<T>(pub(crate) Vec<At<T>>);
 
@@ -56,7 +56,7 @@ impl<Spec, T: Field<Spec>> Field<Spec> for Many<T> {
     }
 }
 
-/// Reads every item, so that the mistakes of all are found.
+/// Reads every item, so that the mistakes in all items are found.
 fn decode_items<Spec, T: Field<Spec>>(
     path: &str,
     items: &[Node],
@@ -70,7 +70,7 @@ fn decode_items<Spec, T: Field<Spec>>(
     all.into_iter().collect()
 }
 
-/// A share from 0 to 1; `true` is all of it.
+/// A share from 0 to 1; `true` is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Share(pub(crate) f64);
 
@@ -95,14 +95,14 @@ impl Field for Share {
     }
 }
 
-/// A value, or the one that the tool computes.
+/// A value, or "auto" for the computed one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Automatic {
     Auto,
     Given(f64),
 }
 
-/// A bound, or "none" where there is to be none.
+/// A bound, or "none".
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum BoundOrNone {
     None,

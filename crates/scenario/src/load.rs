@@ -1,4 +1,4 @@
-//! From a file or a text to a scenario, or to everything that is wrong with it.
+//! Loads a file or a text as a scenario, or returns all mistakes in it.
 use crate::diagnostic::{Diagnostic, LoadError, NamedFile, Report};
 use crate::document::Document;
 use crate::file::MotorKind;
@@ -11,18 +11,18 @@ use servobench_config::Choice;
 use std::ops::Range;
 use std::path::Path;
 
-/// A scenario and what is worth knowing about its files.
+/// A scenario with its files and warnings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
     /// The scenario.
     pub scenario: Scenario,
-    /// What is doubtful in it.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
     /// The files it came from.
     pub sources: Sources,
     /// Tables of points that it names.
     pub tables: Vec<NamedFile>,
-    /// What the files say, the scenario laid on its models.
+    /// The merged contents of the scenario and its models.
     pub(crate) root: Node,
     /// The MJCF file that it names.
     pub(crate) mjcf: Option<SourceId>,
@@ -45,8 +45,8 @@ pub fn parse(name: &str, text: &str, folder: Option<&Path>) -> Result<Loaded, Lo
     Document::parse(name, text, folder, None)?.scenario(&[])
 }
 
-/// Everything that is wrong. On lines with wrong syntax only that is said, and nothing is missing from a file that
-/// could not be read completely. The lines are in the order of the files, none within another.
+/// All mistakes. On a line with a syntax error only the syntax error is reported, and no key is reported as missing from a file that
+/// could not be read completely. The lines are in the order of the files and do not overlap.
 pub(crate) fn all_errors(syntax: Report, report: &mut Report, broken: &[(SourceId, Range<usize>)]) -> Vec<Diagnostic> {
     let mut all = syntax.errors;
     let is_whole = |one: &Diagnostic| {
@@ -76,8 +76,8 @@ pub(crate) fn motions(root: &Table) -> (Option<Coordinate>, Option<Coordinate>) 
     (motion, motion.map(|motion| resolve::motor_motion(motion, axis.get("lead").is_some(), own)).or(own))
 }
 
-/// Whether a synchronous motor turns or is linear: its poles are counted in pairs around a shaft, or have a pitch along a
-/// line. What the command line says displaces what the scenario says, and that what the model says.
+/// Coordinate of a synchronous motor, from its keys: `pole_pairs` for a rotary, `pole_pitch` for a linear one. The command line takes
+/// precedence over the scenario, and the scenario over the model.
 fn motor_by_its_keys(motor: &Table) -> Option<Coordinate> {
     if named(motor, "kind") != Some(MotorKind::Pmsm) {
         return None;
@@ -91,7 +91,7 @@ fn motor_by_its_keys(motor: &Table) -> Option<Coordinate> {
     }
 }
 
-/// One of a few names, as far as it is right.
+/// The named value of a key, if it is valid.
 fn named<T: Choice>(table: &Table, key: &str) -> Option<T> {
     let text = table.get(key).and_then(|node| node.value.as_text())?;
     T::ALL.iter().find(|(name, ..)| *name == text).map(|(_, value, _)| *value)

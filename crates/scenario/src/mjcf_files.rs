@@ -1,9 +1,9 @@
-//! The files that an MJCF file names: what it includes, meshes, textures, height fields, other models.
+//! Files that an MJCF file names: included files, meshes, textures, height fields, other models.
 //!
-//! The library that compiles such a file opens them itself. Before it does, each is looked through here: it has to be a regular file
-//! within the root of the scenario. An element may name a file by any attribute that begins with `file` (`file`, `fileright`, `filename`
-//! of URDF), so that elements that are not known here are covered too. Where the library would look in several folders, what is there
-//! in each of them is looked at; what is nowhere is for the library to say.
+//! The library that compiles such a file opens them itself. Before that, each is checked and hashed here: it has to be a regular file
+//! within the root of the scenario. Any attribute that begins with `file` may name a file (`file`, `fileright`, `filename` of URDF), so
+//! that unknown elements are covered too. Where the library would search several folders, the candidates in all of them are checked;
+//! a file that is in none is reported by the library.
 //!
 //! Source: MuJoCo documentation, *XML Reference*, `include`, `compiler/meshdir`, `texturedir`, `assetdir`, `strippath`.
 use crate::access::{FileAccess, Refused};
@@ -13,18 +13,18 @@ use servobench_files::{FileRole, XmlBounds, XmlExcess, quoted, with_short_quotes
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Elements of a file at most: many times those of the largest models that are published.
+/// Largest number of elements of a file: many times those of the largest published models.
 const MOST_NODES: u32 = 300_000;
-/// Elements within each other are bodies that hang on each other: the parser goes down the stack with them.
+/// Nested elements are bodies of a kinematic chain: the parser recurses into them.
 const BOUNDS: XmlBounds = XmlBounds { bytes: 16 << 20, depth: 1000, attributes: 128, attributes_in_all: 1_000_000 };
-/// Files that are named, and folders in which they may be.
+/// Largest numbers of file names, and of folders that may contain them.
 const MOST_NAMES: usize = 10_000;
 const MOST_FOLDERS: usize = 16;
 
 /// Attributes of `<compiler>` with a folder for files.
 const FOLDERS: [&str; 3] = ["meshdir", "texturedir", "assetdir"];
 
-/// Looks through every file that the MJCF text `xml` at `path` names, and those that these name.
+/// Checks and hashes every file that the MJCF text `xml` at `path` names, and those that these name.
 pub(crate) fn look_through(path: &Path, xml: &str, files: &mut FileAccess) -> Result<(), Refused> {
     if files.root().is_none() {
         return Ok(());
@@ -35,7 +35,7 @@ pub(crate) fn look_through(path: &Path, xml: &str, files: &mut FileAccess) -> Re
     let main = folder_of(path);
     while let Some((path, xml)) = texts.pop() {
         let models = named.add(&path, &xml)?;
-        // One that is included is in the folder of the main file, or of the file that includes it.
+        // An included file is in the folder of the main file, or of the file that includes it.
         for model in models {
             for place in [main.join(&model), folder_of(&path).join(&model)] {
                 if files.has_file(&place, FileRole::Mjcf)? && seen.insert(place.clone()) {
@@ -63,20 +63,20 @@ fn folder_of(path: &Path) -> PathBuf {
     path.parent().unwrap_or_else(|| Path::new("")).to_owned()
 }
 
-/// What files name, and where that may be.
+/// Named files and the folders that may contain them.
 #[derive(Default)]
 struct Named {
     assets: BTreeSet<String>,
-    /// Folders of the files.
+    /// Folders of the MJCF files.
     own: BTreeSet<PathBuf>,
-    /// Folders that they give for meshes and the like.
+    /// Folders given for meshes and other assets.
     given: BTreeSet<PathBuf>,
-    /// Numbers of what they make.
+    /// Number of elements that the files create.
     size: Size,
 }
 
 impl Named {
-    /// Adds what `xml` names; returns the files among it that are MJCF themselves.
+    /// Adds the files that `xml` names; returns those that are MJCF.
     fn add(&mut self, path: &Path, xml: &str) -> Result<BTreeSet<String>, Refused> {
         let refuse = |message: String| Err(Refused { message, help: "" });
         if let Err(XmlExcess { what, most, .. }) = BOUNDS.hold(xml) {
@@ -85,7 +85,7 @@ impl Named {
                 path.display()
             ));
         }
-        // A declaration of the document type is nothing that MJCF has, and could make a text of any length out of a short one.
+        // MJCF has no document type declaration, and one could expand a short text to any length.
         let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES };
         let document = match Document::parse_with_options(xml, options) {
             Ok(document) => document,
@@ -130,7 +130,7 @@ impl Named {
         Ok(models)
     }
 
-    /// Where a file of this name may be.
+    /// Paths at which a file of this name may be.
     fn places(&self, name: &Path) -> impl Iterator<Item = PathBuf> {
         let beside = self.own.iter().map(move |own| own.join(name));
         let given = self.own.iter().flat_map(move |own| self.given.iter().map(move |given| own.join(given).join(name)));

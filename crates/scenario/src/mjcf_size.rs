@@ -1,25 +1,25 @@
-//! Number of bodies and joints that an MJCF file makes. A few words may stand for any number: `<replicate count="100000">` makes its content so
-//! often, `<composite>` and `<flexcomp>` a body for each point of a grid, `<attach>` the tree of another file. The library that compiles
-//! such a file cannot be stopped meanwhile, so it is counted here before.
+//! Number of bodies and joints that an MJCF file creates. A few words may create any number: `<replicate count="100000">` repeats its
+//! content that often, `<composite>` and `<flexcomp>` create a body per point of a grid, `<attach>` the tree of another file. The
+//! library that compiles such a file cannot be interrupted, so they are counted here first.
 //!
 //! Source: MuJoCo documentation, *XML Reference*, `replicate`, `composite`, `flexcomp`, `attach`.
 use crate::access::Refused;
 use roxmltree::{Document, Node};
 use std::path::Path;
 
-/// Bodies and joints of all files of a model at most: several times those of the largest models that are published (100 humanoids have
-/// 1 600). A hundred thousand take the library a minute.
+/// Largest number of bodies and of joints in all files of a model: several times those of the largest published models (100
+/// humanoids have 1 600). The library takes a minute for a hundred thousand.
 const MOST: u64 = 5_000;
-/// Elements of any kind at most, as many as may be written out.
+/// Largest number of elements of any kind, as many as may be written out.
 const MOST_ELEMENTS: u64 = 300_000;
 
-/// Numbers of what the files of a model make.
+/// Numbers of elements that the files of a model create.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {
     bodies: u64,
     joints: u64,
     elements: u64,
-    /// Times that the tree of another file is attached, multiplied over files that attach within each other.
+    /// Number of times that the tree of another file is attached, multiplied over files that attach each other.
     attached: u64,
 }
 
@@ -30,10 +30,10 @@ impl Default for Size {
 }
 
 impl Size {
-    /// Adds what a file makes.
+    /// Adds the elements of a file.
     pub(crate) fn add(&mut self, document: &Document<'_>) {
         let mut attached = 0_u64;
-        // The element, and how often what is above it makes it.
+        // The element, and the number of copies made by the elements above it.
         let mut pending = vec![(document.root_element(), 1_u64)];
         while let Some((node, times)) = pending.pop() {
             let name = node.tag_name().name();
@@ -52,7 +52,7 @@ impl Size {
         self.attached = self.attached.saturating_mul(attached.max(1));
     }
 
-    /// Refuses more than is read of the model whose main file is at `path`.
+    /// Refuses a model with too many elements; `path` is its main file.
     pub(crate) fn hold(self, path: &Path) -> Result<(), Refused> {
         let all =
             [("bodies", self.bodies, MOST), ("joints", self.joints, MOST), ("elements", self.elements, MOST_ELEMENTS)];
@@ -72,7 +72,7 @@ impl Size {
     }
 }
 
-/// The product of the numbers in the attribute `count`; 1 where it has none. What is not a number is for the library to refuse.
+/// The product of the numbers in the attribute `count`; 1 without the attribute. The library refuses anything but numbers.
 fn count(node: Node<'_, '_>) -> u64 {
     let numbers = node.attribute("count").unwrap_or("1").split_whitespace();
     numbers.filter_map(|number| number.parse::<u64>().ok()).fold(1, u64::saturating_mul)
@@ -105,7 +105,7 @@ mod tests {
         }
         let words = refusal(&["<body/>", "<replicate count=\"100000\"><body/></replicate>"]).unwrap();
         assert!(words.contains("`arm.xml` makes 100001 bodies") && words.contains("at most 5000 are read"), "{words}");
-        // Each file attaches the next one so often.
+        // Each file attaches the next one this often.
         let attaching = "<replicate count=\"60\"><attach model=\"m\" body=\"b\"/></replicate>";
         assert!(refusal(&[attaching, attaching, "<body/><body/>"]).is_some());
     }

@@ -1,4 +1,4 @@
-//! Motors, drives and axes by name: beside the scenario, above it, or embedded.
+//! Motors, drives and axes by name: beside the scenario, in a folder above, or embedded.
 use crate::access::{FileAccess, RELATIVE, Refused};
 use crate::diagnostic::Report;
 use crate::source::{Place, Sources};
@@ -20,13 +20,13 @@ const MODELLED: [(&str, &str, FileRole); 3] = [
     ("drive", "drives", FileRole::DriveModel),
 ];
 
-/// How many folders above the scenario's own are searched for `models/`.
+/// Number of folders above the scenario's own that are searched for `models/`.
 const LEVELS: usize = 4;
 
-/// Before the names of embedded files in messages.
+/// Prefix of the names of embedded files in messages.
 pub(crate) const EMBEDDED: &str = "<embedded>";
 
-/// The demo's scenarios as they are in `scenarios/demo`: file name and text, in the order of names.
+/// The demo's scenarios from `scenarios/demo`: file name and text, in the order of names.
 #[must_use]
 pub fn embedded_demo() -> Vec<(&'static str, &'static str)> {
     texts(&DEMO, "toml")
@@ -58,12 +58,12 @@ struct Model {
     name: String,
     text: String,
     place: Place,
-    /// Whether it stands in the place of another one that is built in.
+    /// True if it differs from the embedded model of the same name.
     displaces: bool,
 }
 
-/// Lays each table of `root` that names a model on top of it. Syntax errors of model files go to `syntax`; returns the
-/// lines that they are on.
+/// Merges each table of `root` that names a model with that model; the table takes precedence. Syntax errors of model files go to
+/// `syntax`; returns the lines that have them.
 pub(crate) fn lay_on_models(
     root: &mut Table,
     sources: &mut Sources,
@@ -102,7 +102,7 @@ pub(crate) fn lay_on_models(
     broken
 }
 
-/// Finds a model; otherwise says why not and what to do.
+/// Finds a model; the error is a message and a help.
 fn find(
     (folder, role): (&str, FileRole),
     name: &str,
@@ -148,7 +148,7 @@ fn find(
     ))
 }
 
-/// The folder itself and those above it.
+/// The folder itself and [`LEVELS`] folders above it.
 fn upwards(base: &Path) -> impl Iterator<Item = PathBuf> {
     std::iter::successors(Some(base.to_owned()), |folder| {
         let mut above = folder.clone();
@@ -176,7 +176,7 @@ fn known(folder: &str, folders: &[PathBuf]) -> BTreeSet<String> {
         .collect()
 }
 
-/// Reads the text of `file`, which a file at `place` names; its path for messages and for what it includes in turn.
+/// Reads the text of `file`, named by a file at `place`; returns its path, for messages and for files it includes, and the text.
 pub(crate) fn read_beside(
     file: &str,
     role: FileRole,

@@ -1,4 +1,4 @@
-//! Tables whose keys are names that somebody else chose: the variables of an FMU, with what is connected or set.
+//! Tables whose keys are names from outside: the variables of an FMU, with their signals or start values.
 use crate::argument::any_quantity;
 use crate::diagnostic::Report;
 use crate::field::{Field, written};
@@ -8,7 +8,7 @@ use crate::tree::{Entry, Node, Value};
 use serde_json::{Value as Json, json};
 use servobench_fmu_file::Value as StartValue;
 
-/// A name and what stands behind it.
+/// A name and its value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Named<T> {
     pub(crate) name: String,
@@ -33,7 +33,7 @@ fn entries<'a>(path: &str, node: &'a Node, report: &mut Report) -> Option<&'a [E
     None
 }
 
-/// The entries with dotted keys joined again: `body.x = …` is TOML's table `body`, and the variable `body.x`.
+/// The entries with dotted keys joined again: in TOML `body.x = …` is a table `body`, here the variable `body.x`.
 fn flat<'a>(entries: &'a [Entry], prefix: &str, all: &mut Vec<(String, &'a Entry)>) {
     for entry in entries {
         let name = if prefix.is_empty() { entry.key.clone() } else { format!("{prefix}.{}", entry.key) };
@@ -56,7 +56,7 @@ fn decode<T>(
         let value = At { value: read(&entry.node, report)?, span: entry.node.span };
         Some(Named { name, name_span: entry.key_span, value })
     });
-    // Every mistake is said, so all of them are read before one counts.
+    // All entries are read before the first error returns, so that every mistake is reported.
     values.collect::<Vec<_>>().into_iter().collect()
 }
 
@@ -96,8 +96,8 @@ impl Field for StartTable {
     }
 }
 
-/// A value as the file says it: a bare number in the unit of its variable, TRUE or FALSE, a text (a quantity with a unit, the name
-/// of an enumeration's item, or a string), or the elements of an array. Which type and unit the variable has, only the FMU knows.
+/// A start value: a bare number in the unit of its variable, TRUE or FALSE, a text (a quantity with a unit, the name of an
+/// enumeration's item, or a string), or the elements of an array. Only the FMU knows the type and the unit of the variable.
 fn value(node: &Node, report: &mut Report) -> Option<StartValue> {
     match &node.value {
         Value::Number(number) if number.value.is_finite() => Some(StartValue::Number(number.value)),

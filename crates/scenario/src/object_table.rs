@@ -4,7 +4,7 @@
 //! key = index [ "." sub-index ]      index = 1 to 4 hexadecimal digits "h"      "6065h", "607Dh.2", "1600h.0Ah"
 //! sub-index = one decimal digit | 1 to 2 hexadecimal digits "h"                  "607Dh.02h" is "607Dh.2"
 //! ```
-//! Which objects there are, and what they take, is for the object dictionary to say.
+//! The object dictionary decides which objects exist and which values they accept.
 use crate::diagnostic::Report;
 use crate::field::{Field, written};
 
@@ -55,7 +55,7 @@ impl Field for ObjectTable {
 }
 
 impl ObjectTable {
-    /// Adds what one key says: an object, or with a bare `607Dh.2` the sub-indices of one.
+    /// Adds the entry of one key: an object, or for an unquoted `607Dh.2` the sub-indices of one.
     fn entry(&mut self, path: &str, entry: &Entry, report: &mut Report) -> Option<()> {
         let (index, subindex) = entry.key.split_once('.').map_or((entry.key.as_str(), None), |(a, b)| (a, Some(b)));
         let Some(index) = hexadecimal(index, 4) else {
@@ -95,7 +95,7 @@ impl ObjectTable {
     }
 }
 
-/// A number of `most` hexadecimal digits at most, with an `h` behind it.
+/// A number of at most `most` hexadecimal digits, followed by `h`.
 fn hexadecimal(text: &str, most: usize) -> Option<u16> {
     let digits = text.strip_suffix('h').filter(|digits| (1..=most).contains(&digits.len()))?;
     digits.bytes().all(|byte| byte.is_ascii_hexdigit()).then(|| u16::from_str_radix(digits, 16).ok())?

@@ -1,11 +1,11 @@
-//! Keys that are given another value than the file has: `setpoint.jerk=200 m/s3` on the command line.
+//! Overrides of keys of a file: `setpoint.jerk=200 m/s3` on the command line.
 //!
 //! ```text
 //! override = key "=" value
 //! key      = part { "." part }        part = name [ "[" index "]" ]      name = bare | "quoted" | 'quoted'
-//! value    = a number, true, false, [list], {table} or "string" of TOML; otherwise itself as a string
+//! value    = a number, true, false, [list], {table} or "string" of TOML; otherwise the text itself as a string
 //! ```
-//! An index counts from 0; `program.0` is `program[0]`, as results name it.
+//! An index counts from 0; `program.0` is `program[0]`, as in results.
 mod path;
 mod value;
 
@@ -19,31 +19,31 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// What stands before an override on the command line, and so before its words in messages.
+/// Option before an override on the command line, and so before its text in messages.
 const OPTION: &str = "--set ";
-/// Tables that can stand on a model.
+/// Tables that can refer to a model.
 const MODELLED: [&str; 3] = ["axis", "motor", "drive"];
 
-/// A key of a scenario, as `--set` has it: `setpoint.jerk`, `program[0].move_to`.
+/// A key of a scenario in the notation of `--set`: `setpoint.jerk`, `program[0].move_to`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Key {
-    /// The words of the command line up to the value.
+    /// The text of the command line up to the value.
     words: String,
     /// Its parts, with their bytes in the words.
     path: Vec<Part>,
 }
 
-/// A key of a scenario and the value that it has instead of that of the file.
+/// A key of a scenario with the value that replaces the file's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Override {
     key: Key,
-    /// The words of the command line: `--set setpoint.jerk=200 m/s3`.
+    /// The text of the command line: `--set setpoint.jerk=200 m/s3`.
     words: String,
-    /// The value, with its bytes in the words.
+    /// The value, with its byte range in the text.
     value: Node,
 }
 
-/// Why a text is not an override.
+/// Reason why a text is not an override.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct OverrideError(pub(crate) String);
@@ -86,7 +86,7 @@ impl FromStr for Override {
     }
 }
 
-/// `text` without spaces around it.
+/// `text` without surrounding spaces.
 fn one_line(text: &str) -> Result<&str, OverrideError> {
     let text = text.trim();
     match text.chars().find(|c| c.is_control() && *c != '\t') {
@@ -95,7 +95,7 @@ fn one_line(text: &str) -> Result<&str, OverrideError> {
     }
 }
 
-/// As it is given: `setpoint.jerk=200 m/s3`.
+/// As given: `setpoint.jerk=200 m/s3`.
 impl fmt::Display for Override {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.words.strip_prefix(OPTION).unwrap_or(&self.words))
@@ -112,7 +112,7 @@ impl Override {
     /// `key` with `value`, which is not read from a text again where it is a number.
     ///
     /// # Errors
-    /// [`OverrideError`] of a text that cannot be a value.
+    /// [`OverrideError`] for a text that cannot be a value.
     pub fn new(key: &Key, value: &sweep::Value) -> Result<Self, OverrideError> {
         let (start, text) = (key.words.len(), value.written());
         let words = format!("{}{}", key.words, one_line(&text)?);
@@ -123,20 +123,20 @@ impl Override {
         Ok(Self { key: key.clone(), words, value })
     }
 
-    /// Whether the model of a table depends on it.
+    /// True if the choice of a table's model depends on it.
     pub(crate) fn chooses_a_model(&self) -> bool {
         let mut names = self.key.path.iter().map(|part| part.name.as_str());
         names.next().is_some_and(|table| MODELLED.contains(&table)) && names.next().is_none_or(|key| key == "model")
     }
 }
 
-/// Overrides on their way into a scenario.
+/// Overrides to be applied to a scenario.
 pub(crate) struct Overriding<'a> {
     all: Vec<(&'a Override, SourceId)>,
 }
 
 impl<'a> Overriding<'a> {
-    /// Reports keys that are set twice; of those the first counts.
+    /// Collects `overrides` and reports keys that are set twice; the first counts.
     pub(crate) fn new(overrides: &'a [Override], sources: &mut Sources, report: &mut Report) -> Self {
         let mut all: Vec<(&Override, SourceId)> = Vec::new();
         for one in overrides {
@@ -155,12 +155,12 @@ impl<'a> Overriding<'a> {
         Self { all }
     }
 
-    /// Sets what decides on which model a table stands, before it is laid on that.
+    /// Applies the overrides that decide a table's model, before the merge with that model.
     pub(crate) fn choose_models(&self, root: &mut Table, report: &mut Report) {
         self.apply(root, report, Override::chooses_a_model);
     }
 
-    /// Sets everything else, in what the models say too.
+    /// Applies all other overrides, also to values from models.
     pub(crate) fn set(&self, root: &mut Table, report: &mut Report) {
         self.apply(root, report, |one| !one.chooses_a_model());
     }
@@ -173,7 +173,7 @@ impl<'a> Overriding<'a> {
     }
 }
 
-/// An override that is being carried out.
+/// An override that is being applied.
 struct Setting<'a> {
     of: &'a Key,
     source: SourceId,
@@ -181,7 +181,7 @@ struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    /// Sets what the part with this index and those behind it name in `table`.
+    /// Sets `node` in `table` under the part `index` and the parts after it.
     fn in_table(&mut self, table: &mut Table, index: usize, node: Node) {
         let part = &self.of.path[index];
         let key_span = Span::new(self.source, &part.place);
@@ -213,7 +213,7 @@ impl Setting<'_> {
         table.entries.push(entry);
     }
 
-    /// Sets what the part with this index and those behind it name in `into`.
+    /// Sets `node` in `into` under the part `index` and the parts after it.
     fn in_node(&mut self, into: &mut Node, index: usize, node: Node) {
         let part = &self.of.path[index];
         match &mut into.value {
@@ -242,7 +242,7 @@ impl Setting<'_> {
         }
     }
 
-    /// Says that the list before this part has no such element.
+    /// Reports that the list before the part `index` has no such element.
     fn beyond(&mut self, index: usize, count: usize) {
         let part = &self.of.path[index];
         let list = self.of.up_to(index - 1);
@@ -255,7 +255,7 @@ impl Setting<'_> {
         self.report.lacking(&self.of.path[0].name, place, format!("there is no `{}`", self.of.up_to(index)), help);
     }
 
-    /// Says that what stands before this part cannot have it.
+    /// Reports that the value before the part `index` cannot have it.
     fn refuse(&mut self, index: usize, is: &str) {
         self.refuse_with(index, is, "");
     }
@@ -267,7 +267,7 @@ impl Setting<'_> {
     }
 }
 
-/// From the first to the last part.
+/// The span from the first to the last part.
 fn span(source: SourceId, path: &[Part]) -> Span {
     let start = path.first().map_or(0, |part| part.place.start);
     let end = path.last().map_or(start, |part| part.place.end);

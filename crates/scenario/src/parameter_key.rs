@@ -1,4 +1,4 @@
-//! Where the parameters of drive, switches and end stops stand in a scenario file.
+//! Keys of a scenario file for the parameters of drive, switches and end stops.
 use crate::schema::json_schema;
 use serde_json::Value;
 use servobench_config::Parameter;
@@ -8,8 +8,8 @@ use servobench_plant::SwitchPoint;
 use std::collections::VecDeque;
 use std::sync::LazyLock;
 
-/// Parameters of the firmware whose key says them in another way – a bandwidth, a rate, a share –, and the table where several keys
-/// decide on one.
+/// Parameters of the firmware that the file expresses in another way (a bandwidth, a rate, a share), with their key or, where several
+/// keys decide, their table.
 const SAID_OTHERWISE: [(&Parameter, &str); 19] = [
     (drive::Parameter::TRANSMISSION, "axis"),
     (drive::Parameter::POSITION_GAIN, "drive.position.gain"),
@@ -32,8 +32,8 @@ const SAID_OTHERWISE: [(&Parameter, &str); 19] = [
     (filter::Parameter::POLE_DAMPING, "drive.filter"),
 ];
 
-/// The keys of the file that hold a parameter as its owner declares it: the names of the parameters and the keys, those nearest to
-/// the root first.
+/// Keys of the file that hold a parameter as declared by its owner: the names of the parameters with their keys, those nearest to the
+/// root first.
 static KEYS: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
     let schema = json_schema();
     let mut tables = VecDeque::from([(String::new(), &schema)]);
@@ -50,7 +50,7 @@ static KEYS: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
     keys
 });
 
-/// Key from which a parameter of the drive's firmware or of the end stops follows, or the table where several keys decide on it.
+/// Key from which a parameter of the drive's firmware or of the end stops follows, or the table where several keys decide.
 #[must_use]
 pub fn parameter_key(parameter: &Parameter) -> &'static str {
     let otherwise = SAID_OTHERWISE.iter().find(|(known, _)| known.name == parameter.name).map(|(_, key)| *key);
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// The schema is made of the tables that read the files. By its name a parameter is found, so no two have the same.
+    /// The schema is made of the tables that read the files. A parameter is looked up by its name, so names must be unique.
     #[test]
     fn every_parameter_has_its_own_name_and_a_key_of_the_file() {
         let schema = json_schema();

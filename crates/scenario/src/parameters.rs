@@ -10,28 +10,28 @@ use std::collections::BTreeMap;
 pub struct Parameter {
     /// Path of the key: `drive.velocity.bandwidth`, `program.0.move_to`.
     pub key: String,
-    /// The value as it is written: `60 Hz`.
+    /// The value as written: `60 Hz`.
     pub value: String,
-    /// Line of the scenario file, from 1; `None` for what a model or an override says.
+    /// Line of the scenario file, from 1; `None` for a value from a model or an override.
     pub line: Option<usize>,
-    /// Whether a model says it.
+    /// True if the value comes from a model.
     pub is_of_model: bool,
 }
 
-/// A key at which two scenarios say something else.
+/// A key at which two scenarios differ.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Difference {
     /// Path of the key.
     pub key: String,
-    /// What the one says; `None` when it leaves the key out.
+    /// Value in the first; `None` if it omits the key.
     pub one: Option<String>,
-    /// What the other says.
+    /// Value in the second.
     pub other: Option<String>,
 }
 
-/// Keys at the top that say nothing of a run.
+/// Keys at the top level that do not affect a run.
 const WORDS: [&str; 3] = ["name", "description", "format"];
-/// Where the values of a model come from, in words.
+/// Key that describes the source of a model's values.
 const PROVENANCE: &str = ".source";
 
 /// The parameters of a file, in its order.
@@ -97,8 +97,8 @@ fn written(value: &Value) -> String {
     }
 }
 
-/// Where two scenarios differ, in the order of the first. Equal quantities in other words, `250 mm` and `0.25 m`, are no
-/// difference; where the models differ, what follows from them is not listed beside their names.
+/// Differences between two scenarios, in the order of the first. Equal quantities in different notation, `250 mm` and `0.25 m`, do not
+/// differ; where the models differ, the values from them are not listed in addition to their names.
 #[must_use]
 pub fn differences(one: &[Parameter], other: &[Parameter]) -> Vec<Difference> {
     let by_key = |all: &[Parameter]| -> BTreeMap<String, Parameter> {
@@ -125,7 +125,7 @@ pub fn differences(one: &[Parameter], other: &[Parameter]) -> Vec<Difference> {
     differing.collect()
 }
 
-/// Whether two texts say the same, as quantities where they are such.
+/// True if two texts are equal, or are equal quantities.
 fn is_same(one: &str, other: &str) -> bool {
     let read = |text: &str| quantity::parse(text).ok();
     one == other

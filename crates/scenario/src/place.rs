@@ -1,19 +1,19 @@
-//! Mistakes that are found after loading, at their place: by the key that is to blame, or by a line of the MJCF file.
+//! Diagnostics of mistakes found after loading, with the key that caused them or a line of the MJCF file.
 use crate::diagnostic::Diagnostic;
 use crate::load::Loaded;
 use crate::source::{SourceId, Sources, Span};
 use crate::tree::{Node, Value};
 
 impl Loaded {
-    /// Something that is wrong with the value of `key`, a path like `axis.mjcf.file` or `program.0.duration`. It is placed
-    /// at the innermost part of the path that the files have.
+    /// A diagnostic for the value of `key`, a path like `axis.mjcf.file` or `program.0.duration`. Its place is the innermost part of
+    /// the path that the files contain.
     #[must_use]
     pub fn mistake(&self, key: &str, message: String, help: String) -> Diagnostic {
         Diagnostic::new(self.place_of(key), message, help)
     }
 
-    /// Something that is wrong on a line, from 1, of the MJCF file that the scenario names; the help says where it names
-    /// it. At that place without such a file.
+    /// A diagnostic for a line, from 1, of the MJCF file that the scenario names; the help contains the place that names the file. Without
+    /// such a file the diagnostic is at the key `axis.mjcf.file`.
     #[must_use]
     pub fn mistake_in_mjcf(&self, line: u32, message: String, help: &str) -> Diagnostic {
         let key = "axis.mjcf.file";
@@ -27,7 +27,7 @@ impl Loaded {
     fn place_of(&self, key: &str) -> Span {
         let (mut node, mut rest) = (&self.root, key);
         while !rest.is_empty() {
-            // Indices of objects have points of their own: "6099h.1".
+            // Indices of objects contain points: "6099h.1".
             let whole = inner(node, rest).map(|found| (found, ""));
             let (part, behind) = rest.split_once('.').unwrap_or((rest, ""));
             let Some(next) = whole.or_else(|| inner(node, part).map(|found| (found, behind))) else { break };
@@ -46,7 +46,7 @@ fn inner<'a>(node: &'a Node, key: &str) -> Option<&'a Node> {
     }
 }
 
-/// What stands on a line, from 1, of a file; its end when it has not so many.
+/// The contents of a line, from 1, of a file; the end of the file if it has fewer lines.
 fn line_of(sources: &Sources, source: SourceId, number: u32) -> Span {
     let text = sources.text(source);
     let before = text.split_inclusive('\n').take(number.saturating_sub(1) as usize).map(str::len).sum();

@@ -1,4 +1,4 @@
-//! Tables of points: time, position and, where it is known, velocity, as comma-separated values.
+//! Tables of points: time, position and optionally velocity, as comma-separated values.
 //!
 //! ```text
 //! time [ms],position [mm],velocity [mm/s]
@@ -6,15 +6,15 @@
 //! 10,5,
 //! 20,15,1000
 //! ```
-//! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or a row of
-//! it left empty. Times increase. Spaces around numbers and empty lines do not matter; the decimal sign is a point. Columns
-//! `acceleration`, `jerk` and `snap`, as a planned move has them, are read and not used: the way from point to point is the
+//! The heading names the columns, in any order, with the unit of all their numbers. `velocity` may be left out, or left empty in a
+//! row. Times increase. Spaces around numbers and empty lines are ignored; the decimal sign is a point. Columns
+//! `acceleration`, `jerk` and `snap`, which a planned move has, are read but not used: the path from point to point is the
 //! cubic between positions and velocities, or a line.
 //!
-//! A column `step` in place of `position` has the distance from the point before, the first one from where the axis is: the points of a
-//! drive with their relative flag.
+//! A column `step` in place of `position` holds the distance from the previous point, and for the first point from the initial
+//! position of the axis: the points of a drive with their relative flag.
 //!
-//! A profile is such a table, of which the times and the velocities, or the accelerations, are used.
+//! A profile is such a table of which the times and the velocities, or the accelerations, are used.
 mod column;
 mod counts;
 mod mistake;
@@ -28,37 +28,37 @@ pub use column::Column;
 pub use counts::Counts;
 pub use mistake::{PointsError, PointsMistake};
 
-/// Points at most: a table of more is taken for a mistake.
+/// Largest number of points: a larger table is taken for a mistake.
 pub const MOST_POINTS: usize = 5_000_000;
 
-/// A position that is larger is no more known well (SI), as of numbers in tables.
+/// Largest position (SI), as for other numbers in tables; a larger one has lost its precision.
 const FARTHEST: f64 = 1e30;
 
-/// Points of a move, in SI: two at least, in the order of time.
+/// Points of a move (SI), at least two, in the order of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// Whether positions are lengths or angles.
+    /// Kind of the positions: lengths or angles.
     pub motion: Coordinate,
-    /// Times (s), each later than the one before.
+    /// Times (s), strictly increasing.
     pub times: Vec<f64>,
     /// Positions (m or rad), one for each time.
     pub positions: Vec<f64>,
-    /// Velocities (m/s or rad/s), one for each time where there is such a column, and none where it is empty.
+    /// Velocities (m/s or rad/s), one for each time if there is such a column; `None` where a cell is empty.
     pub velocities: Option<Vec<Option<f64>>>,
-    /// Whether the positions count from where the axis is: those of a table of steps, here added up.
+    /// True if the positions count from the initial position of the axis: those of a table of steps, summed.
     pub is_relative: bool,
-    /// Units as the heading writes them: of time, position, velocity.
+    /// Units as written in the heading: time, position, velocity.
     pub units: [Option<String>; 3],
-    /// Columns of which nothing is used.
+    /// Columns that are not used.
     pub unused: Vec<Column>,
 }
 
-/// A profile, in SI: two points at least, in the order of time.
+/// A profile (SI), at least two points, in the order of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Whether its values are those of lengths or of angles.
+    /// Kind of the positions: lengths or angles.
     pub motion: Coordinate,
-    /// Times (s), each later than the one before.
+    /// Times (s), strictly increasing.
     pub times: Vec<f64>,
     /// Velocities or accelerations, one for each time.
     pub values: Vec<f64>,
@@ -72,7 +72,7 @@ pub fn read_points(text: &str) -> Result<Points, PointsError> {
     read(text, None, MOST_POINTS)
 }
 
-/// Reads a table of points that may be in counts of a drive: `position [counts]`, `velocity [counts/s]` or `velocity [0.1 counts/s]`.
+/// Reads a table of points, possibly in counts of a drive: `position [counts]`, `velocity [counts/s]` or `velocity [0.1 counts/s]`.
 ///
 /// # Errors
 /// [`PointsError`], the first mistake.
@@ -105,7 +105,7 @@ fn read_profile(text: &str, layout: Layout) -> Result<Profile, PointsError> {
     Ok(Profile { motion: motion(&heads), times, values })
 }
 
-/// Reads a table of `most` points at most.
+/// Reads a table of at most `most` points.
 fn read(text: &str, counts: Option<Counts>, most: usize) -> Result<Points, PointsError> {
     let (mut times, mut positions, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
     let mut way = 0.0;
@@ -136,7 +136,7 @@ fn read(text: &str, counts: Option<Counts>, most: usize) -> Result<Points, Point
     })
 }
 
-/// Whether the values below `heads` are those of lengths or of angles.
+/// Kind of the values below `heads`: of lengths or of angles.
 fn motion(heads: &[Head]) -> Coordinate {
     let is_rotary = heads.iter().any(|head| head.column != Column::Time && head.which == 1);
     if is_rotary { Coordinate::Rotary } else { Coordinate::Linear }
@@ -227,7 +227,7 @@ mod tests {
         }
     }
 
-    /// What a planned move is written as has all derivatives; they are checked as far as they tell a mistake.
+    /// A planned move is written with all derivatives; those are checked only as far as they reveal mistakes.
     #[test]
     fn columns_that_are_not_used_may_be_there() {
         let text = "time [s],position [m],velocity [m/s],acceleration [m/s2],jerk [m/s3],snap [m/s4]\n\
@@ -307,7 +307,7 @@ mod tests {
         assert!((points.positions[1] + 2.0 * std::f64::consts::TAU).abs() < 1e-15);
     }
 
-    /// A number in a column is the very one that a quantity with its unit is.
+    /// A number in a column equals the quantity written with its unit exactly.
     #[test]
     fn numbers_are_those_of_quantities() {
         for (number, unit) in
@@ -388,7 +388,7 @@ mod tests {
         assert_eq!(read(text, None, 3).unwrap_err(), wrong(5, 1, PointsMistake::TooMany { most: 3 }));
     }
 
-    /// Columns count characters, not bytes, and a long cell does not fill the screen.
+    /// Columns count characters, not bytes, and a long cell is shortened.
     #[test]
     fn places_are_those_of_an_editor() {
         let error = read_points(&format!("time [µs],position [µm]\n0,0\n µ,{}", "x".repeat(99))).unwrap_err();

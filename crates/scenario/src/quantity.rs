@@ -5,7 +5,7 @@
 //! unit     = factor { ("·" | "*" | space) factor } { "/" (factor | "(" product ")") }
 //! factor   = symbol [power]          m2  m^2  m²  s-1  s^-1  s⁻¹  1
 //! ```
-//! A product after a quotient ("N/m s") would be read in two ways and is refused.
+//! A product after a quotient ("N/m s") is ambiguous and is refused.
 use crate::unit::{hint, unit};
 use servobench_base::Shortest;
 use servobench_config::Dimension;
@@ -22,18 +22,18 @@ use winnow::token::{one_of, take_while};
 pub(crate) struct Quantity {
     pub(crate) value: f64,
     pub(crate) dimension: Dimension,
-    /// Whether there is a unit at all.
+    /// True if there is a unit.
     pub(crate) has_unit: bool,
 }
 
-/// What is wrong with a text that should be a quantity.
+/// Mistake in a text that should be a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct QuantityError {
-    /// Bytes of the text.
+    /// Byte range in the text.
     pub(crate) at: Range<usize>,
     pub(crate) message: String,
     pub(crate) help: String,
-    /// Whether it does not look like a quantity at all: an example of what is wanted helps.
+    /// True if the text does not resemble a quantity: an example of the wanted quantity helps.
     pub(crate) is_shapeless: bool,
 }
 
@@ -57,11 +57,11 @@ type Res<T> = Result<T, ErrMode<ContextError>>;
 /// Largest power of a unit; no quantity here goes beyond s⁻⁴.
 const MAX_POWER: i32 = 9;
 
-/// Magnitudes in SI that a quantity can have. No machine comes near, and what is derived from several of them, a gain
-/// from a bandwidth, an inertia and a transmission squared, stays inside the range of f64.
+/// Magnitudes in SI that a quantity can have. No machine comes near, and values derived from several quantities, such as a gain
+/// from a bandwidth or an inertia times a squared transmission, stay inside the range of f64.
 const MAGNITUDES: RangeInclusive<f64> = 1e-30..=1e30;
 
-/// What is wrong with the magnitude of `value`, which was written as zero or not.
+/// The mistake in the magnitude of `value`, if any; `is_zero`: the number was written as zero.
 pub(crate) fn objection(value: f64, is_zero: bool) -> Option<&'static str> {
     let magnitude = value.abs();
     if is_zero || MAGNITUDES.contains(&magnitude) {
@@ -76,7 +76,7 @@ pub(crate) fn objection(value: f64, is_zero: bool) -> Option<&'static str> {
 /// Reads `text`.
 ///
 /// # Errors
-/// [`QuantityError`] says where and what, and what to write instead when that can be told.
+/// [`QuantityError`] with the place, the mistake and, if known, a correction.
 pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
     let mut input = LocatingSlice::new(text);
     let wrong = |at: usize, message: &str, help: &str| {
@@ -106,7 +106,7 @@ pub(crate) fn parse(text: &str) -> Result<Quantity, QuantityError> {
     evaluate(text, number, &factors)
 }
 
-/// What a number means in SI that stands before a unit.
+/// Factor from a number with a unit to SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     numerator: f64,
@@ -116,7 +116,7 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// That of the unit `text`.
+    /// Scale of the unit `text`.
     ///
     /// # Errors
     /// As [`parse`].
@@ -150,7 +150,7 @@ impl Scale {
         Ok(scale)
     }
 
-    /// That of so many units per metre or radian, which are written in `10^tens` of them.
+    /// Scale of a unit of which `units` are one metre or radian, for numbers written in `10^tens` units.
     pub(crate) const fn per(units: f64, tens: i32) -> Self {
         Self { numerator: 1.0, denominator: units, tens, dimension: Dimension::ONE }
     }
@@ -158,14 +158,14 @@ impl Scale {
     /// `number` in SI.
     ///
     /// # Errors
-    /// What is wrong with its magnitude.
+    /// The mistake in its magnitude.
     pub(crate) fn value(&self, number: &str) -> Result<f64, &'static str> {
         let value = with_power_of_ten(number, self.tens) * self.numerator / self.denominator;
         let is_zero = number.bytes().take_while(|b| !matches!(b, b'e' | b'E')).all(|b| !(b'1'..=b'9').contains(&b));
         objection(value, is_zero).map_or(Ok(value), Err)
     }
 
-    /// The same of a number that is not written; `None` where its magnitude is out of bounds.
+    /// [`value`](Self::value) of a number that is not text; `None` if its magnitude is out of bounds.
     pub(crate) fn of_number(&self, number: f64) -> Option<f64> {
         let scaled = if self.tens == 0 { number } else { with_power_of_ten(&Shortest(number).to_string(), self.tens) };
         let value = scaled * self.numerator / self.denominator;
@@ -190,13 +190,13 @@ fn with_power_of_ten(number: &str, tens: i32) -> f64 {
         return number.parse().unwrap_or(f64::NAN);
     }
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
-    // An exponent beyond 32 bits makes an infinity or a zero of its own.
+    // An exponent beyond 32 bits yields infinity or zero without help.
     let exponent = exponent.parse::<i32>().map(|exponent| exponent.saturating_add(tens));
     let text = exponent.map_or_else(|_| number.to_owned(), |exponent| format!("{mantissa}e{exponent}"));
     text.parse().unwrap_or(f64::NAN)
 }
 
-/// Whether `text` could be a quantity at all.
+/// True if `text` could be a quantity.
 pub(crate) fn begins_with_a_number(text: &str) -> bool {
     spaced(number).parse_next(&mut LocatingSlice::new(text)).is_ok() || is_non_finite(text)
 }
@@ -220,7 +220,7 @@ fn spaces(input: &mut Input<'_>) -> Res<()> {
     take_while(0.., |c: char| c.is_whitespace()).void().parse_next(input)
 }
 
-/// Digits with a point and an exponent; the exponent only when it is one ("2 e" is a number and a unit).
+/// Digits with a point and an exponent; the exponent only if it has digits ("2 e" is a number and a unit).
 fn number<'i>(input: &mut Input<'i>) -> Res<&'i str> {
     let sign = || opt(one_of(['+', '-']));
     let mantissa = alt(((digit1, opt(('.', opt(digit1)))).void(), ('.', digit1).void()));
@@ -255,7 +255,7 @@ fn power(input: &mut Input<'_>) -> Res<i32> {
     alt((plain, raised)).parse_next(input)
 }
 
-/// An integer that is cut to 32 bits: far beyond [`MAX_POWER`] anyway.
+/// An integer clamped to 32 bits: far beyond [`MAX_POWER`] anyway.
 fn saturating(text: &str) -> i32 {
     text.parse().unwrap_or(if text.starts_with('-') { -i32::MAX } else { i32::MAX })
 }

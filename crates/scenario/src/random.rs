@@ -1,4 +1,4 @@
-//! The random numbers of a scenario: which of its keys seed them.
+//! The keys that seed the random numbers of a scenario.
 use crate::scenario::Scenario;
 
 /// A key that seeds random numbers, and its value.
@@ -10,16 +10,16 @@ pub struct Seed {
     pub value: u32,
 }
 
-/// Seed of noise where the file gives none.
+/// Default seed of noise.
 const OF_NOISE: u32 = 0;
-/// Seed of jitter where the file gives none.
+/// Default seed of jitter.
 const OF_JITTER: u32 = 1;
-/// Kinds of faults of a bus that have random numbers.
+/// Kinds of bus faults that use random numbers.
 const JITTER: [&str; 2] = ["jitter", "task-jitter"];
 
 impl Scenario {
-    /// The seeds of everything random in it: noise of encoders and current sensors, jitter of frames and of the task. Without any, every run
-    /// is the same.
+    /// The seeds of everything random in it: noise of encoders and current sensors, jitter of frames and of the task. Without any seed, all
+    /// runs are identical.
     #[must_use]
     pub fn seeds(&self) -> Vec<Seed> {
         let value = |key: &str| self.parameters.iter().find(|one| one.key == key).map(|one| one.value.as_str());
@@ -42,7 +42,7 @@ impl Scenario {
     }
 }
 
-/// True of a quantity that is zero, as it is written: `0 um`.
+/// True if a quantity as written, such as `0 um`, is zero.
 fn is_zero(text: &str) -> bool {
     let number: String = text.trim().chars().take_while(|c| c.is_ascii_digit() || "+-.".contains(*c)).collect();
     number.parse::<f64>() == Ok(0.0)

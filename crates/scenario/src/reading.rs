@@ -1,29 +1,29 @@
-//! Reading a quantity of a certain dimension, and what to say when it has another.
+//! Reading a quantity of a certain dimension, and the advice when its dimension is another.
 use crate::quantity::{self, QuantityError, Scale};
 use servobench_config::Dimension;
 use servobench_config::Physical;
 use servobench_config::quantities::NAMED;
 
-/// Why a text is not the quantity that is wanted.
+/// Reason why a text is not the wanted quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum ReadError {
-    /// It is no quantity at all.
+    /// Not a quantity.
     NoQuantity(QuantityError),
-    /// It is a bare number.
+    /// A bare number.
     NoUnit,
-    /// It has another dimension.
+    /// A quantity of another dimension.
     OtherDimension {
-        /// What it is, with its article.
+        /// Description of the quantity, with its article.
         is: String,
-        /// What to do when only a little is missing; otherwise empty.
+        /// Advice when only a little is missing; otherwise empty.
         help: &'static str,
     },
 }
 
-/// Reads `text` as one of `candidates`: which one, and the value in the unit that it means.
+/// Reads `text` as one of `candidates`: the index of the candidate, and the value in the candidate's unit.
 ///
 /// # Errors
-/// [`ReadError`] says what it is instead.
+/// [`ReadError`] with a description of the text.
 pub(crate) fn read(text: &str, candidates: &[&Physical]) -> Result<(usize, f64), ReadError> {
     let read = quantity::parse(text).map_err(|error| {
         let help = if error.is_shapeless { proposals("1", candidates) } else { error.help };
@@ -41,7 +41,7 @@ pub(crate) fn read(text: &str, candidates: &[&Physical]) -> Result<(usize, f64),
     Err(ReadError::OtherDimension { is, help })
 }
 
-/// `number` in `unit` as one of `candidates`, as [`read`] has it; `None` where it is not one of them.
+/// `number` in `unit` as one of `candidates`, with the result of [`read`]; `None` where it is not one of them.
 pub(crate) fn amount(number: f64, unit: &str, candidates: &[&Physical]) -> Option<(usize, f64)> {
     let scale = Scale::read(unit).ok()?;
     let value = scale.of_number(number)?;
@@ -49,8 +49,7 @@ pub(crate) fn amount(number: f64, unit: &str, candidates: &[&Physical]) -> Optio
     candidates.iter().enumerate().find_map(|(which, physical)| Some((which, value * meant(physical)?)))
 }
 
-/// What a quantity of dimension `is` is, which is not among `wanted`; and what to do about it where engineers mean one of
-/// `wanted` by it.
+/// Description of a quantity of dimension `is`, which is not in `wanted`, and advice where engineers commonly mean one of `wanted` by it.
 fn other(is: Dimension, wanted: &[&Physical]) -> (String, &'static str) {
     let accepted = || wanted.iter().flat_map(|physical| physical.accepts).map(|(dimension, _)| *dimension);
     let accepts = |dimension: Dimension| accepted().any(|own| own == dimension);
@@ -96,12 +95,12 @@ pub(crate) fn names(candidates: &[&Physical]) -> String {
     names.join(" or ")
 }
 
-/// What a quantity of dimension `dimension` is: "a force (kg·m/s²)".
+/// Description of a quantity of dimension `dimension`: "a force (kg·m/s²)".
 pub(crate) fn describe(dimension: Dimension) -> String {
     if dimension == Dimension::ONE {
         return "a pure number".to_owned();
     }
-    // The first dimension in each list is the proper one.
+    // The first dimension in each list is the canonical one.
     let named = NAMED.iter().find(|physical| physical.accepts.first().is_some_and(|(own, _)| *own == dimension));
     match named {
         Some(physical) if physical.name.contains('(') => physical.name.to_owned(),

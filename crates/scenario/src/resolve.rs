@@ -53,7 +53,7 @@ use std::collections::BTreeSet;
 
 pub(crate) use axis::motor_motion;
 
-/// Everything that the report does not object to; `None` as soon as a part cannot be had.
+/// The scenario; `None` if a part cannot be resolved. Mistakes go to `report`.
 pub(crate) fn scenario(file: &File, sources: &Sources, report: &mut Report) -> Option<Scenario> {
     let run = file.run.given();
     let base_rate = run.and_then(|run| run.base_rate.given().copied());
@@ -169,7 +169,7 @@ fn distinct(engines: &[At<EngineName>], report: &mut Report) -> Vec<EngineName> 
     all
 }
 
-/// Length of the run, when it is given (s).
+/// Length of the run (s), if given.
 fn duration(run: &Run, report: &mut Report) -> Option<f64> {
     let given = run.duration.at()?;
     if given.value > LONGEST_RUN {
@@ -192,8 +192,8 @@ fn has_window(file: &File) -> bool {
     file.measure.given().is_some_and(|measure| measure.window.span().is_some())
 }
 
-/// Where nothing is homed there is no zero to be looked at; on a modulo axis it comes again in each turn. A homed axis is on a bus, which
-/// has units: there is always a window.
+/// Without homing there is no zero to be checked; on a modulo axis it recurs every turn. A homed axis is on a bus, which has units:
+/// there is always a window.
 fn refuse_home_at(file: &File, report: &mut Report) {
     let Some(at) = file.measure.given().and_then(|measure| measure.home_at.at()) else { return };
     let homes = |call: &At<crate::file::Call>| call.value.block.given().is_none_or(|block| block.homes());
@@ -219,7 +219,7 @@ fn limits(limits: &LimitTable, has_window: bool, report: &mut Report) -> Vec<Lim
     limits.0.iter().map(|limit| limit.value).collect()
 }
 
-/// The value of a key that must be there.
+/// The value of a required key.
 fn need<T: Clone>(slot: &Slot<T>, path: &str, key: &str, header: Span, report: &mut Report) -> Option<T> {
     if matches!(slot, Slot::Absent) {
         report.missing(path, key, header);
@@ -227,7 +227,7 @@ fn need<T: Clone>(slot: &Slot<T>, path: &str, key: &str, header: Span, report: &
     slot.given().cloned()
 }
 
-/// A task rate that must divide the base rate. What a model says is not in question: see [`say_rates_of_models`].
+/// A task rate, which must divide the base rate. Rates from models are reported together by [`say_rates_of_models`].
 fn task_rate(slot: &Slot<Rate>, base_rate: Option<Rate>, report: &mut Report) -> Option<Rate> {
     let rate = slot.at()?;
     let is_of_model = rate.span.source.authority() == Authority::Model;
@@ -245,7 +245,7 @@ fn task_rate(slot: &Slot<Rate>, base_rate: Option<Rate>, report: &mut Report) ->
     }
 }
 
-/// Objects to a base rate that rates of models do not divide: one mistake, where the scenario makes it.
+/// Reports a base rate that rates of models do not divide: a single mistake, at the scenario's `base_rate`.
 fn say_rates_of_models(file: &File, base_rate: Option<Rate>, report: &mut Report) {
     let place = file.run.given().and_then(|run| run.base_rate.span());
     let (Some(place), Some(base_rate)) = (place, base_rate) else { return };
@@ -274,18 +274,18 @@ const fn greatest_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { greatest_divisor(b, a % b) }
 }
 
-/// Which of several keys that say the same thing a file uses.
+/// The one in use of several keys with the same meaning.
 enum Alternative {
-    /// None.
+    /// None is given.
     None,
     /// The one with this index.
     Use(usize),
-    /// Several at once, which has been said.
+    /// Several are given, which has been reported.
     Contradiction,
 }
 
-/// Picks among keys that say the same thing. What the command line says displaces what the scenario says, and that what a
-/// model says; each may give one of them only.
+/// Picks one of several keys with the same meaning. The command line takes precedence over the scenario, and the scenario over the
+/// model; each may give only one of them.
 fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     let there = || keys.iter().enumerate().filter_map(|(i, (key, span))| Some((i, *key, (*span)?)));
     let Some(first) = there().map(|(.., span)| span.source.authority()).min() else { return Alternative::None };
@@ -300,8 +300,7 @@ fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     }
 }
 
-/// Objects to keys that have no meaning here, as far as the scenario itself or the command line gives them: a model may know
-/// more than is used of it.
+/// Refuses keys without a meaning here, if the scenario itself or the command line gives them: a model may give more than is used.
 fn refuse(keys: &[(&str, Option<Span>)], why: &str, help: &str, report: &mut Report) {
     for (key, span) in keys {
         if let Some(span) = span.filter(|span| span.source.authority() != Authority::Model) {

@@ -1,7 +1,7 @@
-//! A scenario with every name resolved, every quantity in SI and every rule checked: what the closed loop is built from.
+//! A scenario with every name resolved, every quantity in SI and every rule checked: the input of the closed loop.
 //!
-//! A rotary motor's own coordinate is rad, a linear one's m. The axis coordinate is the load's: rad or m, as
-//! [`Axis::motion`] says. "Effort" is a torque or a force, whichever fits the coordinate.
+//! The coordinate of a rotary motor is in rad, that of a linear motor in m. The axis coordinate is the load's: rad or m, see
+//! [`Axis::motion`]. "Effort" is a torque or a force, whichever fits the coordinate.
 
 mod actuator;
 mod axis;
@@ -32,23 +32,23 @@ use servobench_plant::EngineName;
 use servobench_signals::Signal;
 use std::path::PathBuf;
 
-/// Longest run (s), 11.6 days. At the highest base rate its ticks are fewer than 2⁵³: the time of every tick is exact.
+/// Longest run (s), 11.6 days. At the highest base rate it has fewer than 2⁵³ ticks: the time of every tick is exact.
 pub const LONGEST_RUN: f64 = 1e6;
 
-/// Most ticks of a run: 25 minutes of the engine `exact`, a week at 16 kHz.
+/// Largest number of ticks of a run: 25 minutes of the engine `exact`, a week at 16 kHz.
 pub const MOST_TICKS: u64 = 10_000_000_000;
 
-/// Bound of the time of a run by the clock.
+/// Bound of the wall-clock time of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TimeBound {
-    /// As long as it needs.
+    /// No bound.
     Unlimited,
-    /// So long (s).
+    /// At most this time (s).
     AtMost(f64),
 }
 
 impl TimeBound {
-    /// The bound (s), where there is one.
+    /// The bound (s), if there is one.
     #[must_use]
     pub const fn seconds(self) -> Option<f64> {
         match self {
@@ -58,32 +58,32 @@ impl TimeBound {
     }
 }
 
-/// One experiment: an axis, a program of moves, what to measure and the limits that make it pass or fail.
+/// One experiment: an axis, a program of moves, the measures and the limits that make it pass or fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// Name in tables and results; default: the file's stem.
     pub name: String,
-    /// What it shows, in a sentence.
+    /// Purpose in one sentence.
     pub description: String,
-    /// File it came from; `None` for text.
+    /// Path of the file; `None` for text.
     pub path: Option<PathBuf>,
-    /// Engines to run it on, at least one, in the order given.
+    /// Engines of the run, at least one, in the order given.
     pub engines: Vec<EngineName>,
     /// Base rate: one tick of mechanics.
     pub base_rate: Rate,
     /// Length of the run (s); `None`: the program and half a second.
     pub duration: Option<f64>,
-    /// Bound of the time by the clock; `None`: not given.
+    /// Bound of the wall-clock time; `None`: not given.
     pub time_limit: Option<TimeBound>,
-    /// Doubts about its files, each behind its place.
+    /// Warnings about its files, each after its place.
     pub warnings: Vec<String>,
     /// The mechanics.
     pub axis: Axis,
-    /// What moves it, and what commands that.
+    /// Motor, drive or prescribed motion of the axis.
     pub actuator: Actuator,
-    /// Moves and pauses, one after the other, from time 0; none where there is a PLC program.
+    /// Moves and pauses in sequence from time 0; empty with a PLC program.
     pub program: Vec<Step>,
-    /// Between the set-point and the drive; `None`: the drive has a new set-point at every tick.
+    /// Interpolation between the set-point and the drive; `None`: the drive has a new set-point at every tick.
     pub interpolation: Option<Interpolation>,
     /// The fieldbus; `None`: the drive has a new set-point at every tick.
     pub bus: Option<Bus>,
@@ -91,41 +91,41 @@ pub struct Scenario {
     pub plc: Option<Plc>,
     /// Parts that FMUs simulate beside the axis.
     pub fmus: Vec<Fmu>,
-    /// How they and the axis exchange what they give.
+    /// Exchange of values between the FMUs and the axis.
     pub coupling: servobench_coupling::Settings,
     /// External efforts.
     pub disturbances: Vec<Disturbance>,
     /// Deviation from rest at zero at time 0.
     pub initial: Initial,
-    /// What to record.
+    /// Recorded signals.
     pub record: Record,
-    /// What the measures need to know.
+    /// Parameters of the measures.
     pub measure: Question,
-    /// What it is held to beside its limits.
+    /// Requirements in addition to its limits.
     pub requirements: Requirements,
-    /// What makes it pass or fail, in the order of the file.
+    /// Limits that make it pass or fail, in the order of the file.
     pub limits: Vec<Limit>,
-    /// What the file says, models and overrides merged in, key by key.
+    /// Values of the file key by key, models and overrides merged in.
     pub parameters: Vec<Parameter>,
     /// Units in which the file gives positions and their derivatives.
     pub units: DisplayUnits,
-    /// Keys that have another value than the file gives them.
+    /// Keys with a value that replaces the file's.
     pub overrides: Vec<Override>,
-    /// The folder that all files it names are below, links resolved; `None` for a scenario without a folder.
+    /// Folder above all files it names, links resolved; `None` for a scenario without a folder.
     pub root: Option<PathBuf>,
-    /// The files that it is made of, itself first, in the order in which they are read.
+    /// Files that it is made of, itself first, in the order in which they are read.
     pub made_of: Vec<MadeOf>,
 }
 
 impl Scenario {
-    /// −1 for a motor that is mounted the other way round, so that it and its encoders count against the axis; otherwise 1.
+    /// −1 for a motor mounted the other way round, so that motor and encoders count against the axis; otherwise 1.
     #[must_use]
     pub fn direction(&self) -> f64 {
         self.bus.as_ref().map_or(1.0, |bus| bus.units.direction())
     }
 }
 
-/// What to record.
+/// Recorded signals and their rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Rate of the recording; divides the base rate.

@@ -4,14 +4,13 @@ use crate::file::File;
 use crate::sweep_file::SweepFile;
 use serde_json::{Value as Json, json};
 
-/// JSON Schema (draft 7, which TOML editors understand) of a scenario file. What only `check` can judge, dimensions
-/// and combinations, it leaves open.
+/// JSON Schema (draft 7, which TOML editors understand) of a scenario file. Dimensions and combinations of keys are left to `check`.
 #[must_use]
 pub fn json_schema() -> Json {
     titled(File::schema(&()), "servobench scenario")
 }
 
-/// The same of a sweep file.
+/// JSON Schema of a sweep file.
 #[must_use]
 pub fn sweep_schema() -> Json {
     titled(SweepFile::schema(&()), "servobench sweep")

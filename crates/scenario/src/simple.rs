@@ -1,4 +1,4 @@
-//! Keys that hold no physical quantity but a rate, a count, a text or one of a few names.
+//! Keys whose values are not physical quantities but a rate, a count, a text or one of a few names.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, physical, written};
 
@@ -40,7 +40,7 @@ impl Field<&'static str> for Rate {
     }
 }
 
-/// Ten ticks in a microsecond; no servo loop is faster.
+/// Highest rate (Hz): ten ticks in a microsecond; no servo loop is faster.
 pub(crate) const MAX_RATE: u32 = 10_000_000;
 
 /// A count.
@@ -121,7 +121,7 @@ impl Field<Names> for Name {
     }
 }
 
-/// One of the named values of the type, or "none", with the meaning of that.
+/// One of the named values of the type, or "none" with the given meaning.
 pub(crate) struct OneOfOrNone(pub(crate) &'static str);
 
 const NONE: &str = "none";
@@ -138,7 +138,7 @@ impl<T: Choice> Field<OneOfOrNone> for Option<T> {
     }
 }
 
-/// The one of `values` whose name `node` is.
+/// The one of `values` that `node` names.
 fn one_of<T>(
     path: &str,
     node: &Node,

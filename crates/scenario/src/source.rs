@@ -1,9 +1,9 @@
-//! What a scenario was read from, files and overrides of the command line, and places in them.
+//! The texts of a scenario, files and overrides of the command line, and places in them.
 use crate::models::EMBEDDED;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// One of the texts in [`Sources`]. What is less displaces what is greater: overrides the scenario, the scenario its models.
+/// One of the texts in [`Sources`]. A lesser id takes precedence: overrides over the scenario, the scenario over its models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(Kind);
 
@@ -14,7 +14,7 @@ enum Kind {
     File(usize),
 }
 
-/// Who says something: what is less displaces what is greater.
+/// Origin of a value; the lesser takes precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Authority {
     CommandLine,
@@ -22,7 +22,7 @@ pub(crate) enum Authority {
     Model,
 }
 
-/// What a scenario was read from: overrides of the command line, the scenario itself, then the models it names.
+/// The texts of a scenario: overrides of the command line, the scenario itself, then the models it names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sources {
     overrides: Vec<Source>,
@@ -33,19 +33,19 @@ pub struct Sources {
 struct Source {
     name: String,
     text: String,
-    /// Where each line but the first begins.
+    /// Byte offsets of all lines but the first.
     line_starts: Vec<usize>,
     place: Place,
-    /// Whether messages may show its lines.
+    /// True if messages may show its lines.
     is_shown: bool,
 }
 
-/// Where a file is, for the files that it names in turn.
+/// Folder of a file, for the files that it names in turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// In this folder of the disk.
+    /// Folder on disk.
     Folder(PathBuf),
-    /// In this folder of the embedded models.
+    /// Folder in the embedded models.
     Embedded(PathBuf),
 }
 
@@ -57,7 +57,7 @@ pub(crate) struct Span {
     pub(crate) end: usize,
 }
 
-/// A value and where it is written.
+/// A value and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct At<T> {
     pub(crate) value: T,
@@ -68,7 +68,7 @@ impl SourceId {
     /// The scenario itself.
     pub(crate) const SCENARIO: Self = Self(Kind::File(0));
 
-    /// Who speaks there.
+    /// Origin of the values in this text.
     pub(crate) const fn authority(self) -> Authority {
         match self.0 {
             Kind::Override(_) => Authority::CommandLine,
@@ -77,7 +77,7 @@ impl SourceId {
         }
     }
 
-    /// Whether it is an override of the command line and no file.
+    /// True for an override of the command line, false for a file.
     #[must_use]
     pub const fn is_override(self) -> bool {
         matches!(self.authority(), Authority::CommandLine)
@@ -97,14 +97,14 @@ impl Sources {
         SourceId::SCENARIO
     }
 
-    /// Ids of all: overrides, the scenario, its models.
+    /// All ids: overrides, the scenario, its models.
     pub fn ids(&self) -> impl Iterator<Item = SourceId> {
         let overrides = (0..self.overrides.len()).map(Kind::Override);
         overrides.chain((0..self.files.len()).map(Kind::File)).map(SourceId)
     }
 
-    /// Name of a file as messages give it: its path, or `<embedded>/…`; of an override the words of the command line. Empty
-    /// for an id of other sources.
+    /// Name of a file in messages: its path, or `<embedded>/…`; for an override the text of the command line. Empty for an id of other
+    /// sources.
     #[must_use]
     pub fn name(&self, id: SourceId) -> &str {
         self.get(id).map_or("", |source| &source.name)
@@ -116,14 +116,14 @@ impl Sources {
         self.get(id).map_or("", |source| &source.text)
     }
 
-    /// Whether messages may show lines of it: of the scenario, of overrides and of what is built in. What else a scenario names may be
-    /// any file.
+    /// True if messages may show its lines: the scenario, overrides and embedded files. Any other file that a scenario names may be
+    /// foreign.
     #[must_use]
     pub fn may_be_shown(&self, id: SourceId) -> bool {
         self.get(id).is_some_and(|source| source.is_shown)
     }
 
-    /// A place as messages give it: `axis.toml:12:9`, or the override that it is in.
+    /// A place as shown in messages: `axis.toml:12:9`, or the override that contains it.
     pub(crate) fn place_in_words(&self, id: SourceId, offset: usize) -> String {
         let name = self.name(id);
         if id.is_override() {
@@ -133,7 +133,7 @@ impl Sources {
         format!("{name}:{line}:{column}")
     }
 
-    /// Where a model file belongs below `models/`, such as `motors/x.toml`; `None` for what is no model.
+    /// Path of a model file below `models/`, such as `motors/x.toml`; `None` for other texts.
     #[must_use]
     pub fn model(&self, id: SourceId) -> Option<String> {
         let file = self.get(id).filter(|_| id.authority() == Authority::Model)?;
@@ -159,7 +159,7 @@ impl Sources {
         SourceId(Kind::File(self.files.len() - 1))
     }
 
-    /// Adds the words of an override; files that it names are looked for where the scenario is.
+    /// Adds the text of an override; files that it names are looked up from the scenario's folder.
     pub(crate) fn add_override(&mut self, words: String) -> SourceId {
         let place = self.place(SourceId::SCENARIO).cloned().unwrap_or_else(|| Place::Embedded(PathBuf::new()));
         self.overrides.push(Source::new(words.clone(), words, place, true));

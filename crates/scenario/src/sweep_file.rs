@@ -1,9 +1,9 @@
-//! A sweep file: a scenario, and keys of it that take other values from run to run.
+//! A sweep file: a scenario, and keys with values that vary from run to run.
 //!
 //! ```text
 //! TOML → tree with places → tables → `SweepRequest`
 //! ```
-//! What a value means is for the scenario to say in which it stands: here it is a number with a unit, or a text.
+//! The scenario decides the meaning of a value: here it is a number with a unit, or a text.
 use crate::diagnostic::{Invalid, LoadError, Report};
 use crate::field::{Field, Reported, Slot, key, written};
 use crate::list::{Many, OneOrMany};
@@ -26,22 +26,22 @@ use std::collections::HashMap;
 use std::ops::Range as Bytes;
 use std::path::{Path, PathBuf};
 
-/// A sweep, as its file asks for it.
+/// A sweep as requested by its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepRequest {
-    /// The file, as it was read.
+    /// Text of the file.
     pub text: String,
     /// The scenario that is varied.
     pub scenario: PathBuf,
-    /// What it shows, in a sentence; empty where the file does not say.
+    /// Purpose in one sentence; empty if the file has none.
     pub description: String,
-    /// Engines to run it on; empty: those of the scenario.
+    /// Engines of the runs; empty: those of the scenario.
     pub engines: Vec<EngineName>,
-    /// Metrics that are wanted of each run; empty: all.
+    /// Metrics to report for each run; empty: all.
     pub metrics: Vec<Name>,
-    /// What varies.
+    /// The keys that vary, with their values.
     pub sweep: Sweep,
-    /// The keys of the scenario that it sets, by their names in the sweep.
+    /// The scenario keys that it sets, by their names in the sweep.
     pub keys: HashMap<String, Key>,
 }
 
@@ -167,7 +167,7 @@ table! {
     }
 }
 
-/// A number with a unit, or whatever else a key may be.
+/// A number with a unit, or any other value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Amount(Value);
 
@@ -191,12 +191,11 @@ impl Field for Amount {
     }
 }
 
-/// A text that is a number with a unit, or any other. What follows a number without a space is a unit only if there is such a unit:
-/// "2hump-ei" is a name.
+/// A number with a unit, or else a text. Letters directly after a number are a unit only if such a unit exists: "2hump-ei" is a name.
 pub(crate) fn amount(text: &str) -> Value {
     let trimmed = text.trim();
     let is_of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
-    // The longest beginning that is a number: of "5 e" the 5, of "5e3 m" all but the unit.
+    // The longest prefix that is a number: in "5 e" the 5, in "5e3 m" all but the unit.
     let ends = trimmed.char_indices().map(|(at, c)| (at + c.len_utf8(), c)).take_while(|(_, c)| is_of_number(*c));
     let longest = ends.filter_map(|(end, _)| Some((end, trimmed[..end].parse::<f64>().ok()?))).last();
     let is_unit =
@@ -243,10 +242,10 @@ pub fn load_sweep(path: &Path) -> Result<SweepRequest, LoadError> {
     parse_sweep(&path.display().to_string(), &text, path.parent().unwrap_or_else(|| Path::new("")))
 }
 
-/// Bytes of a sweep file, at most.
+/// Largest size of a sweep file (bytes).
 const LONGEST: u64 = 16 << 20;
 
-/// Reads a sweep from `text`; `name` stands for the file in messages, and paths in it are from `folder`.
+/// Reads a sweep from `text`; `name` stands for the file in messages, and paths in it are relative to `folder`.
 ///
 /// # Errors
 /// [`LoadError::Invalid`] with every mistake in it.
@@ -287,7 +286,7 @@ fn request(file: &SweepFile, text: &str, folder: &Path, report: &mut Report) -> 
     })
 }
 
-/// The keys that are set, with their parts.
+/// The keys that are set, parsed.
 fn keys(file: &SweepFile, report: &mut Report) -> Result<HashMap<String, Key>, Reported> {
     let mut keys = HashMap::new();
     for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
@@ -302,7 +301,7 @@ fn keys(file: &SweepFile, report: &mut Report) -> Result<HashMap<String, Key>, R
     if report.errors.is_empty() { Ok(keys) } else { Err(Reported) }
 }
 
-/// With the keys that follow others, and those that are given.
+/// The sweep with keys that follow others, and with given keys.
 fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<Sweep, Reported> {
     for At { value: vary, .. } in &file.vary.given().ok_or(Reported)?.0 {
         let followers = vary.also.optional()?.map(|also| also.0.as_slice()).unwrap_or_default();
@@ -322,10 +321,10 @@ fn followed(mut sweep: Sweep, file: &SweepFile, report: &mut Report) -> Result<S
     Ok(sweep)
 }
 
-/// Tables of a scenario that say what the machine is like.
+/// Tables of a scenario that describe the machine.
 const MACHINE: [&str; 3] = ["axis", "motor", "disturbance"];
 
-/// True of a key that is not chosen: the machine, its disturbances, the seed of its random numbers.
+/// True for a key that is not a choice: the machine, its disturbances, the seed of its random numbers.
 fn is_of_the_machine(key: &str) -> bool {
     let mut parts = key.split(['.', '[']);
     parts.next().is_some_and(|table| MACHINE.contains(&table)) || key.rsplit('.').next() == Some("seed")
@@ -336,7 +335,7 @@ fn refuse(report: &mut Report, place: Span, error: &SweepError) -> Reported {
     Reported
 }
 
-/// Keys that take values one after the other, and keys that are drawn.
+/// Keys with listed values, and keys that are drawn.
 fn varied(file: &SweepFile, report: &mut Report) -> Result<(Vec<Axis>, Vec<Drawn>), Reported> {
     let (mut axes, mut drawn, mut is_right) = (Vec::new(), Vec::new(), true);
     for At { value: vary, span } in &file.vary.given().ok_or(Reported)?.0 {
@@ -382,7 +381,7 @@ fn one(vary: &Vary, span: Span, report: &mut Report) -> Result<Varied, Reported>
     Ok(Varied::Drawn(Drawn { key: key.clone(), unit, distribution }))
 }
 
-/// The distribution of a key, the unit of its values and where it stands.
+/// The distribution of a key, the unit of its values and its place.
 fn distribution(vary: &Vary, report: &mut Report) -> Result<(Distribution, String, Span), Reported> {
     if let Some(table) = vary.uniform.optional()? {
         let (low, high, unit) = match (table.from.optional()?, table.mean.optional()?, table.tolerance.optional()?) {
@@ -432,14 +431,14 @@ fn incomplete(report: &mut Report, place: Span, needed: &str) -> Reported {
     Reported
 }
 
-/// Two numbers in the same unit, and that.
+/// Two numbers in the same unit, and the unit.
 fn ends(from: &Slot<Amount>, to: &Slot<Amount>, report: &mut Report) -> Result<([f64; 2], String), Reported> {
     let (low, unit) = number(from, None, report)?;
     let (high, _) = number(to, Some(&unit), report)?;
     Ok(([low, high], unit))
 }
 
-/// A number, in this unit if there is to be one, and its unit.
+/// A number with its unit, which must be `unit` if that is given.
 fn number(slot: &Slot<Amount>, unit: Option<&str>, report: &mut Report) -> Result<(f64, String), Reported> {
     let At { value: Amount(value), span } = slot.at().ok_or(Reported)?;
     let Value::Number(number, own) = value else {

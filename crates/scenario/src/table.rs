@@ -1,5 +1,5 @@
-//! Tables of a scenario file, each described once: from the description follow the struct, its decoding, the unknown
-//! keys, the JSON Schema and the reference in `docs/scenario.md`.
+//! Tables of a scenario file, each described once: the description yields the struct, its decoding, the check for unknown keys, the
+//! JSON Schema and the reference in `docs/scenario.md`.
 use crate::diagnostic::{MOST_MISTAKES, Report};
 use crate::field::{Field, Slot};
 
@@ -12,24 +12,24 @@ use servobench_files::suggestion;
 ///
 /// ```text
 /// table! {
-///     /// What it is.
+///     /// Meaning of the table.
 ///     pub(crate) struct Name requires ["key"] {
-///         /// What the key means; of a parameter that its owner describes: what is to be added to its meaning.
+///         /// Meaning of the key; for a parameter described by its owner: an addition to that meaning.
 ///         key: Type = specification,
-///         /// A key that Rust cannot spell.
+///         /// A key that is not a Rust identifier.
 ///         field as "static": Type = specification,
 ///         ..field: Keys = specification
 ///     }
 /// }
 /// ```
-/// Each key becomes a field `Slot<Type>`; the struct also knows the `span` of its header. What follows `..` is a group of keys that is
-/// listed elsewhere.
+/// Each key becomes a field `Slot<Type>`; the struct also has the `span` of its header. The keys of the group after `..` are listed
+/// elsewhere.
 ///
-/// A table whose keys depend on where it stands, as an encoder's on the body that it sits on, is `struct Name of (place: Place)`, and its
-/// specifications know `place`.
+/// A table whose keys depend on its place, such as an encoder's on its body, is `struct Name of (place: Place)`, and its
+/// specifications can use `place`.
 ///
 /// A table may set the parameters of another crate: `struct Name sets Parameters`. With `key: Type = specification => field` the key sets
-/// that field of the `parameters`; where it is absent, the field has its default.
+/// that field of the `parameters`; without the key, the field has its default.
 macro_rules! table {
     (
         $(#[doc = $table_doc:literal])+
@@ -50,7 +50,7 @@ macro_rules! table {
         }
 
         impl $table {
-            /// The parameters that the keys set, with the default of wrong ones, and whether all are right.
+            /// The parameters set by the keys, with the default in place of wrong values, and an error if any was wrong.
             pub(crate) fn parameters(&self) -> ($parameters, Result<(), $crate::field::Reported>) {
                 let (mut parameters, mut are_right) = (<$parameters>::default(), Ok(()));
                 $($(
@@ -141,7 +141,7 @@ macro_rules! key_name {
     };
 }
 
-/// Type or pattern, or those of nothing.
+/// The given type or pattern, or the unit.
 macro_rules! or_unit {
     () => {
         ()
@@ -157,7 +157,7 @@ pub(crate) use table;
 
 /// A table whose keys can be listed.
 pub(crate) trait Keys {
-    /// Its keys, those of groups apart, and where they are.
+    /// Its keys, except those of groups, and their places.
     fn spans(&self) -> Vec<(&'static str, Option<Span>)>;
 }
 
@@ -169,7 +169,7 @@ pub(crate) struct OpenTable<'a> {
 }
 
 impl<'a> OpenTable<'a> {
-    /// Opens the table `node`; reports every key that is not among `keys` and those of `required` that are missing.
+    /// Opens the table `node`; reports every key that is not in `keys` and every missing key of `required`.
     pub(crate) fn new(
         path: &'a str,
         node: &'a Node,
@@ -185,7 +185,7 @@ impl<'a> OpenTable<'a> {
         for entry in &table.entries {
             if !keys.contains(&entry.key.as_str()) {
                 let message = format!("unknown key `{}`{}", entry.key, of(path));
-                // Of so many nobody reads what each may have meant.
+                // With so many unknown keys, suggestions are of no use.
                 let is_shown = report.errors.len() < 10 * MOST_MISTAKES;
                 let help = if is_shown { suggestion(&entry.key, keys.iter().copied()) } else { String::new() };
                 report.error(entry.key_span, message, help);
@@ -215,12 +215,12 @@ fn of(path: &str) -> String {
 }
 
 impl Report {
-    /// Says that the table `path`, whose header is at `span`, lacks `key`.
+    /// Reports that the table `path`, whose header is at `span`, lacks `key`.
     pub(crate) fn missing(&mut self, path: &str, key: &str, span: Span) {
         self.missing_with_help(path, key, span, "");
     }
 
-    /// Like [`Self::missing`], with what to do about it.
+    /// Like [`Self::missing`], with a help.
     pub(crate) fn missing_with_help(&mut self, path: &str, key: &str, span: Span, help: &str) {
         let message = match path {
             "" => format!("missing table `[{key}]`"),
@@ -235,7 +235,7 @@ fn joined(doc: &[&str]) -> String {
     doc.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
 }
 
-/// The meaning of a parameter, which its owner gives, and what the key adds to it: a default, or another clause.
+/// The meaning of a parameter according to its owner, followed by the key's addition: a default, or another clause.
 fn of_key((meaning, key): (&str, &[&str])) -> String {
     let key = joined(key);
     match (meaning, key.as_str()) {
@@ -247,15 +247,15 @@ fn of_key((meaning, key): (&str, &[&str])) -> String {
     }
 }
 
-/// What documents a key: the meaning that the owner of its parameter gives, and the lines of the key.
+/// Documentation of a key: the meaning according to the owner of its parameter, and the lines of the key.
 pub(crate) type KeyDoc<'a> = (&'a str, &'a [&'a str]);
 
-/// A key of a group: its name, what documents it as in [`KeyDoc`], and its schema.
+/// A key of a group: its name, its documentation as in [`KeyDoc`], and its schema.
 pub(crate) type GroupKey<const LINES: usize> = (&'static str, (&'static str, [&'static str; LINES]), Json);
 
 pub(crate) fn object_schema(doc: &[&str], required: &[&str], keys: Vec<(&'static str, KeyDoc<'_>, Json)>) -> Json {
     let mut properties = Map::new();
-    // A JSON object has no order, a description does: `x-order` is for documentation.
+    // A JSON object has no order: `x-order` keeps that of the description for the documentation.
     let order: Vec<&str> = keys.iter().map(|(name, ..)| *name).collect();
     for (name, doc, mut schema) in keys {
         schema["description"] = Json::String(of_key(doc));

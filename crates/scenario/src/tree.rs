@@ -1,4 +1,4 @@
-//! TOML as a tree in which every key and value knows its file and its bytes.
+//! TOML as a tree in which every key and value has its file and byte range.
 mod syntax_error;
 
 use crate::diagnostic::Report;
@@ -14,9 +14,9 @@ pub(crate) enum Value {
     Table(Table),
     Array(Vec<Node>),
     Text(String),
-    /// A number with a unit that no file gives, but a program.
+    /// A number with a unit from a program, not from a file.
     Quantity {
-        /// As a file would have it.
+        /// The text that a file would contain.
         text: String,
         number: f64,
         unit: String,
@@ -30,10 +30,10 @@ pub(crate) enum Value {
 /// A bare number.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Number {
-    /// As it is written.
+    /// The number as written.
     pub(crate) text: String,
     pub(crate) value: f64,
-    /// When it is written as an integer and fits.
+    /// The value, if it is written as an integer and fits.
     pub(crate) whole: Option<i64>,
 }
 
@@ -70,7 +70,7 @@ impl Table {
         self.entry_mut(key).map(|entry| &mut entry.node)
     }
 
-    /// Lays `over` on this table: its values win, tables merge key by key.
+    /// Merges `over` into this table: its values take precedence, tables merge key by key.
     pub(crate) fn overlay(&mut self, over: Self) {
         let own = self.entries.len();
         for entry in over.entries {
@@ -89,7 +89,7 @@ impl Table {
 }
 
 impl Node {
-    /// The same in another text.
+    /// The same node with its places in another text.
     pub(crate) fn moved_to(mut self, source: SourceId) -> Self {
         self.move_to(source);
         self
@@ -119,7 +119,7 @@ impl Value {
         if let Self::Text(text) | Self::Quantity { text, .. } = self { Some(text) } else { None }
     }
 
-    /// What it is, in words.
+    /// Kind of the value, in words.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
@@ -132,15 +132,15 @@ impl Value {
     }
 }
 
-/// A parsed file and the lines on which its syntax is wrong: whatever else is said of those would mislead.
+/// A parsed file and its lines with syntax errors, for which other diagnostics would mislead.
 #[derive(Debug)]
 pub(crate) struct Parsed {
     pub(crate) table: Table,
-    /// None within another: both starts and ends increase.
+    /// None contains another: both starts and ends increase.
     pub(crate) broken: Vec<Range<usize>>,
 }
 
-/// Parses as much as there is; every syntax error goes to `report`, of a text that is no TOML at all one.
+/// Parses as much as possible; every syntax error goes to `report`, but only one for a text that is not TOML at all.
 pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed {
     if let Some(looks_like) = another_format(text) {
         return nothing_of(source, text, 0..0, looks_like, report);
@@ -161,14 +161,14 @@ pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed
     let mut broken: Vec<Range<usize>> = Vec::new();
     let mut places = None;
     for error in errors {
-        // What follows the first error of a line is mostly its consequence. Errors come in the order of their lines.
+        // Errors after the first one in a line are mostly its consequences. They come in the order of their lines.
         if broken.last().is_some_and(|last| error.span.end <= last.end) {
             continue;
         }
         let lines = lines_around(text, &error.span);
         let line = part(text, &lines);
         let is_duplicate = error.kind == Kind::Duplicate;
-        // Keys under a header that cannot be read would seem to belong to the table before.
+        // Keys after an unreadable header would seem to belong to the previous table.
         let takes_its_keys = line.trim_start().starts_with('[') && !is_duplicate;
         let end = if takes_its_keys { end_of_table(text, lines.end) } else { lines.end };
         broken.push(lines.start..end);
@@ -188,12 +188,12 @@ pub(crate) fn parse(source: SourceId, text: &str, report: &mut Report) -> Parsed
     Parsed { table, broken }
 }
 
-/// What a parsed file is made of stands between these. Each takes up to half a kilobyte, until the file is a scenario.
+/// Separators between the elements of a file. Each costs up to half a kilobyte until the file is a scenario.
 const MARKS: &[u8] = b"[]{}=,.\"'\n";
-/// Marks of a file at most: 20 000 moves with a limit each have so many.
+/// Largest number of separators in a file: that of 20 000 moves with a limit each.
 const MOST_MARKS: usize = 300_000;
 
-/// What a text is that begins as no TOML does.
+/// Description of a text whose first character cannot begin a TOML file.
 fn another_format(text: &str) -> Option<&'static str> {
     match text.trim_start_matches('\u{feff}').trim_start().chars().next()? {
         '{' => Some("it looks like JSON"),
@@ -203,10 +203,10 @@ fn another_format(text: &str) -> Option<&'static str> {
     }
 }
 
-/// Fewer lines that cannot be read are mistakes in a scenario, each at its place.
+/// Smallest number of unreadable lines for a text that is not TOML; fewer are separate mistakes in a scenario.
 const HARDLY_TOML: usize = 8;
 
-/// Whether more than half of the lines that say something cannot be read.
+/// True if more than half of the lines with contents cannot be read.
 fn is_hardly_toml(text: &str, errors: &[SyntaxError]) -> bool {
     let wrong = errors.iter().filter(|error| error.kind != Kind::Duplicate);
     let starts: BTreeSet<usize> = wrong.map(|error| lines_around(text, &error.span).start).collect();
@@ -214,20 +214,20 @@ fn is_hardly_toml(text: &str, errors: &[SyntaxError]) -> bool {
     starts.len() >= HARDLY_TOML && 2 * starts.len() > text.lines().filter(is_said).count()
 }
 
-/// One mistake for all of a text that is something else.
+/// A single mistake for a text that is not TOML.
 fn nothing_of(source: SourceId, text: &str, place: Range<usize>, why: &str, report: &mut Report) -> Parsed {
     let message = format!("this is not TOML: {why}");
     report.error(Span::new(source, &place), message, "a scenario is a TOML file: see docs/scenario.md");
     Parsed { table: Table::default(), broken: std::iter::once(0..text.len()).collect() }
 }
 
-/// Where everything is that can be there twice.
+/// Places of headers and keys, which may be duplicated.
 struct Places<'a> {
-    /// Where each line begins.
+    /// Offset of each line.
     lines: Vec<usize>,
     /// First line of each header, from 1.
     headers: BTreeMap<String, usize>,
-    /// Keys and where they are.
+    /// Keys and their offsets.
     keys: BTreeSet<(&'a str, usize)>,
 }
 
@@ -257,7 +257,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// What to say of a second `key` at `at` in `line`, and where the first is.
+    /// Message for a second `key` at `at` in `line`, and a help with the place of the first.
     fn duplicate(&self, key: &str, line: &str, at: usize) -> (String, String) {
         let line_at = |at: usize| self.lines.partition_point(|start| *start <= at);
         let header = header(line);
@@ -265,7 +265,7 @@ impl<'a> Places<'a> {
             let first = self.headers.get(&header).copied().filter(|first| *first < line_at(at));
             (format!("a second table `{header}`"), first)
         } else {
-            // Keys of one table stand together: the nearest before is the first of two.
+            // Keys of one table are adjacent: the nearest one before is the first of two.
             let first = self.keys.range((key, 0)..(key, at)).next_back().map(|(_, first)| line_at(*first));
             (format!("duplicate key `{key}`"), first)
         };
@@ -273,13 +273,13 @@ impl<'a> Places<'a> {
     }
 }
 
-/// A line without what may differ between two headers of one table.
+/// A header line without comment and spaces, in which two headers of one table may differ.
 fn header(line: &str) -> String {
     line.split('#').next().unwrap_or(line).split_whitespace().collect()
 }
 
-/// A part of the text. The parser may have seen spaces in place of what is there: a part that begins or ends within a
-/// character is empty.
+/// A part of the text. The parser may have seen spaces in place of other characters: a range that begins or ends within a
+/// character yields an empty part.
 fn part<'a>(text: &'a str, range: &Range<usize>) -> &'a str {
     text.get(range.clone()).unwrap_or_default()
 }
@@ -296,9 +296,9 @@ fn end_of_table(text: &str, from: usize) -> usize {
     text.len()
 }
 
-/// The parser gives up at a key without a value; it is then shown the text without that line.
+/// Number of repetitions: the parser stops at a key without a value; it then gets the text without that line.
 const MAX_GIVEN_UP: usize = 64;
-/// Bytes that are parsed again for it, in all.
+/// Largest number of bytes that are parsed again for this, in total.
 const MOST_PARSED_AGAIN: usize = 1 << 20;
 
 fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
@@ -313,7 +313,7 @@ fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
         let line = stop.as_ref().map(|stop| lines_around(&text, &stop.span));
         let may_go_on = given_up.len() < MAX_GIVEN_UP && given_up.len() * text.len() < MOST_PARSED_AGAIN;
         if let (Some(stop), Some(line), true) = (stop, line, may_go_on) {
-            // Spaces keep every other byte where it is.
+            // Spaces keep the offsets of all other bytes.
             text.replace_range(line.clone(), &" ".repeat(line.len()));
             given_up.push(stop);
             continue;
@@ -325,8 +325,8 @@ fn parse_to_the_end(source: SourceId, text: &str) -> (Table, Vec<SyntaxError>) {
     }
 }
 
-/// A list or table that is not closed swallows the lines after it: one error at its opening bracket stands for all that
-/// come of it, and covers them.
+/// An unclosed list or table consumes the following lines: one error at its opening bracket replaces and covers all errors that
+/// follow from it.
 fn at_the_opening(errors: Vec<SyntaxError>, table: &Table) -> Vec<SyntaxError> {
     let unclosed = |error: &SyntaxError| {
         let is_value = error.kind == Kind::Unclosed;
@@ -381,7 +381,7 @@ fn table(source: SourceId, from: &DeTable<'_>) -> Table {
 /// The value of the one key of `text`, `key = value`.
 ///
 /// # Errors
-/// What the parser says, or that it is something else.
+/// The message of the parser, or that the text is not a single value.
 pub(crate) fn parse_one(source: SourceId, text: &str) -> Result<Node, String> {
     let root = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
     let mut entries = table(source, root.get_ref()).entries;
@@ -409,7 +409,7 @@ fn value(source: SourceId, from: &DeValue<'_>) -> Value {
         DeValue::Integer(number) => {
             let text = number.as_str().to_owned();
             let whole = i64::from_str_radix(&text, number.radix()).ok();
-            // An integer beyond 64 bits is far outside of every bound, wherever it stands.
+            // An integer beyond 64 bits is far outside of every bound.
             Value::Number(Number { value: whole.map_or(f64::INFINITY, |whole| whole as f64), text, whole })
         }
     }

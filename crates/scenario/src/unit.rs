@@ -3,9 +3,9 @@ use servobench_config::Dimension as D;
 use servobench_files::nearest;
 use std::f64::consts::{PI, SQRT_2};
 
-/// What one of a unit is in SI: `numerator / denominator · 10^power`.
+/// Value of one unit in SI: `numerator / denominator · 10^power`.
 ///
-/// Powers of ten are kept apart, so that "250 mm" is the very number that `0.25` is.
+/// Powers of ten are kept apart, so that "250 mm" equals `0.25` exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) dimension: D,
@@ -14,7 +14,7 @@ pub(crate) struct Unit {
     pub(crate) power: i32,
 }
 
-/// Symbol, unit, whether SI prefixes go with it.
+/// Symbol, unit, and true if SI prefixes apply.
 type Row = (&'static str, Unit, bool);
 
 const fn si(dimension: D) -> Unit {
@@ -46,7 +46,7 @@ const UNITS: [Row; 35] = [
     ("Vpk", si(VOLT_AMPLITUDE), true),
     ("Vrms", scaled(VOLT_AMPLITUDE, SQRT_2, 1.0, 0), true),
     ("Ω", OHM, true),
-    // The sign for the unit, U+2126, and what keyboards have.
+    // The ohm sign, U+2126, and the spellings of keyboards.
     ("\u{2126}", OHM, true),
     ("Ohm", OHM, true),
     ("ohm", OHM, true),
@@ -74,7 +74,7 @@ const PREFIXES: [(&str, i32); 9] =
 
 /// The unit of that symbol, with or without prefix.
 pub(crate) fn unit(symbol: &str) -> Option<Unit> {
-    // A symbol by itself comes first: "min" is no milli-inch.
+    // Whole symbols come first: "min" is not a milli-inch.
     if let Some((_, unit, _)) = UNITS.iter().find(|(name, ..)| *name == symbol) {
         return Some(*unit);
     }
@@ -85,7 +85,7 @@ pub(crate) fn unit(symbol: &str) -> Option<Unit> {
     })
 }
 
-/// Spellings that are no symbols here, and what to write instead. None of them is a slip that leads to another prefix.
+/// Spellings that are not symbols here, with a correction. None of them is a typing error that leads to another prefix.
 const SPELLINGS: [(&[&str], &str); 19] = [
     (&["MM"], "did you mean `mm`?"),
     (&["micron", "microns", "micrometer", "micrometre", "mu"], "did you mean `um`?"),
@@ -108,8 +108,8 @@ const SPELLINGS: [(&[&str], &str); 19] = [
     (&["gn", "G", "gee", "grav"], "gravity is 9.80665 m/s2"),
 ];
 
-/// What to write instead of an unknown symbol, when that can be told. A prefix that is not written is never proposed: a
-/// wrong guess would be wrong by a power of ten.
+/// Correction of an unknown symbol, if known. A prefix that is not written is never proposed: a wrong guess would be wrong by a power
+/// of ten.
 pub(crate) fn hint(symbol: &str) -> Option<String> {
     if let Some((_, help)) = SPELLINGS.iter().find(|(spellings, _)| spellings.contains(&symbol)) {
         return Some((*help).to_owned());
@@ -117,7 +117,7 @@ pub(crate) fn hint(symbol: &str) -> Option<String> {
     run_together(symbol).or_else(|| of_other_case(symbol)).or_else(|| slip(symbol))
 }
 
-/// Every symbol, those without a prefix first.
+/// All symbols, those without a prefix first.
 fn symbols() -> impl Iterator<Item = String> {
     let prefixed = UNITS.iter().filter(|(.., prefixes)| *prefixes).flat_map(|(name, ..)| {
         PREFIXES.iter().filter(|(prefix, _)| prefix.is_ascii()).map(move |(prefix, _)| format!("{prefix}{name}"))
@@ -125,8 +125,8 @@ fn symbols() -> impl Iterator<Item = String> {
     UNITS.iter().map(|(name, ..)| (*name).to_owned()).chain(prefixed)
 }
 
-/// "khz": what differs in case only. A symbol without prefix comes first; of two prefixes the one that is written, and both
-/// when all letters are capitals, which say nothing of the prefix.
+/// "khz": differs from a symbol in case only. A symbol without prefix comes first; of two prefixes the one written, and both when all
+/// letters are capitals, which do not reveal the prefix.
 fn of_other_case(symbol: &str) -> Option<String> {
     let lower = symbol.to_lowercase();
     let mut all: Vec<String> = symbols().filter(|known| known.to_lowercase() == lower).collect();
@@ -140,20 +140,20 @@ fn of_other_case(symbol: &str) -> Option<String> {
     (!quoted.is_empty()).then(|| format!("did you mean {}?", quoted.join(" or ")))
 }
 
-/// "Ns": two units without a space between them; where there are two ways to part them, both.
+/// "Ns": two units without a space between them; if they can be split in two ways, both.
 fn run_together(symbol: &str) -> Option<String> {
     let parted: Vec<String> = symbol
         .char_indices()
         .skip(1)
         .map(|(at, _)| symbol.split_at(at))
-        // "Kg" is a slip of case.
+        // "Kg" is an error of case.
         .filter(|(first, second)| *first != "K" && unit(first).is_some() && unit(second).is_some())
         .map(|(first, second)| format!("`{first} {second}`"))
         .collect();
     (!parted.is_empty()).then(|| format!("write {}", parted.join(" or ")))
 }
 
-/// "rmp": a slip in a symbol without prefix, when both are long enough to tell.
+/// "rmp": a typing error in a symbol without prefix, if both are long enough to recognize.
 fn slip(symbol: &str) -> Option<String> {
     let is_long = |name: &&str| name.chars().count() >= 3;
     let long = UNITS.iter().map(|(name, ..)| *name).filter(is_long);

@@ -1,4 +1,4 @@
-//! When something happens: an output in short, or a table.
+//! Conditions: the name of an output, or a table.
 use crate::diagnostic::Report;
 use crate::field::{Field, key, written};
 
@@ -7,7 +7,7 @@ use crate::source::At;
 use crate::tree::{Node, Value};
 use serde_json::{Value as Json, json};
 
-/// When something happens, as a file writes it.
+/// A condition as written in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum When {
     /// An output becomes TRUE: "first.Done".

@@ -1,15 +1,14 @@
-//! The default that the reference of a key says is the one that it has: a file in which the key has that value means the same as one
-//! without the key.
+//! Checks the defaults in the reference: a file in which a key has its documented default means the same as one without the key.
 use serde_json::Value as Json;
 use servobench_scenario::{Scenario, json_schema, parse};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
-/// A key by its path, `[]` behind a list of tables, and its default.
+/// A key by its path, with `[]` after a list of tables, and its default.
 type Defaults = BTreeMap<String, Value>;
 
-/// An axis with tables that no scenario of the repository has.
+/// An axis with tables that are in no scenario of the repository.
 const MORE: &str = r#"
 [run]
 base_rate = "16 kHz"
@@ -50,7 +49,7 @@ axis = "1 um"
 kind = "lost"
 "#;
 
-/// What is put behind it: a program of moves, or of function blocks. For an FMU any file does, which is opened by a run only.
+/// Added programs: one of moves, one of function blocks. For an FMU any file will do, as only a run opens it.
 const PROGRAMS: [&str; 2] = [
     r#"
 [setpoint.shaper]
@@ -194,21 +193,21 @@ fn measured_by(method: &str, keys: &str) -> String {
     FIRMWARE.replace("bandwidth = \"20 Hz\"", &with)
 }
 
-/// Of a table of points, what only moves use: no block chooses velocities by these rules.
+/// Keys of a table of points that only moves use: no block chooses velocities by these rules.
 const OF_MOVES: [&str; 2] = ["call[].table.passes", "call[].table.velocities"];
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The value that words begin with, where they do: `false, they are wired normally open`, `10 s`, `"linear"`.
+/// The value at the beginning of a description, if any: `false, they are wired normally open`, `10 s`, `"linear"`.
 fn literal(words: &str, schema: &Json) -> Option<Value> {
     let words = words.split([';', ',']).next()?.split(". ").next()?.trim().trim_end_matches('.');
     let of = |text: &str| format!("x = {text}").parse::<Table>().ok()?.remove("x");
     let is_text = schema["type"] == "string";
     let quantity = |text: &str| {
         let example = schema["examples"][0].as_str()?;
-        // Nothing has the unit that the key has.
+        // A zero needs the unit of the key.
         let text = if text == "0" { format!("0 {}", example.split_once(' ')?.1) } else { text.to_owned() };
         let is_number = text.starts_with(|first: char| first.is_ascii_digit()) && !text.contains('/');
         is_number.then_some(Value::String(text))
@@ -230,7 +229,7 @@ fn collect(schema: &Json, path: &str, defaults: &mut Defaults) {
     }
 }
 
-/// The table of the key at `path`, of several the `nth`; one that the file does not have is made. What a model may say is left out.
+/// The table of the key at `path`, the `nth` of several; a missing one is created. `None` in a table with a model, which may set the key.
 fn place<'a>(table: &'a mut Table, path: &[&str], nth: &mut usize) -> Option<&'a mut Table> {
     let [first, rest @ ..] = path else { return None };
     if table.contains_key("model") {
@@ -255,7 +254,7 @@ fn place<'a>(table: &'a mut Table, path: &[&str], nth: &mut usize) -> Option<&'a
 
 fn read(table: &Table, folder: &Path) -> Option<Scenario> {
     let read = parse("test.toml", &table.to_string(), Some(folder)).ok()?.scenario;
-    // The keys as they are written, and what is said of them.
+    // Without the keys as written, and the messages about them.
     Some(Scenario { parameters: Vec::new(), made_of: Vec::new(), warnings: Vec::new(), ..read })
 }
 
@@ -297,7 +296,7 @@ fn a_key_that_is_written_with_its_default_changes_nothing() {
                 let Some(table) = place(&mut without, &keys, &mut nth.clone()) else { break };
                 table.remove(key);
                 place(&mut with, &keys, &mut nth.clone()).unwrap().insert(key.to_owned(), default.clone());
-                // Not every file may have every key, nor do without it.
+                // Not every file may have every key, nor omit it.
                 if let (Some(without), Some(with)) = (read(&without, &folder), read(&with, &folder)) {
                     let (without, with) = (format!("{without:#?}"), format!("{with:#?}"));
                     let difference = without.lines().zip(with.lines()).find(|(without, with)| without != with);

@@ -1,4 +1,4 @@
-//! What `[bus]`, `[drive.objects]` and `[axis.switches]` become.
+//! The resolved `[bus]`, `[drive.objects]` and `[axis.switches]`.
 use servobench_cia402::counter::Counter;
 use servobench_drive::EffortFeedforward;
 use servobench_fieldbus::bus::{BusFault, BusFaultKind};
@@ -28,7 +28,7 @@ fn scenario(text: &str) -> Scenario {
     parse("test.toml", text, None).unwrap_or_else(|e| panic!("{e}")).scenario
 }
 
-/// The axis with `addition` in or behind `[bus]`.
+/// The axis with `addition` in or after `[bus]`.
 fn bus(addition: &str) -> Bus {
     scenario(&format!("{AXIS}{addition}")).bus.unwrap()
 }
@@ -151,7 +151,7 @@ fn units_are_increments_of_the_encoder_that_closes_the_loop() {
     assert_eq!(scenario(&linear).bus.unwrap().units, DriveUnits { drive: 1, axis: 1e-7 });
 }
 
-/// Oracle: which multiples of a millisecond lie within the times.
+/// Oracle: the multiples of a millisecond within the times.
 #[test]
 fn faults_concern_whole_cycles() {
     let bus = bus(r#"

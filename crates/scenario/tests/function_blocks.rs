@@ -1,4 +1,4 @@
-//! What `[plc]` and `[[call]]` become.
+//! The resolved `[plc]` and `[[call]]`.
 use servobench_motion::Limits;
 use servobench_plcopen::generator::Mounting;
 use servobench_plcopen::program::{Call, Condition, Inputs};
@@ -32,7 +32,7 @@ jerk = "100 m/s3"
 snap = "5000 m/s4"
 "#;
 
-/// The scenario with `calls`, beside some tables.
+/// The scenario with `calls`, with some tables beside it.
 fn scenario(calls: &str) -> Scenario {
     let folder = tempfile::tempdir().unwrap();
     for (name, heading) in [("x.csv", "position [mm]"), ("v.csv", "velocity [mm/s]"), ("a.csv", "acceleration [m/s2]")]
@@ -47,15 +47,15 @@ fn plc(calls: &str) -> Plc {
     scenario(calls).plc.unwrap()
 }
 
-/// A call of `block` with `keys`, alone.
+/// A single call of `block` with `keys`.
 fn call(block: &str, keys: &str) -> Call {
     plc(&format!("[[call]]\nblock = \"{block}\"\n{keys}\n")).calls.remove(0)
 }
 
-/// What `[setpoint]` says.
+/// Limits of `[setpoint]`.
 const LIMITS: Limits = Limits { velocity: 0.5, acceleration: 5.0, jerk: 100.0, snap: 5000.0 };
 
-/// The call of a block with `keys` has these inputs, and says nothing else.
+/// Checks that the call of a block with `keys` has these inputs, without diagnostics.
 fn check<I: for<'i> BlockInputs<'i> + PartialEq + Debug + Copy>(name: &str, keys: &str, inputs: I) {
     let call = call(name, keys);
     assert_eq!(I::read(&call.inputs, false), inputs, "{name}");
@@ -110,7 +110,7 @@ fn every_block_with_its_least_inputs() {
     check("Profile4th", "position = \"1 mm\"\nsettling_time = \"50 ms\"", inputs);
 }
 
-/// Times count from the start of the profile, pairs from the one before.
+/// Times count from the start of the profile, pairs from the previous one.
 #[test]
 fn profiles_of_positions_velocities_and_accelerations() {
     let pairs = |values: [f64; 3]| {
@@ -256,7 +256,7 @@ fn every_block_with_inputs_of_its_own() {
     }
 }
 
-/// The order of `[setpoint]` says which of its limits hold.
+/// The order of `[setpoint]` determines which of its limits apply.
 #[test]
 fn limits_are_those_of_the_order() {
     let of_order = |order: &str| {
@@ -332,7 +332,7 @@ stop = "state.Standstill"
     assert_eq!(starts, expected);
 }
 
-/// What MC_Power permits changes while it is enabled.
+/// The permissions of MC_Power change while it is enabled.
 #[test]
 fn permissions_change_under_power() {
     let when =
@@ -346,7 +346,7 @@ fn permissions_change_under_power() {
     assert_eq!((permits(&call.inputs), updates), ([true, false], vec![[false, false], [false, true]]));
 }
 
-/// An update says what changes; what it does not say is as the update before left it.
+/// An update changes the given inputs; the others keep the values of the previous update.
 #[test]
 fn updates_add_up() {
     let call = call(

@@ -1,4 +1,4 @@
-//! Keys that are given another value than the file has.
+//! Overrides of keys of a file.
 use servobench_scenario::{Document, Key, LoadError, Loaded, Override, Scenario, differences, parse};
 use servobench_sweep::Value;
 
@@ -35,7 +35,7 @@ fn read(text: &str, all: &[&str]) -> Result<Loaded, LoadError> {
     Document::parse("a.toml", text, None, None)?.scenario(&overrides(all))
 }
 
-/// The scenario without what says where its values come from.
+/// The scenario without the origins of its values.
 fn meaning(loaded: Loaded) -> Scenario {
     let mut scenario = loaded.scenario;
     scenario.overrides.clear();
@@ -47,7 +47,7 @@ fn meaning(loaded: Loaded) -> Scenario {
     scenario
 }
 
-/// What is wrong, a line each.
+/// The mistakes, a line each.
 fn mistakes(text: &str, all: &[&str]) -> Vec<String> {
     match read(text, all) {
         Err(LoadError::Invalid(invalid)) => invalid.lines(),
@@ -55,7 +55,7 @@ fn mistakes(text: &str, all: &[&str]) -> Vec<String> {
     }
 }
 
-/// Oracle: a file that says the same.
+/// Oracle: a file with the same values.
 #[test]
 fn an_override_is_as_if_the_file_said_so() {
     for (one, from, to) in [
@@ -80,7 +80,7 @@ fn an_override_is_as_if_the_file_said_so() {
         let expected = parse("a.toml", &TEXT.replacen(from, to, 1), None).unwrap_or_else(|error| panic!("{error}"));
         let (mut found, mut expected) = (meaning(found), meaning(expected));
         if one.contains(".gain=") {
-            // The key that it displaces is still in the file.
+            // The overridden key is still in the file.
             found.parameters.clear();
             expected.parameters.clear();
         }
@@ -136,7 +136,7 @@ fn a_mistake_is_told_with_its_place_on_the_command_line() {
     }
 }
 
-/// The bytes that are shown are those of the part that is wrong.
+/// The place shown is that of the wrong part.
 #[test]
 fn the_place_is_the_part_that_is_wrong() {
     let place = |one: &str| match read(TEXT, &[one]) {
@@ -177,7 +177,7 @@ fn of_two_overrides_that_say_the_same_none_is_preferred() {
     assert!(said[0].contains("say the same thing"), "{said:?}");
 }
 
-/// A part of a broken file may well hold what the override needs.
+/// The broken part of a file may contain the key that the override needs.
 #[test]
 fn in_a_file_with_wrong_syntax_nothing_is_missing() {
     let broken =
@@ -220,7 +220,7 @@ fn an_override_reads_back_as_it_is_written() {
     }
 }
 
-/// Oracle: the same value as the words of a command line.
+/// Oracle: the same value as text on a command line.
 #[test]
 fn a_number_with_a_unit_is_what_its_words_are() {
     let document = Document::parse("a.toml", TEXT, None, None).unwrap();
@@ -251,7 +251,7 @@ fn a_number_with_a_unit_is_what_its_words_are() {
     }
 }
 
-/// A value that does not fit is refused in the same words, at the same place.
+/// A wrong value is refused with the same message, at the same place.
 #[test]
 fn a_number_that_does_not_fit_is_refused_as_its_words_are() {
     let document = Document::parse("a.toml", TEXT, None, None).unwrap();

@@ -1,7 +1,7 @@
 //! The files of the repository: every scenario and model loads, and the schema and its reference describe them.
 //!
-//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` writes `docs/scenario.schema.json`, `docs/sweep.schema.json` and the
-//! tables of `docs/scenario.md` and `docs/sweep.md` anew.
+//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-scenario` rewrites `docs/scenario.schema.json`, `docs/sweep.schema.json` and the
+//! tables of `docs/scenario.md` and `docs/sweep.md`.
 use serde_json::{Value as Json, json};
 use servobench_scenario::{
     Actuator, AxisMechanics, Document, Override, Step, embedded_demo, embedded_models, json_schema, load, load_sweep,
@@ -34,7 +34,7 @@ fn scenarios() -> Vec<PathBuf> {
     all
 }
 
-/// Sweep files stand beside the scenarios that they vary.
+/// Sweep files are beside the scenarios that they vary.
 fn is_sweep(path: &Path) -> bool {
     path.to_string_lossy().ends_with(".sweep.toml")
 }
@@ -99,7 +99,7 @@ fn the_embedded_demo_needs_no_folder() {
     }
 }
 
-/// Each model stands in for the one of a scenario that has the others.
+/// Each model replaces that of a scenario that has the others.
 #[test]
 fn every_model_is_complete_and_says_where_its_values_come_from() {
     let models = embedded_models();
@@ -120,7 +120,7 @@ fn every_model_is_complete_and_says_where_its_values_come_from() {
         if ["axes/linear-slide.toml", "motors/siemens-1fn3900-4wb0.toml"].contains(&path) {
             (axis, motor) = ("model = \"linear-slide\"", "model = \"siemens-1fn3900-4wb0\"");
         }
-        // An ideal source moves along the line, and speaks volts to the drive of the same bench.
+        // An ideal source moves along the line, and takes volts from the drive of the same bench.
         if ["axes/lambrechts.toml", "axes/emps.toml", "motors/emps.toml", "drives/emps.toml"].contains(&path) {
             motor = "model = \"emps\"";
             axis = if folder == "axes" { &own } else { "model = \"emps\"" };
@@ -222,7 +222,7 @@ fn the_schema_accepts_every_scenario_and_refuses_mistakes() {
     }
 }
 
-/// The TOML text as the JSON that a schema sees.
+/// The TOML text as JSON for the schema.
 fn as_json(text: &str) -> Json {
     fn convert(value: &toml::Value) -> Json {
         match value {
@@ -238,7 +238,7 @@ fn as_json(text: &str) -> Json {
     convert(&toml::Value::Table(text.parse().unwrap()))
 }
 
-/// The first is a whole scenario, the others are parts of one that has its axis and drive.
+/// The first is a whole scenario, the others are parts of one with its axis and drive.
 #[test]
 fn the_examples_of_the_reference_load() {
     let text = read(&repository().join("docs/scenario.md"));
@@ -283,7 +283,7 @@ fn the_references_list_every_key() {
 /// The tables of the schema as Markdown, each before those inside it.
 fn describe(path: &str, table: &Json, out: &mut String) {
     let is_array = table["type"] == "array";
-    // One table or a list of them is described by the one.
+    // A table and a list of tables have the same description.
     let one = &table["anyOf"][0];
     let object = if is_array { &table["items"] } else { one.as_object().map_or(table, |_| one) };
     let in_order = object["x-order"].as_array().unwrap().iter().map(|key| key.as_str().unwrap());
@@ -316,7 +316,7 @@ fn describe(path: &str, table: &Json, out: &mut String) {
     }
 }
 
-/// What "condition" stands for, as Markdown.
+/// The meaning of "condition", as Markdown.
 fn describe_conditions(schema: &Json, out: &mut String) {
     let condition = &schema["properties"]["call"]["items"]["properties"]["start"]["anyOf"][1];
     let _ = write!(
@@ -351,7 +351,7 @@ fn describe_blocks(schema: &Json, out: &mut String) {
     }
 }
 
-/// What can be recorded, as Markdown.
+/// Recordable channels, as Markdown.
 fn describe_channels(schema: &Json, out: &mut String) {
     let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["oneOf"];
     let _ = write!(

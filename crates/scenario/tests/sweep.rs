@@ -1,4 +1,4 @@
-//! Sweep files: what they ask for, and what is said of mistakes in them.
+//! Sweep files: their requests, and the diagnostics of mistakes in them.
 use servobench_metrics::Name;
 use servobench_plant::EngineName;
 use servobench_scenario::{LoadError, Override, SweepRequest, load_sweep, parse_sweep};
@@ -9,7 +9,7 @@ fn read(text: &str) -> SweepRequest {
     parse_sweep("sweep.toml", text, Path::new("folder")).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Every point as it stands on the command line.
+/// Every point as on the command line.
 fn points(text: &str) -> Vec<String> {
     let sweep = read(text).sweep;
     let written = |index| sweep.point(index).iter().map(Setting::written).collect::<Vec<_>>().join(", ");
@@ -42,7 +42,7 @@ fn lists_and_ranges_make_a_grid() {
     assert_eq!(found[0], "setpoint.jerk=50 m/s3");
     let mass = request.sweep.point(4)[1].value.number().unwrap();
     assert!((mass - 10.0).abs() < 1e-13, "{mass}");
-    // Each is an override as the command line has it.
+    // Each is an override as on the command line.
     for index in 0..6 {
         assert!(request.sweep.point(index).iter().all(|one| one.written().parse::<Override>().is_ok()));
     }
@@ -61,7 +61,7 @@ fn values_of_any_kind_go_side_by_side() {
     assert_eq!(found, expected);
 }
 
-/// Names may begin with a digit, and a unit may stand right behind its number.
+/// Names may begin with a digit, and a unit may directly follow its number.
 #[test]
 fn a_name_that_begins_with_a_number_stays_a_name() {
     let of = |value: &str| points(&format!("{HEAD}[[vary]]\nkey = \"a\"\nvalues = \"{value}\"\n"));
@@ -87,7 +87,7 @@ fn tolerances_are_drawn() {
     let (normal, uniform, triangle) = (column(0), column(1), column(2));
     let mean = normal.iter().sum::<f64>() / 1e4;
     let sigma = (normal.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 1e4).sqrt();
-    // Of a hypercube mean and deviation are closer than those of random draws: 0.1 kg/√1e4 and 0.1 kg/√2e4.
+    // With a hypercube mean and deviation are closer than with random draws: 0.1 kg/√1e4 and 0.1 kg/√2e4.
     assert!((mean - 5.0).abs() < 1e-3 && (sigma - 0.1).abs() < 7e-4, "{mean} {sigma}");
     let range = |all: &[f64]| all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
     let ((low, high), (left, right)) = (range(&uniform), range(&triangle));
@@ -133,7 +133,7 @@ fn a_file_that_is_not_there_is_named() {
     assert_eq!(path, Path::new("no/such.toml"));
 }
 
-/// A front is over what is chosen: the machine, its disturbances and seeds are given there unless the file says otherwise.
+/// A front compares choices: the machine, its disturbances and seeds are given unless the file declares otherwise.
 #[test]
 fn the_machine_is_given_where_combinations_are_chosen() {
     let vary = |key: &str, more: &str| format!("[[vary]]\nkey = \"{key}\"\n{more}values = [1, 2]\n");
@@ -154,7 +154,7 @@ fn the_machine_is_given_where_combinations_are_chosen() {
     assert!(sweep.chosen().is_none(), "tables have every combination");
 }
 
-/// Seeds are whole numbers in each range and each draw: a scenario takes no others.
+/// Seeds are whole numbers in each range and each draw: a scenario accepts no others.
 #[test]
 fn seeds_are_whole_numbers() {
     let vary = "[[vary]]\nkey = \"motor.encoder.seed\"\n";
@@ -170,7 +170,7 @@ fn seeds_are_whole_numbers() {
     assert!(wrong.iter().any(|line| line.contains("lower to a higher whole number")), "{wrong:?}");
 }
 
-/// A range through zero has zero in it, not a remainder of rounding.
+/// A range through zero contains zero, not a remainder of rounding.
 #[test]
 fn a_range_through_zero_contains_zero() {
     let vary = "[[vary]]\nkey = \"axis.load.bias\"\nrange = { from = \"-0.1 N\", to = \"0.3 N\", count = 5 }\n";

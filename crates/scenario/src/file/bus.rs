@@ -24,12 +24,12 @@ servobench_config::choices! {
     }
 }
 
-/// What goes wrong, by its name.
+/// Kind of a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FaultName {
-    /// With the bus.
+    /// Fault of the bus.
     Bus(BusFaultName),
-    /// With the motion task.
+    /// Fault of the motion task.
     Task(TaskFaultName),
 }
 

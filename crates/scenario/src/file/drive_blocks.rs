@@ -1,4 +1,4 @@
-//! Tables of `[drive]` for blocks that answer real hardware: I²t, cogging, dead time, gains over speed.
+//! Tables of `[drive]` for imperfections of real hardware: I²t, cogging, dead time, gains over speed.
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_drive::current::dead_time;

@@ -1,4 +1,4 @@
-//! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: parts that somebody else simulates.
+//! `[axis.fmu]`, `[[fmu]]` and `[coupling]`: parts that FMUs simulate.
 use crate::name_table::{SignalTable, StartTable};
 use crate::simple::OneOf;
 use crate::table::table;

@@ -1,4 +1,4 @@
-//! `[drive.inverter]` and `[drive.link]`: the power stage as it is.
+//! `[drive.inverter]` and `[drive.link]`: the power stage of the plant.
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_base::Rate;

@@ -1,4 +1,4 @@
-//! `[motor]`: what moves the axis.
+//! `[motor]`: the motor or source of the axis.
 use crate::field::{Either, EitherMeasure};
 use crate::file::motor_effects::{
     Cogging, Connection, FluxHarmonic, FluxMap, IronLoss, Saturation, Temperature, Thermal,

@@ -1,4 +1,4 @@
-//! Parts of `[motor]`: what a real one does beside its equations.
+//! Parts of `[motor]`: effects of a real motor beyond its equations.
 use crate::simple::OneOf;
 use crate::table::table;
 use servobench_plant::pmsm::{

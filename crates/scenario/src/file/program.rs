@@ -1,4 +1,4 @@
-//! `[[program]]` and `[[disturbance]]`: what happens.
+//! `[[program]]` and `[[disturbance]]`: moves, pauses and external efforts.
 use super::setpoint::{Rockwell, Shaper, TableOfPoints};
 use crate::limit_table::LimitTable;
 use crate::list::{Many, OneOrMany};

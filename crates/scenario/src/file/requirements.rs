@@ -1,4 +1,4 @@
-//! `[requirements]` and `[[expect]]`: what a run is held to beside its limits, and the faults and incidents that belong to it.
+//! `[requirements]` and `[[expect]]`: requirements on a run in addition to its limits, and the faults and incidents that belong to it.
 use crate::diagnostic::Report;
 use crate::field::Field;
 use crate::simple::OneOf;
@@ -12,7 +12,7 @@ use servobench_config::{not_negative, positive};
 use servobench_files::suggestion;
 use servobench_metrics::{Incident, Requirement};
 
-/// The requirements that the file names, each with whether it holds.
+/// The requirements that the file names; true for those that apply.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RequirementTable(pub(crate) Vec<At<(Requirement, bool)>>);
 

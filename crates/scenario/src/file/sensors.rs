@@ -6,17 +6,17 @@ use servobench_config::Parameter;
 use servobench_plant::{self as plant, CurrentSensorParameter, EncoderErrors, EncoderParameter, Track};
 use std::iter;
 
-/// Body that an encoder sits on: its lengths and angles are in the coordinate of that body.
+/// Body that carries an encoder: its lengths and angles are in the coordinate of that body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mount {
-    /// The motor's.
+    /// The motor.
     Motor,
     /// The load.
     Load,
 }
 
 impl Mount {
-    /// `parameter` in the coordinate of the body, with an example of its own on the motor.
+    /// `parameter` in the coordinate of the body, with a separate example for the motor.
     const fn of(self, parameter: &Parameter, example_of_motor: &'static str) -> Parameter {
         match self {
             Self::Motor => parameter.of_motor(example_of_motor),
@@ -75,7 +75,7 @@ table! {
     }
 }
 
-/// The key that an encoder has on the motor only.
+/// The key of encoders on a motor only.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Commutation {
     pub(crate) offset: Slot<f64>,

@@ -1,4 +1,4 @@
-//! `[setpoint]`: what every move respects, and how set-points are generated, filtered and interpolated.
+//! `[setpoint]`: limits of all moves, and the generation, filtering and interpolation of set-points.
 use crate::list::{Automatic, Many, OneOrMany};
 use crate::simple::{OneOf, OneOfOrNone};
 use crate::table::table;

@@ -1,4 +1,4 @@
-//! `[drive.supervision]`: what the drive watches of motor and power stage.
+//! `[drive.supervision]`: supervision of motor and power stage by the drive.
 use crate::table::table;
 use servobench_drive::supervision::Parameter;
 

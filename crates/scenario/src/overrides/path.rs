@@ -6,19 +6,19 @@ use std::ops::Range;
 pub(super) struct Part {
     /// A key, or the digits of an index.
     pub(super) name: String,
-    /// Whether it stands in brackets.
+    /// True if it is in brackets.
     pub(super) is_index: bool,
-    /// Its bytes.
+    /// Its byte range.
     pub(super) place: Range<usize>,
 }
 
-/// An example, where there is no key or no value.
+/// An example for messages about a missing key or value.
 const EXAMPLE: &str = "write a key and its value, as in setpoint.jerk='200 m/s3' or program[0].move_to='100 mm'";
 
-/// The key that begins at `start` of `words`, and where its value begins, behind `=`.
+/// The key that begins at `start` of `words`, and the offset of its value, after `=`.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// The mistake, in words.
 pub(super) fn read(words: &str, start: usize) -> Result<(Vec<Part>, usize), String> {
     let mut reader = Reader { words, at: start };
     let mut path = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<(Vec<Part>, usize), Stri
     }
 }
 
-/// A key as one writes it.
+/// A key in its usual notation.
 pub(super) fn written(path: &[Part]) -> String {
     let mut text = String::new();
     for part in path {
@@ -58,7 +58,7 @@ pub(super) fn written(path: &[Part]) -> String {
     text
 }
 
-/// Whether a key needs no quotes for `c`.
+/// True if a key with `c` needs no quotes.
 const fn is_bare(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_' || c == '-'
 }
@@ -124,7 +124,7 @@ impl Reader<'_> {
                 "an element of a list is named by its number from 0 on, as in program[0].move_to='100 mm'".into()
             );
         }
-        // As it is compared with other keys: without leading zeros.
+        // Without leading zeros, for comparison with other keys.
         let digits = digits.trim_start_matches('0');
         let name = if digits.is_empty() { "0" } else { digits }.to_owned();
         Ok(Part { name, is_index: true, place: start..self.at })

@@ -1,11 +1,11 @@
-//! The value of an override: TOML where it is such, otherwise a string.
+//! The value of an override: TOML if it parses, otherwise a string.
 use crate::source::{SourceId, Span};
 use crate::tree::{Node, Number, Value, parse_one};
 
-/// The value that begins at `start` of `words`, with its places there.
+/// The value that begins at `start` of `words`, with its place there.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// The mistake, in words.
 pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
     let text = words[start..].trim();
     let at = words.len() - words[start..].trim_start().len();
@@ -16,7 +16,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
     // A document of one key whose value lies at the same bytes as on the command line.
     let document = format!("k{}={}{}", " ".repeat(start - 2), " ".repeat(at - start), text);
     match parse_one(SourceId::SCENARIO, &document) {
-        // A date is nothing that a scenario needs, and a remark behind a value would be dropped.
+        // No scenario needs a date, and a comment after a value would be dropped.
         Ok(node) if node.value != Value::Date && node.span == span => Ok(node),
         found if matches!(first, '[' | '{' | '"' | '\'') => {
             let why = found.err().unwrap_or_else(|| "there is more behind it".to_owned());
@@ -26,7 +26,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
     }
 }
 
-/// `number` in `unit`, written as `text`, which begins at `start` of the words; a pure number has an empty unit.
+/// `number` in `unit`, written as `text`, which begins at `start` of the words; the unit of a pure number is empty.
 pub(super) fn number(text: String, number: f64, unit: &str, start: usize) -> Node {
     let span = Span::new(SourceId::SCENARIO, &(start..start + text.len()));
     let value = if unit.is_empty() {

@@ -10,7 +10,7 @@ pub enum Column {
     Time,
     /// Absolute position.
     Position,
-    /// Distance from the point before, of the first point from where the axis is: the relative flag of a drive's points.
+    /// Distance from the previous point, for the first from the initial position of the axis: the relative flag of a drive's points.
     Step,
     /// Velocity at the point.
     Velocity,
@@ -22,10 +22,10 @@ pub enum Column {
     Snap,
 }
 
-/// Which columns a table has.
+/// Set of columns that a table has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Layout {
-    /// Positions, and velocities where they are known.
+    /// Positions, and optionally velocities.
     Positions,
     /// Velocities alone.
     Velocities,
@@ -34,7 +34,7 @@ pub(super) enum Layout {
 }
 
 impl Layout {
-    /// The columns that it must have; a cell of another may be empty.
+    /// The columns that it must have; a cell of another column may be empty.
     pub(super) const fn needed(self) -> [Column; 2] {
         match self {
             Self::Positions => [Column::Time, Column::Position],
@@ -43,17 +43,17 @@ impl Layout {
         }
     }
 
-    /// Whether `column` is the one that the table is of.
+    /// True if `column` holds the values of this layout.
     pub(super) fn is_value(self, column: Column) -> bool {
         self.needed()[1] == column || self == Self::Positions && column == Column::Step
     }
 
-    /// Whether a move is made of `column`; a table may have the others too.
+    /// True if a move uses `column`; a table may contain the others too.
     pub(super) fn uses(self, column: Column) -> bool {
         column == Column::Time || self.is_value(column) || self == Self::Positions && column == Column::Velocity
     }
 
-    /// A right heading.
+    /// A valid heading.
     pub(super) const fn example(self) -> &'static str {
         match self {
             Self::Positions => "time [ms],position [mm],velocity [mm/s]",
@@ -61,7 +61,7 @@ impl Layout {
         }
     }
 
-    /// The shortest right heading.
+    /// The shortest valid heading.
     pub(super) const fn shortest_example(self) -> &'static str {
         match self {
             Self::Positions => "time [ms],position [mm]",
@@ -72,7 +72,7 @@ impl Layout {
 }
 
 impl Column {
-    /// Every column, by its derivative of position behind the time.
+    /// Every column: time, then by derivative of position.
     pub(super) const ALL: [Self; 7] =
         [Self::Time, Self::Position, Self::Step, Self::Velocity, Self::Acceleration, Self::Jerk, Self::Snap];
 
@@ -88,7 +88,7 @@ impl Column {
         }
     }
 
-    /// Several of its values.
+    /// Name of several of its values.
     pub(super) const fn plural(self) -> &'static str {
         match self {
             Self::Time => "times",
@@ -101,7 +101,7 @@ impl Column {
         }
     }
 
-    /// What it may measure: linear first, then rotary.
+    /// Quantities that it may hold: linear first, then rotary.
     pub(super) fn candidates(self) -> Vec<&'static Physical> {
         match self {
             Self::Time => vec![&TIME],
@@ -113,7 +113,7 @@ impl Column {
         }
     }
 
-    /// A unit that it might have.
+    /// A unit to propose.
     pub(super) const fn proposal(self) -> &'static str {
         match self {
             Self::Time => "ms",

@@ -3,19 +3,19 @@ use super::Column;
 use crate::quantity::Scale;
 use servobench_base::Coordinate;
 
-/// What a drive counts.
+/// Counts of a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counts {
-    /// Counts in a metre or radian; below zero where it counts against the axis.
+    /// Counts per metre or radian; negative if they count against the axis.
     pub per: f64,
-    /// Whether these are lengths or angles.
+    /// Kind of the positions: lengths or angles.
     pub motion: Coordinate,
 }
 
-/// Velocities as the words of points have them.
+/// Unit of velocities in the points of drives.
 const TENTHS: &str = "0.1 counts/s";
 
-/// The scale of `unit`, which begins with counts, and which of the candidates of `column` it measures; `None` of any other unit.
+/// The scale of `unit`, if it is in counts, and the index of its quantity in the candidates of `column`; `None` for any other unit.
 pub(super) fn read_unit(column: Column, unit: &str, counts: Option<Counts>) -> Option<Result<(Scale, usize), String>> {
     if !unit.contains("counts") {
         return None;

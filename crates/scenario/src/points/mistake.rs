@@ -1,8 +1,8 @@
-//! What may be wrong with a table of points.
+//! Mistakes in a table of points.
 use super::Column;
 use thiserror::Error;
 
-/// What is wrong with a table of points, and where.
+/// A mistake in a table of points, with its place.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{line}:{column}: {mistake}")]
 pub struct PointsError {
@@ -10,71 +10,71 @@ pub struct PointsError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The mistake.
     pub mistake: PointsMistake,
 }
 
-/// What is wrong at a place of a table of points, with the way out.
+/// Mistake in a table of points, with its correction.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PointsMistake {
-    /// There is nothing.
+    /// The table is empty.
     #[error("the table is empty: begin with a heading like `{like}`")]
     NoHeading {
-        /// A right one.
+        /// A valid heading.
         like: &'static str,
     },
-    /// Something else stands between the columns.
+    /// The columns are not separated by commas.
     #[error("columns are separated by commas, not by `{found}`: write `{like}`, numbers with a point")]
     Separator {
-        /// What stands there.
+        /// The separator found.
         found: &'static str,
-        /// A right heading.
+        /// A valid heading.
         like: &'static str,
     },
-    /// A column has a name that means nothing here.
+    /// A column has an unknown name.
     #[error("unknown column `{name}`: the heading is like `{like}`")]
     UnknownColumn {
-        /// What stands there instead of a name.
+        /// The text found in place of a name.
         name: String,
-        /// A right heading.
+        /// A valid heading.
         like: &'static str,
     },
     /// A column has no unit.
     #[error("`{column}` needs its unit in brackets: write `{column} [{proposal}]`")]
     NoUnit {
-        /// Which.
+        /// The column.
         column: Column,
-        /// A unit that it might have.
+        /// A unit to propose.
         proposal: &'static str,
     },
     /// A column has no usable unit.
     #[error("`{column}` cannot be in `{unit}`: {message}")]
     Unit {
-        /// Which column.
+        /// The column.
         column: Column,
         /// Its unit.
         unit: String,
-        /// What is wrong with it, and what to write instead.
+        /// Reason and correction.
         message: String,
     },
-    /// A column is there a second time.
+    /// A column appears twice.
     #[error("there are two columns `{column}`: delete one")]
     Twice {
-        /// Which.
+        /// The column.
         column: Column,
     },
-    /// Positions are said twice.
+    /// Positions are given twice.
     #[error("`position` and `step` both say where the points are: delete one")]
     PositionAndStep,
-    /// Steps add up to a position that is no more known well.
+    /// Steps add up to a position that has lost its precision.
     #[error("the steps add up to more than 1e30 (SI): check them, and the unit in the heading")]
     TooFar,
-    /// A column that every table needs is not there.
+    /// A required column is missing.
     #[error("the column `{column}` is missing: add `{column} [{proposal}]`")]
     Missing {
-        /// Which.
+        /// The column.
         column: Column,
-        /// A unit that it might have.
+        /// A unit to propose.
         proposal: &'static str,
     },
     /// A row has more or fewer values than the heading has columns.
@@ -85,37 +85,37 @@ pub enum PointsMistake {
         /// Columns in the heading.
         expected: usize,
     },
-    /// A value is no number that can be used.
+    /// A value is not a usable number.
     #[error("`{column}` is `{text}`: {reason}")]
     Value {
-        /// In which column.
+        /// The column.
         column: Column,
-        /// What stands there.
+        /// The text of the value.
         text: String,
-        /// What is wrong with it.
+        /// Reason.
         reason: &'static str,
     },
-    /// A point is not later than the one before.
+    /// A point is not later than the previous one.
     #[error(
         "`time` is {time} s, not later than {before} s at the point before: sort the rows by time and give each a time \
          of its own"
     )]
     Order {
-        /// Its time (s).
+        /// Time of the point (s).
         time: f64,
-        /// That of the point before (s).
+        /// Time of the previous point (s).
         before: f64,
     },
-    /// There is no way from one point to another.
+    /// A single point is not a move.
     #[error("a table needs at least 2 points, this one has {points}: add the point where the move ends")]
     TooFew {
         /// Number of points.
         points: usize,
     },
-    /// There are more points than anybody means.
+    /// There are more points than intended.
     #[error("a table has at most {most} points: split it, or leave points out")]
     TooMany {
-        /// The most that are read.
+        /// Largest number of points.
         most: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! The rows of a table of points: its heading, and what stands in its cells.
+//! The rows of a table of points: its heading, and the contents of its cells.
 use super::column::{Column, Layout};
 use super::counts::{self, Counts};
 use super::mistake::{PointsError, PointsMistake};
@@ -6,7 +6,7 @@ use crate::quantity::Scale;
 use crate::reading::{self, ReadError, names};
 use servobench_files::{MOST_QUOTED, quoted};
 
-/// Characters of a unit: `0.1 counts/s` has so many.
+/// Longest unit (characters): that of `0.1 counts/s`.
 const LONGEST_UNIT: usize = MOST_QUOTED;
 
 /// A column of the heading.
@@ -15,30 +15,30 @@ pub(super) struct Head {
     pub(super) column: Column,
     pub(super) unit: String,
     scale: Scale,
-    /// Which of its candidates it measures.
+    /// Index of its quantity in the column's candidates.
     pub(super) which: usize,
-    /// Its column in characters.
+    /// Its place in characters.
     at: usize,
 }
 
 /// A cell of a row.
 #[derive(Debug, Clone, Copy)]
 struct Cell<'a> {
-    /// What stands in it, without the spaces around it.
+    /// Its contents, without surrounding spaces.
     text: &'a str,
-    /// What stands before that in the row.
+    /// The row before its contents.
     before: &'a str,
 }
 
 impl Cell<'_> {
-    /// Where its text begins, from 1.
+    /// Column in characters where its text begins, from 1.
     fn at(&self) -> usize {
         self.before.chars().count() + 1
     }
 }
 
-/// Reads a table of `most` points at most, and gives what stands in the cells of the columns that `layout` uses to `take`:
-/// nothing where one is empty.
+/// Reads a table of at most `most` points, and passes the value of each cell in the columns that `layout` uses to `take`: `None` for an
+/// empty cell.
 pub(super) fn read_rows(
     text: &str,
     layout: Layout,
@@ -111,7 +111,7 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
             return Err(fail(PointsMistake::NoUnit { column, proposal: column.proposal() }));
         };
         let refuse = |message: String| fail(PointsMistake::Unit { column, unit: quoted(unit).to_string(), message });
-        // What is wrong within a unit would be quoted with it.
+        // A message about a mistake within the unit would quote all of it.
         if unit.chars().count() > LONGEST_UNIT {
             return Err(refuse("no unit is that long".to_owned()));
         }
@@ -130,7 +130,7 @@ fn heading(line: usize, row: &str, layout: Layout, counts: Option<Counts>) -> Re
     agreeing(line, heads, layout)
 }
 
-/// `heads`, unless positions and their derivatives are those of different axes.
+/// `heads`, unless positions and their derivatives are of different kinds of axes.
 fn agreeing(line: usize, heads: Vec<Head>, layout: Layout) -> Result<Vec<Head>, PointsError> {
     if let Some(values) = heads.iter().find(|head| layout.is_value(head.column))
         && let Some(other) = heads.iter().find(|head| head.column != Column::Time && head.which != values.which)
@@ -143,7 +143,7 @@ fn agreeing(line: usize, heads: Vec<Head>, layout: Layout) -> Result<Vec<Head>, 
     Ok(heads)
 }
 
-/// The scale of `unit`, and which of the candidates of `column` it measures.
+/// The scale of `unit`, and the index of its quantity in the candidates of `column`.
 fn read_unit(column: Column, unit: &str) -> Result<(Scale, usize), String> {
     let candidates = column.candidates();
     let with = |message: &str, help: &str| if help.is_empty() { message.into() } else { format!("{message}; {help}") };
@@ -158,7 +158,7 @@ fn read_unit(column: Column, unit: &str) -> Result<(Scale, usize), String> {
     Ok((scale, which))
 }
 
-/// Gives a point to `take` that must be later than `before` (s); its time (s).
+/// Passes a point, which must be later than `before` (s), to `take`; returns its time (s).
 fn read_row(
     heads: &[Head],
     layout: Layout,
@@ -179,7 +179,7 @@ fn read_row(
             continue;
         }
         let value = number(&head.scale, cell.text).map_err(|reason| {
-            // A row of another width is told as such: its values are in the wrong columns.
+            // A row of another width is reported as such: its values are in the wrong columns.
             width(line, row, heads.len()).err().unwrap_or_else(|| {
                 wrong(line, cell.at(), PointsMistake::Value { column, text: quoted(cell.text).to_string(), reason })
             })
@@ -200,7 +200,7 @@ fn read_row(
     Ok(time)
 }
 
-/// Nothing, if `row` has `expected` values.
+/// An error unless `row` has `expected` values.
 fn width(line: usize, row: &str, expected: usize) -> Result<(), PointsError> {
     match cells(row).count() {
         found if found == expected => Ok(()),

@@ -16,7 +16,7 @@ use servobench_files::FileRole;
 use servobench_plant::{Body, Chain, Friction, Link, MjcfModel, Switches};
 use std::f64::consts::TAU;
 
-/// Inertia of a motor body that follows a prescribed motion: it does not matter, but engines want one.
+/// Inertia of a motor body that follows a prescribed motion: it has no effect, but engines require one.
 const PRESCRIBED_INERTIA: f64 = 1.0;
 
 pub(super) fn resolve(
@@ -65,8 +65,7 @@ pub(super) fn resolve(
     })
 }
 
-/// Coordinate of the motor: what its own keys say, or otherwise what the axis needs. A linear axis without a lead has a
-/// linear motor.
+/// Coordinate of the motor: from its own keys, or otherwise that required by the axis. A linear axis without a lead has a linear motor.
 pub(crate) fn motor_motion(axis: Coordinate, has_lead: bool, own: Option<Coordinate>) -> Coordinate {
     own.unwrap_or(if axis == Coordinate::Linear && !has_lead { Coordinate::Linear } else { Coordinate::Rotary })
 }
@@ -145,7 +144,7 @@ fn switches(axis: &file::Axis, motor_motion: Coordinate, report: &mut Report) ->
     if let (false, Some(span)) = (turns, given.index.span()) {
         report.error(span, "a linear motor has no index pulse", "a home switch is where homing can end");
     }
-    // Just below a full revolution rounding makes it one, which is none.
+    // Just below a full revolution, rounding yields a full one, which is zero.
     let index = given.index.optional().ok()?.copied().unwrap_or(0.0).rem_euclid(TAU) % TAU;
     let [negative, positive] = ends;
     let (negative, positive, index) = (negative.ok()?, positive.ok()?, turns.then_some(index));
@@ -166,7 +165,7 @@ fn no_bodies_besides(axis: &file::Axis, report: &mut Report) {
     }
 }
 
-/// The file as engines take it, on an axis of this transmission.
+/// The file as passed to engines, for an axis of this transmission.
 fn mjcf_file(mjcf: &file::Mjcf, transmission: f64, sources: &Sources, report: &mut Report) -> Option<MjcfModel> {
     let file = mjcf.file.at()?;
     let Some(place) = sources.place(file.span.source) else {
@@ -191,11 +190,11 @@ fn mjcf_file(mjcf: &file::Mjcf, transmission: f64, sources: &Sources, report: &m
     Some(MjcfModel { xml, path, motor_joint, load_joint, actuator, transmission, axis: None, is_smooth: false })
 }
 
-/// A body of the chain, and what couples it to the one before it.
+/// A body of the chain, and its coupling to the one before it.
 struct Placed {
     body: Body,
     link: Option<Link>,
-    /// Where its friction is written, or else the body.
+    /// Place of its friction, or else of the body.
     span: Span,
 }
 
@@ -241,7 +240,7 @@ fn bodies(
     Chain::new(chain, links).ok()
 }
 
-/// The motor's body in its own coordinate, rotor included; without inertia when none is given.
+/// The motor's body in its own coordinate, rotor included; its inertia is zero if none is given.
 fn motor_side(
     axis: &file::Axis,
     motor: &file::Motor,
@@ -277,7 +276,7 @@ fn body(name: &'static str, body: &file::Body, motion: Option<Coordinate>, repor
     Some(Placed { body: Body { friction, bias, ..free(name, motion?, inertia?) }, link: link.ok()?, span })
 }
 
-/// What couples a body to the one before it, by its own keys or by the mode in which it swings on that; `None`: it is rigid.
+/// Coupling of a body to the one before it, from its own keys or from the mode in which it oscillates on that body; `None`: rigid.
 fn coupling(body: &file::Body, inertia: Option<f64>, report: &mut Report) -> Result<Option<Link>, Reported> {
     let stiffness = one_of(&[("stiffness", body.stiffness.span()), ("frequency", body.frequency.span())], report);
     let damping = one_of(&[("damping", body.damping.span()), ("damping_ratio", body.damping_ratio.span())], report);
@@ -312,7 +311,7 @@ fn coupling(body: &file::Body, inertia: Option<f64>, report: &mut Report) -> Res
     Ok(Some(Link { stiffness, damping }))
 }
 
-/// What follows from the key at `span`, if it is of a magnitude that a key could have.
+/// A derived value, if its magnitude is one that a key could have.
 fn derived(what: &str, value: f64, span: Span, report: &mut Report) -> Result<f64, Reported> {
     let Some(objection) = objection(value, value == 0.0) else { return Ok(value) };
     report.error(span, format!("the {what} that follows from it: {objection}"), "correct its unit");
@@ -324,12 +323,12 @@ const fn free(name: &'static str, coordinate: Coordinate, inertia: f64) -> Body 
     Body { name, coordinate, inertia, transmission: 1.0, friction: Friction::NONE, bias: 0.0 }
 }
 
-/// Value of a key that is zero unless given.
+/// Value of a key that defaults to zero.
 pub(super) fn or_zero(slot: &Slot<f64>) -> Option<f64> {
     slot.optional().ok().map(|value| value.copied().unwrap_or_default())
 }
 
-/// Mass or moment of inertia, whichever the coordinate has; 0 when neither is given.
+/// Mass or moment of inertia, as fits the coordinate; 0 if none is given.
 fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Coordinate, of: &str, report: &mut Report) -> Option<f64> {
     let (fitting, other, right, wrong) = match motion {
         Coordinate::Linear => (mass, inertia, "mass", "inertia"),
@@ -343,7 +342,7 @@ fn inertia(mass: &Slot<f64>, inertia: &Slot<f64>, motion: Coordinate, of: &str, 
     or_zero(fitting)
 }
 
-/// Adds a rigidly coupled body to the one before it, whose coordinate moves the axis by `ratio`.
+/// Adds a rigidly coupled body to the one before it; `ratio` is the axis coordinate per coordinate of the latter.
 fn merge(into: &mut Body, body: &Body, ratio: f64, span: Span, report: &mut Report) {
     if let Some(friction) = into.friction.joined(&body.friction.carried(ratio)) {
         into.friction = friction;

@@ -1,13 +1,13 @@
-//! Loops that their rates cannot carry.
+//! Loops whose bandwidth is too high for their rate.
 //!
-//! A loop of bandwidth ω that acts once per period T on what integrates,
+//! A loop of bandwidth ω with period T around an integrator,
 //!
 //! ```text
 //! y(k+1) = y(k) + ωT·(r − y(k))              z − 1 + ωT = 0          stable for ωT < 2: below rate/π
 //! y(k+1) = y(k) + ωT·(r − y(k−1))            z² − z + ωT = 0         stable for ωT < 1: below rate/2π
 //! ```
-//! the second with the period that a current loop takes to compute its voltage. What else is in the loop, a faster loop, a
-//! filter, a spring, only takes from that. Source: Åström, Wittenmark, *Computer-Controlled Systems*, 3rd ed., §3.2 (Jury).
+//! the second with the period that a current loop takes to compute its voltage. Any other element of the loop (a faster loop, a
+//! filter, a spring) only lowers that bound. Source: Åström, Wittenmark, *Computer-Controlled Systems*, 3rd ed., §3.2 (Jury).
 use crate::diagnostic::Report;
 use crate::file::File;
 use crate::scenario::Actuator;
@@ -16,26 +16,26 @@ use servobench_base::{Dq, Rate};
 use servobench_drive::current::Tuning;
 use std::f64::consts::{PI, TAU};
 
-/// A loop as far as its sampling goes.
+/// Sampling of a loop.
 struct Sampled {
     name: &'static str,
     /// Bandwidth ω (rad/s).
     bandwidth: f64,
     rate: Rate,
-    /// The loop is unstable from `rate/limit` on (Hz).
+    /// Divisor of the rate: the loop is unstable from a bandwidth of `rate/limit` (Hz) on.
     limit: f64,
-    /// The same in words.
+    /// The limit in words.
     limit_in_words: &'static str,
-    /// Periods from a sample to the middle of what it causes.
+    /// Periods from a sample to the middle of its effect.
     delay: f64,
-    /// Where bandwidth and rate are written.
+    /// Places of bandwidth and rate.
     places: Vec<Option<Span>>,
 }
 
-/// Share of the rate above which a bandwidth is doubtful.
+/// Share of the rate above which a bandwidth causes a warning.
 const DOUBTFUL: f64 = 0.1;
 
-/// Doubts loops that are unstable on any axis, and those near it. They are not refused: a bench may show how a loop diverges.
+/// Warns of loops that are unstable on any axis, and of those near it. They are not refused: a bench may show how a loop diverges.
 pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     let (Some(given), Some(drive)) = (file.drive.given(), actuator.drive()) else { return };
     let params = &drive.params;
@@ -71,7 +71,7 @@ impl Sampled {
 
     fn check(&self, report: &mut Report) {
         let (bandwidth, rate) = (self.bandwidth / TAU, f64::from(self.rate.hertz()));
-        // What the scenario itself says is in question before what a model says.
+        // Values of the scenario itself are blamed before those of a model.
         let Some(place) = self.places.iter().flatten().min_by_key(|span| span.source) else { return };
         let Self { name, limit_in_words, .. } = self;
         let it = format!("the {name} loop has a bandwidth of {bandwidth:.1} Hz at a rate of {rate} Hz");

@@ -1,4 +1,4 @@
-//! The inputs of a function block, by what `servobench_plcopen` lists of them.
+//! The inputs of a function block, according to the list in `servobench_plcopen`.
 use crate::block::GivenRows;
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -13,18 +13,18 @@ use servobench_plcopen::{
     Absent, BlockInput, BlockName, Direction, Follow, Input, Pair, Table, Trigger, Value, program,
 };
 
-/// What blocks need to know of the rest of the file.
+/// Values from the rest of the file that blocks depend on.
 pub(super) struct Context<'a> {
     pub(super) defaults: &'a Defaults<'a>,
-    /// After how much the axis comes round; absent on one with ends.
+    /// Period of a modulo axis; absent for an axis with ends.
     pub(super) modulo: &'a Slot<f64>,
-    /// Whether the drive is in profile velocity.
+    /// True if the drive is in the mode profile velocity.
     pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
 }
 
 impl Context<'_> {
-    /// The inputs of `block` where a file gives `inputs`.
+    /// The inputs of `block` from those that a file gives, `inputs`.
     pub(super) fn inputs(
         &self,
         block: BlockName,
@@ -35,7 +35,7 @@ impl Context<'_> {
         let mut reading = Reading { context: self, block, inputs, said, report };
         reading.warn_beyond_the_axis();
         reading.check_jerks();
-        // Every mistake is said, so all of them are read before one counts.
+        // All inputs are read before the first error returns, so that every mistake is reported.
         let values: Vec<_> = block.inputs().iter().map(|own| (own.input, reading.value(own))).collect();
         let mut found = program::Inputs::default();
         for (input, value) in values {
@@ -48,7 +48,7 @@ impl Context<'_> {
     }
 }
 
-/// What is wrong with an input has been said.
+/// A mistake in an input has been reported.
 struct Wrong;
 
 /// A block whose inputs are being read.
@@ -61,7 +61,7 @@ struct Reading<'a, 'r> {
 }
 
 impl Reading<'_, '_> {
-    /// The value of an input, or of the limit that counts instead; `None` where it is left to the block.
+    /// The value of an input, or of the limit that replaces it; `None` where the block decides.
     fn value(&mut self, own: &BlockInput) -> Result<Option<Value<program::Rows>>, Wrong> {
         let input = own.input;
         if input == Input::Table {
@@ -92,7 +92,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// An input that the call must have.
+    /// Reports a missing input that the call must have.
     fn require(&mut self, input: Input, why: Option<&str>) {
         if matches!(self.inputs.slot(input), Slot::Absent) {
             let help = why.map_or_else(|| format!("{} needs it", self.block), str::to_owned);
@@ -100,7 +100,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// A limit of the call or of `[setpoint]`.
+    /// A limit from the call or from `[setpoint]`.
     fn limit(&self, input: Input, limit: Input) -> Slot<f64> {
         match self.inputs.number(input) {
             Slot::Absent => self.context.defaults.limit(limit).clone(),
@@ -108,7 +108,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// A limit that one of both must have.
+    /// A limit that the call or `[setpoint]` must give.
     fn needed_limit(&mut self, own: &BlockInput, limit: Input) -> Option<f64> {
         let (input, header) = (own.input, self.inputs.header);
         let slot = self.limit(input, limit);
@@ -129,7 +129,7 @@ impl Reading<'_, '_> {
         value
     }
 
-    /// A limit that may be left out; the call and `[setpoint]` then have none. One of snap needs one of jerk.
+    /// An optional limit; `None` if neither the call nor `[setpoint]` gives it. A limit of snap needs one of jerk.
     fn free_limit(&mut self, input: Input, limit: Input) -> Result<Option<f64>, Wrong> {
         let slot = self.limit(input, limit);
         if let (Input::Snap, Some(At { span, .. }), Slot::Absent) =
@@ -143,7 +143,7 @@ impl Reading<'_, '_> {
         slot.optional().map(Option::<&f64>::copied).map_err(|_| Wrong)
     }
 
-    /// A block refuses what is beyond the limits of its axis.
+    /// Warns of values beyond the limits of the axis, which a block refuses.
     fn warn_beyond_the_axis(&mut self) {
         let is_limited = self.block.inputs().iter().any(|own| matches!(own.absent, Absent::Limit(_)));
         if !is_limited || self.block.trigger() != Trigger::Execute {
@@ -162,7 +162,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// Of a block with a shape: each jerk is said in one way, and that of a trapezoid by the axis alone.
+    /// Checks the jerks of a block with a shape: each is given in a single way, and that of a trapezoid only by the axis.
     fn check_jerks(&mut self) {
         const UP: [Input; 4] = [Input::Jerk, Input::JerkOfTime, Input::JerkOfMaximum, Input::JerkTime];
         const DOWN: [Input; 4] = [
@@ -194,7 +194,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// Which way round: there are two on a modulo axis only.
+    /// Warns of a direction on an axis with ends: only a modulo axis has two directions to a position.
     fn warn_without_modulo(&mut self) {
         if let (Slot::Absent, Some(span)) = (self.context.modulo, self.inputs.slot(Input::Direction).span()) {
             let message = "`direction` is ignored: on an axis with ends one way leads to a position";
@@ -203,7 +203,7 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// A velocity or torque has no shortest way to it.
+    /// Refuses the shortest direction for a velocity or torque.
     fn refuse_shortest(&mut self) {
         if let Slot::Given(At { value: Value::Direction(Direction::Shortest), span }) =
             self.inputs.slot(Input::Direction)
@@ -220,12 +220,12 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// Whether a limit that nobody gives is one that the order of the profile does not use.
+    /// True for a limit that is not given and that the order of the profile does not use.
     fn is_left_to_the_order(&self, input: Input, limit: Input) -> bool {
         self.order_without(limit).is_some() && matches!(self.limit(input, limit), Slot::Absent)
     }
 
-    /// The order of the profile, where it is too low for a limit of `limit`.
+    /// The order of the profile, if it is too low to use `limit`.
     fn order_without(&self, limit: Input) -> Option<f64> {
         let derivative = match limit {
             Input::Jerk => 3.0,
@@ -236,7 +236,7 @@ impl Reading<'_, '_> {
         self.inputs.number(Input::Order).given().copied().filter(|order| *order < derivative)
     }
 
-    /// A limit that the call gives and the order of its profile does not use.
+    /// Warns of a limit in the call that the order of its profile does not use.
     fn warn_beyond_the_order(&mut self, input: Input) {
         let Some((order, span)) = self.order_without(input).zip(self.inputs.slot(input).span()) else { return };
         let key = input.key();
@@ -245,7 +245,7 @@ impl Reading<'_, '_> {
         self.said.once(span, say, self.report);
     }
 
-    /// The velocity at a target is one that the block may have.
+    /// Checks the velocity at the target against the velocity limit.
     fn check_end_velocity(&mut self, inputs: &program::Inputs) {
         let [end, most] = [Input::EndVelocity, Input::Velocity].map(|input| inputs.number(input));
         if let (Some(end), Some(most), Some(span)) = (end, most, self.inputs.slot(Input::EndVelocity).span())
@@ -271,7 +271,7 @@ impl Reading<'_, '_> {
         rows.map(Value::Table).ok_or(Wrong)
     }
 
-    /// The table of a profile: what is added to its values says what they are.
+    /// The table of a profile: the block's further inputs (offsets) decide the kind of its values.
     fn table(&mut self, own: &BlockInput) -> Result<Table<Vec<Pair>>, Wrong> {
         if let Absent::Refused(why) = own.absent {
             self.require(own.input, why);

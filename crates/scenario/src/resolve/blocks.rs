@@ -1,4 +1,4 @@
-//! Blocks of the firmware that answer real hardware.
+//! Blocks of the firmware for imperfections of real hardware.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
@@ -11,13 +11,13 @@ use servobench_drive::current::dead_time;
 use servobench_drive::overload::{self, Reaction};
 use servobench_drive::{Blocks, schedule};
 
-/// What the blocks need to know.
+/// Values that the blocks depend on.
 pub(super) struct Known<'a> {
     pub(super) motor: Option<&'a Motor>,
     pub(super) belief: Option<&'a Belief>,
     /// Rate of the velocity loop.
     pub(super) rate: Option<Rate>,
-    /// How long an effort of the velocity loop takes to act (s).
+    /// Time from an effort of the velocity loop to its effect (s).
     pub(super) lag: f64,
     pub(super) has_bus: bool,
 }
@@ -122,7 +122,7 @@ fn cogging(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> Resul
         report.error(ninth.span, message, "leave the smallest ones out");
         return Err(Reported);
     }
-    // Of a motor that turns the order is of its revolution, of a linear one of its electrical period.
+    // For a rotary motor the order is per revolution, for a linear one per electrical period.
     let ratio = match (report.motor, known.motor) {
         (Some(Coordinate::Linear), Some(Motor::Pmsm { motor, .. })) => motor.electrical_ratio,
         (Some(Coordinate::Linear), _) => {
@@ -157,7 +157,7 @@ fn schedule(drive: &file::Drive, report: &mut Report) -> Result<Option<schedule:
     }))
 }
 
-/// The compensation of dead time on a link that the drive believes to have `dc_link` (V).
+/// Dead-time compensation with the drive's estimate `dc_link` (V) of the link voltage.
 pub(super) fn dead_time(given: &file::Current, dc_link: f64) -> Result<Option<dead_time::Params>, Reported> {
     let Some(given) = given.dead_time_compensation.optional()? else { return Ok(None) };
     Ok(Some(dead_time::Params {

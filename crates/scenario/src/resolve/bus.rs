@@ -1,4 +1,4 @@
-//! `[bus]` and `[drive.objects]`: what is between the motion task and the drive.
+//! `[bus]` and `[drive.objects]`: the connection of the motion task to the drive.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -16,24 +16,24 @@ use servobench_motion::interpolate::Mode as InterpolationMode;
 use servobench_planner::PointTimes;
 use std::f64::consts::TAU;
 
-/// The parts that are known by now.
+/// Parts resolved so far.
 pub(super) struct Known<'a> {
     pub(super) base_rate: Option<Rate>,
-    /// Length of the run (s), as far as the file says it.
+    /// Length of the run (s), if the file gives it.
     pub(super) duration: Option<f64>,
     pub(super) actuator: Option<&'a Actuator>,
 }
 
-/// Bus cycles from the sampling of a frame to its effect, unless given: what is sampled in one cycle acts in the next.
+/// Default number of bus cycles from the sampling of a frame to its effect: a sample of one cycle acts in the next.
 const DELAY: u32 = 1;
-/// How long the master waits for the drive, unless given (s).
+/// Default time that the master waits for the drive (s).
 const DRIVE_TIMEOUT: f64 = 0.5;
-/// Time constant of the low-pass in front of the derivative, unless given, in derivative times.
+/// Default time constant of the low-pass before the derivative, as a share of the derivative time.
 const DERIVATIVE_FILTER: f64 = 0.1;
-/// Width of the counter, unless given, and whether it has a sign: the position actual value (6064h) is an `INTEGER32`.
+/// Default width of the counter, and true if it has a sign: the position actual value (6064h) is an `INTEGER32`.
 const COUNTER: (u32, bool) = (32, true);
 
-/// What is between the motion task and the drive, when there is something.
+/// The bus between the motion task and the drive, if there is one.
 #[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Option<Bus>> {
     let objects = file.drive.given().map(|drive| &drive.objects);
@@ -101,7 +101,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     }))
 }
 
-/// A bus leads to a drive that can move the axis.
+/// Refuses a bus without a drive that can move the axis.
 fn refuse_without_a_drive(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
     let (message, help) = match actuator {
         Some(Actuator::Prescribed) => ("the motor follows the set-point exactly: there is no drive on the bus", ""),
@@ -120,7 +120,7 @@ fn refuse_a_second_interpolation(file: &File, report: &mut Report) {
     }
 }
 
-/// Objects to keys that another mode has.
+/// Refuses keys that belong to another mode.
 fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
     let offsets = [("velocity_offset", given.velocity_offset.span()), ("effort_offset", given.effort_offset.span())];
     if !mode.is_cyclic() {
@@ -154,7 +154,7 @@ fn motion_every(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report
     every
 }
 
-/// Slack for late commands: what the master can keep of them is two cycles.
+/// Slack for late commands (base ticks): the master can store at most two cycles of them.
 fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, report: &mut Report) -> Option<u32> {
     let Some(at) = given.margin.at() else { return given.margin.optional().ok().map(|_| 0) };
     let margin = whole::ticks("margin", *at, known.base_rate, report)?;
@@ -166,7 +166,7 @@ fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, repo
     Some(margin)
 }
 
-/// No further than to the present.
+/// Cycles of prediction: at most up to the present.
 fn run_ahead(given: &file::Bus, report: &mut Report) -> Option<u32> {
     let interpolation = given.interpolation.optional().ok()?.copied().unwrap_or(InterpolationMode::Cubic);
     let Some(at) = given.run_ahead.at() else { return given.run_ahead.optional().ok().map(|_| 0) };
@@ -179,7 +179,7 @@ fn run_ahead(given: &file::Bus, report: &mut Report) -> Option<u32> {
     Some(at.value)
 }
 
-/// A drive that looks less often than frames come would miss some.
+/// Refuses a bus cycle shorter than the period of the drive's position loop, which would miss frames.
 fn refuse_fast_cycle(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) {
     let (Some(cycle), Some(span), Some(base_rate)) = (cycle, given.cycle.span(), known.base_rate) else { return };
     let Some(drive) = known.actuator.and_then(Actuator::drive) else { return };
@@ -190,7 +190,7 @@ fn refuse_fast_cycle(given: &file::Bus, cycle: Option<u32>, known: &Known<'_>, r
     }
 }
 
-/// The position loop of the master, where it closes it.
+/// The position loop of the master, if the master closes it.
 #[expect(clippy::option_option, reason = "a wrong gain is not the same as none")]
 fn position_loop(given: &file::Bus, mode: BusMode, report: &mut Report) -> Option<Option<PositionGains>> {
     if mode == BusMode::CyclicVelocity {
@@ -222,7 +222,7 @@ fn position_loop(given: &file::Bus, mode: BusMode, report: &mut Report) -> Optio
     Some(None)
 }
 
-/// The model behind the torque offset, which must have what it computes with, and a scale.
+/// The model behind the torque offset; the estimate must contain what it needs, and there must be a rated effort.
 fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) -> Option<EffortFeedforward> {
     let Some(at) = given.effort_offset.at() else {
         return given.effort_offset.optional().ok().map(|_| EffortFeedforward::Off);
@@ -250,7 +250,7 @@ fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Re
     Some(at.value)
 }
 
-/// Master and drive may both feed forward; together it is too much.
+/// Warns if both master and drive feed forward the same quantity.
 fn warn_of_what_is_added_twice(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
     let Some(feedforward) = actuator.and_then(Actuator::drive).map(|drive| &drive.params.feedforward) else { return };
     let velocity = given.velocity_offset.at().filter(|at| at.value && feedforward.velocity > 0.0);
@@ -278,14 +278,14 @@ fn counter(given: &file::Bus, report: &mut Report) -> Option<Counter> {
         .ok()
 }
 
-/// What a count of the bus is, for tables that are in counts; nothing is said of units that are wrong.
+/// Counts of the bus, for tables in counts; mistakes in the units are not reported here.
 pub(super) fn counts(file: &File, actuator: Option<&Actuator>, report: &Report) -> Option<Counts> {
     let mut unheard = Report { axis: report.axis, motor: report.motor, ..Report::default() };
     let DriveUnits { drive, axis } = units(file, file.bus.given()?, actuator, &mut unheard)?;
     Some(Counts { per: f64::from(drive) / axis, motion: report.axis? })
 }
 
-/// The units as given, or the increments of the encoder that closes the position loop.
+/// The units as given; the default is the increments of the encoder that closes the position loop.
 fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) -> Option<DriveUnits> {
     if let Some(units) = given.units.optional().ok()? {
         let axis = units.axis.at()?;
@@ -304,7 +304,7 @@ fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &m
             (&encoder.counts_per_rev, &encoder.step, 1.0, TAU)
         }
         Feedback::Motor => {
-            // The lead itself, not what 2π makes of it and back: units stay the decimal numbers that they are.
+            // The lead itself rather than the lead divided and multiplied by 2π: units remain exact decimal numbers.
             let per_turn = axis.lead.given().copied().unwrap_or(TAU) / gear;
             let per_step = if report.motor == Some(Coordinate::Rotary) { per_turn / TAU } else { 1.0 };
             match file.motor.given()?.encoder.optional().ok()? {
@@ -325,7 +325,7 @@ fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &m
     }
 }
 
-/// Objects to calls or steps that the mode of the bus cannot carry.
+/// Refuses calls or steps that the mode of the bus cannot carry out.
 pub(super) fn refuse_by_program(file: &File, bus: &Bus, steps: Option<&[Step]>, report: &mut Report) {
     if bus.mode.is_cyclic() {
         return;

@@ -1,4 +1,4 @@
-//! `[[bus.fault]]`: what goes wrong, in cycles of the bus or of the motion task.
+//! `[[bus.fault]]`: faults, in cycles of the bus or of the motion task.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -9,7 +9,7 @@ use servobench_fieldbus::bus::{BusFault, BusFaultKind, BusFaultName};
 use servobench_fieldbus::task::{TaskFault, TaskFaultKind, TaskFaultName};
 use std::ops::Range;
 
-/// Seed of the random numbers, unless given.
+/// Default seed of the random numbers.
 const SEED: u32 = 1;
 
 /// A fault of the bus or of the motion task.
@@ -18,8 +18,8 @@ enum Fault {
     Task(TaskFault),
 }
 
-/// The faults of a bus of `cycles` and of the motion task: base ticks in a cycle of the bus, and how many of them there are in one of
-/// the motion task's.
+/// The faults of a bus and of the motion task; `cycles` are the base ticks per bus cycle and the bus cycles per cycle of the
+/// motion task.
 pub(super) fn faults(
     given: &file::Bus,
     cycles: Option<(u32, u32)>,
@@ -73,7 +73,7 @@ fn fault(given: &file::BusFault, cycles: Option<(u32, u32)>, known: &Known<'_>, 
     })
 }
 
-/// Its time (base ticks), 0 where it has none, and its seed.
+/// Time of the fault (base ticks), 0 if it has none, and its seed.
 fn parameters(
     given: &file::BusFault,
     task_cycle: Option<u32>,
@@ -108,11 +108,11 @@ fn parameters(
         }),
     };
     let seed = given.seed.optional().ok().map(|seed| seed.copied().unwrap_or(SEED));
-    // A seed that is wrong matters where there is one.
+    // A wrong seed is an error only for a random fault.
     Some((by?, if is_random { seed? } else { SEED }))
 }
 
-/// The cycles that it concerns, each of `cycle` base ticks.
+/// The cycles affected, each of `cycle` base ticks.
 fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, report: &mut Report) -> Option<Range<u64>> {
     let start = given.start.optional().ok()?.copied().unwrap_or(0.0);
     if let (Some(at), Some(duration)) = (given.start.at(), known.duration)
@@ -149,7 +149,7 @@ fn concerned(given: &file::BusFault, cycle: Option<u32>, known: &Known<'_>, repo
     Some(first..end)
 }
 
-/// The first whole number that is not below `cycles`, but for rounding.
+/// The first whole number that is not below `cycles`, apart from rounding.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! The switches and tracks of MC_DigitalCamSwitch; what they may be is the block's own rule.
+//! The switches and tracks of MC_DigitalCamSwitch, checked by the block's own rule.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -6,9 +6,9 @@ use crate::resolve::keys::Reported;
 use crate::source::{At, Span};
 use servobench_plcopen::{BlockError, CamDirection, CamEnd, CamSwitch, TrackOptions};
 
-/// A list that is being read, once for the call and once for each of its updates.
+/// A list being read, once for the call and once for each of its updates.
 pub(super) struct Reading<'a> {
-    /// After how much the axis comes round; absent on one with ends.
+    /// Period of a modulo axis; absent for an axis with ends.
     pub(super) modulo: &'a Slot<f64>,
     pub(super) said: &'a mut Reported,
     pub(super) report: &'a mut Report,
@@ -19,7 +19,7 @@ impl Reading<'_> {
         self.said.once(span, |report| report.error(span, message, help), self.report);
     }
 
-    /// The switches of the list at `span`.
+    /// The switches in the list at `span`.
     pub(super) fn switches(&mut self, list: &[At<file::CamSwitch>], span: Span) -> Option<Vec<CamSwitch>> {
         if list.is_empty() {
             let help = "write `switches = [{ track = 0, first = …, last = … }]`";
@@ -85,7 +85,7 @@ impl Reading<'_> {
         self.known(options, |modulo| options.check(modulo), &keys)
     }
 
-    /// `value` where the block takes it; otherwise says why not, where the input of the standard is one of `keys`.
+    /// `value` if the block accepts it; otherwise reports why not, at the entry of `keys` for the input of the standard.
     fn known<T>(
         &mut self,
         value: T,

@@ -1,4 +1,4 @@
-//! When something happens: references to outputs of calls, and what can never happen.
+//! Conditions: references to outputs of calls, and conditions that can never come true.
 use crate::block::conditions;
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -10,21 +10,21 @@ use servobench_files::suggestion;
 use servobench_plcopen::program::Condition;
 use servobench_plcopen::{BlockName, Output};
 
-/// A call as others refer to it.
+/// A call as conditions refer to it.
 #[derive(Debug)]
 pub(super) struct Instance {
-    /// Empty where it cannot be known.
+    /// Empty if it is unknown.
     pub(super) name: String,
     pub(super) block: Option<BlockName>,
     pub(super) span: Span,
-    /// Where its `start` is.
+    /// Place of its `start`.
     pub(super) start: Option<Span>,
 }
 
-/// What conditions refer to.
+/// Calls and times that conditions refer to.
 pub(super) struct Context<'a> {
     pub(super) instances: &'a [Instance],
-    /// Length of the run (s), as far as the file says it.
+    /// Length of the run (s), if the file gives it.
     pub(super) duration: Option<f64>,
 }
 
@@ -75,7 +75,7 @@ impl Context<'_> {
         }
     }
 
-    /// A time within the run.
+    /// A time, which must be within the run.
     fn in_time(&self, slot: &Slot<f64>, report: &mut Report) -> Option<f64> {
         let at = slot.at()?;
         match self.duration {
@@ -87,7 +87,7 @@ impl Context<'_> {
         }
     }
 
-    /// The call and its output that `text` names: "first.Done".
+    /// The index of the call, and the output, that `text` names: "first.Done".
     fn output(&self, text: &At<String>, report: &mut Report) -> Option<(usize, Output)> {
         let (name, output) = text.value.split_once('.').map_or((&*text.value, None), |(name, rest)| (name, Some(rest)));
         let Some(call) = self.instances.iter().position(|instance| instance.name == name && !name.is_empty()) else {
@@ -110,8 +110,8 @@ impl Context<'_> {
     }
 }
 
-/// Objects to calls that wait for each other, or for themselves: none of them ever starts. Each waits for one other at most,
-/// so that whoever follows the waiting either comes to an end or round.
+/// Refuses calls that wait for each other, or for themselves: none of them would ever start. Each waits for at most one other, so
+/// that following the chain of waiting calls either ends or returns to its start.
 pub(super) fn refuse_circles(starts: &[Option<Condition>], instances: &[Instance], report: &mut Report) {
     let waits_for = |call: usize| match starts[call] {
         Some(Condition::After { call, .. }) => Some(call),
@@ -121,7 +121,7 @@ pub(super) fn refuse_circles(starts: &[Option<Condition>], instances: &[Instance
         let round = std::iter::successors(waits_for(first), |call| waits_for(*call)).take(starts.len());
         let circle: Vec<usize> = round.take_while(|call| *call != first).collect();
         let closes = circle.last().map_or(waits_for(first), |last| waits_for(*last)) == Some(first);
-        // Once is enough: at the call that comes first in the file.
+        // A circle is reported once: at the call that comes first in the file.
         if !closes || circle.iter().any(|call| *call < first) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! `[coupling]`: how FMUs and the axis exchange what they give.
+//! `[coupling]`: exchange of values between FMUs and the axis.
 use super::whole;
 use crate::diagnostic::Report;
 use crate::field::Slot;

@@ -12,7 +12,7 @@ use servobench_drive::current::Tuning;
 use servobench_drive::current::operating_point::{self, Strategy, Weakening};
 use servobench_plant::CurrentSensor;
 
-/// What the file says of the loop.
+/// The current loop of the file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CurrentLoop {
     pub(super) rate: Rate,
@@ -21,13 +21,13 @@ pub(super) struct CurrentLoop {
     pub(super) integral_times: Option<Dq>,
     /// Reference of the d axis (A, peak).
     pub(super) d_reference: f64,
-    /// How the currents of an effort are chosen.
+    /// Choice of the currents for an effort.
     pub(super) operation: operating_point::Params,
     /// Errors of the sensors.
     pub(super) sensor: Option<CurrentSensor>,
 }
 
-/// `None` where there is no current loop and none is needed.
+/// `None` if there is no current loop and none is needed.
 pub(super) fn resolve(
     drive: &file::Drive,
     known: &Known<'_>,
@@ -92,7 +92,7 @@ fn operation(given: &file::Current, report: &mut Report) -> Result<operating_poi
     Ok(operating_point::Params { strategy, weakening: is_weakened.then_some(weakening) })
 }
 
-/// It must leave the q axis some current, and the motor some torque.
+/// Reference of the d axis (A, peak). It must leave some of the current limit to the q axis, and the motor some torque.
 fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Result<f64, Reported> {
     let at = match slot {
         Slot::Absent => return Ok(0.0),
@@ -117,7 +117,7 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
     Ok(at.value)
 }
 
-/// The motor, and what the drive believes of it, must have torque with the currents that the strategy chooses.
+/// Checks that the motor, and the drive's estimate of it, have torque with the currents that the strategy chooses.
 fn has_torque(
     drive: &file::Drive,
     given: &file::Current,
@@ -159,7 +159,7 @@ fn tuning(given: &file::Current, path: &str, report: &mut Report) -> Result<Tuni
     }
 }
 
-/// Two keys that go together.
+/// Two keys that must be given together.
 fn pair(
     (d_key, d): (&str, &Slot<f64>),
     (q_key, q): (&str, &Slot<f64>),

@@ -1,4 +1,4 @@
-//! `[[disturbance]]` and `[initial]`: what takes the axis from its way.
+//! `[[disturbance]]` and `[initial]`: external efforts and the initial state.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -6,23 +6,23 @@ use crate::file::File;
 use crate::scenario::{Axis, AxisMechanics, Disturbance, DisturbedBody, Initial};
 use servobench_base::{Coordinate, Rate};
 
-/// When ticks are and how long the run is (s), as far as the file says it.
+/// Base rate and length of the run (s), if the file gives them.
 pub(super) struct Timing {
     pub(super) base_rate: Option<Rate>,
     pub(super) duration: Option<f64>,
 }
 
-/// What follows the set-point exactly, whatever acts on it.
+/// Bodies that follow the set-point exactly, regardless of disturbances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fixed {
     /// The motor.
     Motor,
-    /// The only body, which is motor and load.
+    /// The only body, both motor and load.
     Everything,
 }
 
 impl Fixed {
-    /// Of an axis whose motion is prescribed.
+    /// For an axis whose motion is prescribed.
     pub(super) fn of(axis: Option<&Axis>) -> Self {
         let has_one_body = axis.is_some_and(|axis| match &axis.mechanics {
             AxisMechanics::Bodies(chain) => chain.bodies().len() == 1,
@@ -33,7 +33,7 @@ impl Fixed {
     }
 }
 
-/// What to do about a load that cannot move on its own.
+/// Advice about a load that cannot move separately.
 const GIVE_STIFFNESS: &str = "give `stiffness` in `[axis.load]`, or a motor that is not prescribed";
 
 pub(super) fn disturbances(
@@ -91,7 +91,7 @@ fn disturbance(
     })
 }
 
-/// Objects to a disturbance that acts on no tick of the run.
+/// Refuses a disturbance that acts on no tick of the run.
 fn refuse_idle(given: &file::Disturbance, timing: &Timing, report: &mut Report) {
     if let (Some(start), Some(duration)) = (given.start.at(), timing.duration)
         && start.value >= duration
@@ -108,7 +108,7 @@ fn refuse_idle(given: &file::Disturbance, timing: &Timing, report: &mut Report) 
     }
 }
 
-/// Objects to a sine that the ticks show as a slower one, or as nothing.
+/// Refuses a sine that, sampled at the ticks, would appear as a slower one or as zero.
 fn refuse_aliased(given: &file::Disturbance, timing: &Timing, report: &mut Report) {
     let (Some(frequency), Some(base_rate)) = (given.frequency.at(), timing.base_rate) else { return };
     let most = f64::from(base_rate.hertz()) / 2.0;

@@ -1,4 +1,4 @@
-//! `[motor]` and `[drive]` together: what moves the axis, and what commands that.
+//! `[motor]` and `[drive]` together: the actuator of the axis.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -15,14 +15,14 @@ use servobench_drive::current::{Gains, q_current, voltage_limit};
 use servobench_drive::{Blocks, EffortFeedforward, Estimate, Params, Stage, delay, feedforward};
 use servobench_plant::pmsm;
 
-/// The parts that are known by now.
+/// Parts resolved so far.
 pub(super) struct Known<'a> {
     pub(super) base_rate: Option<Rate>,
     pub(super) axis: Option<&'a Axis>,
     pub(super) motor: Option<&'a Motor>,
 }
 
-/// The motor of a power stage that is off, where its teeth or its iron act on the axis.
+/// The motor of a power stage that is off, if its teeth or iron act on the axis.
 fn idle(motor: &Motor) -> Option<Box<IdleMotor>> {
     let Motor::Pmsm { motor, effects, .. } = motor else { return None };
     let acts = !effects.cogging.is_empty() || effects.iron.is_some();
@@ -118,8 +118,8 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     }
 }
 
-/// How long an effort of a velocity loop of the rate `velocity` takes to act (s): half of what it is held for beyond a period of
-/// the current loop, and the lag of that.
+/// Time from an effort of a velocity loop of the rate `velocity` to its effect (s): half of its hold time beyond a period of the
+/// current loop, and the lag of the current loop.
 fn lag(velocity: Rate, base_rate: Rate, stage: &Stage) -> f64 {
     match stage {
         Stage::Direct { .. } => velocity.period() / 2.0,
@@ -130,13 +130,13 @@ fn lag(velocity: Rate, base_rate: Rate, stage: &Stage) -> f64 {
     }
 }
 
-/// Whether the master sends an effort that is to be met by the reference, as that of the drive's own feedforward is.
+/// True if the master sends an effort. The reference then waits for it, as for that of the drive's own feedforward.
 fn is_sent(file: &File) -> bool {
     let offset = file.bus.given().and_then(|bus| bus.effort_offset.given());
     offset.is_some_and(|offset| *offset != EffortFeedforward::Off)
 }
 
-/// The current loop on a motor of which the file says this, with its largest current (A) and DC link (V).
+/// The current loop `described` in the file for this motor, with its largest current (A) and DC link (V).
 fn current_params(
     described: &current::CurrentLoop,
     estimates: Option<&file::Estimate>,
@@ -155,7 +155,7 @@ fn current_params(
     }
 }
 
-/// What the firmware consists of.
+/// Components of the firmware.
 struct Parts {
     base_rate: Rate,
     velocity: loops::VelocityLoop,
@@ -163,11 +163,11 @@ struct Parts {
     blocks: Blocks,
     feedforward: Feedforward,
     stage: Stage,
-    /// Whether the master sends an effort.
+    /// True if the master sends an effort.
     is_sent: bool,
 }
 
-/// The firmware of these parts, which believes the axis to be `estimate`.
+/// The firmware composed of `parts`, with the estimate `estimate` of the axis.
 fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut Report) -> Option<Params> {
     let Parts { base_rate, velocity, position, blocks, feedforward, stage, is_sent } = parts;
     let compensated = |value: f64| if feedforward.friction { value } else { 0.0 };
@@ -190,7 +190,7 @@ fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut R
         reference_delay: delay::Params::default(),
         stage,
     };
-    // Without effort feedforward, the drive's own or the master's, there is nothing to wait for.
+    // Without effort feedforward, the drive's or the master's, the reference does not wait.
     let is_waited_for = feedforward.effort != EffortFeedforward::Off || is_sent;
     let path = if is_waited_for { params.effort_path_delay() } else { 0.0 };
     match delay::Params::new(feedforward.delay.unwrap_or(path), params.period(params.position_every)) {
@@ -205,7 +205,7 @@ fn params(drive: &file::Drive, parts: Parts, estimate: &Estimate, report: &mut R
     Some(params)
 }
 
-/// Without `[drive]`: right for a prescribed motion only.
+/// Without `[drive]`: valid only for a prescribed motion.
 fn absent(file: &File, motor: &Motor, report: &mut Report) -> Option<Actuator> {
     if matches!(motor, Motor::Prescribed) {
         return Some(Actuator::Prescribed);
@@ -223,15 +223,14 @@ fn dc_link(drive: &file::Drive, motor: Option<&Motor>, is_used: bool, report: &m
     drive.dc_link.given().copied()
 }
 
-/// What the drive does with the motor: effort per output of an ideal source as it believes, d-axis current (A), and how it chooses
-/// that.
+/// Use of the motor by the drive: estimated effort per output of an ideal source, d-axis current (A), and the strategy for choosing it.
 struct Source {
     gain: f64,
     d_reference: f64,
     strategy: Strategy,
 }
 
-/// Largest effort that the motor can give under such a drive (motor coordinate).
+/// Largest effort of the motor with such a drive (motor coordinate).
 fn strength(motor: &Motor, used: &Source) -> f64 {
     match motor {
         Motor::Pmsm { motor, max_current, .. } => {
@@ -246,7 +245,7 @@ fn strength(motor: &Motor, used: &Source) -> f64 {
     }
 }
 
-/// The effort limit of the velocity loop: as given, and what an ideal source of the estimated gain can give.
+/// The effort limit of the velocity loop: as given, at most the effort of an ideal source at the estimated gain.
 fn max_effort(drive: &file::Drive, motor: Option<&Motor>, used: &Source, report: &mut Report) -> Option<f64> {
     use servobench_base::Coordinate::{Linear, Rotary};
     let turns = report.motor == Some(Rotary);
@@ -311,15 +310,15 @@ fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedbac
     }
 }
 
-/// What the file says of the feedforward.
+/// The feedforward of the file.
 struct Feedforward {
     /// Share of the reference velocity that is fed forward, 0 to 1.
     velocity: f64,
     interpolate: bool,
     effort: EffortFeedforward,
-    /// Whether estimated Coulomb friction and bias are fed forward too.
+    /// True if estimated Coulomb friction and bias are also fed forward.
     friction: bool,
-    /// How long the reference waits for the feedforward path (s); `None`: as long as the effort path takes.
+    /// Delay of the reference for the feedforward path (s); `None`: the delay of the effort path.
     delay: Option<f64>,
 }
 
@@ -340,7 +339,7 @@ fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
     })
 }
 
-/// The model of the effort feedforward must have what it computes with.
+/// Checks that the estimate contains all that the model of the effort feedforward needs.
 fn check_feedforward(drive: &file::Drive, belief: &Belief, model: EffortFeedforward, report: &mut Report) {
     let Some(span) = drive.feedforward.given().and_then(|feedforward| feedforward.effort.span()) else { return };
     if model != EffortFeedforward::Off && !belief.knows_inertia {

@@ -1,4 +1,4 @@
-//! `[axis.end_stops]`: what the load meets at the ends of its travel.
+//! `[axis.end_stops]`: stops at the ends of the load's travel.
 use super::disturbance::Fixed;
 use crate::diagnostic::Report;
 use crate::field::Reported;
@@ -28,7 +28,7 @@ pub(super) fn resolve(axis: &file::Axis, report: &mut Report) -> Result<Option<E
     Ok(Some(EndStops { negative: negative?, positive: positive?, stiffness, damping }))
 }
 
-/// Objects to stops that the load of `axis` cannot feel, and to a load that begins in one.
+/// Refuses stops that have no effect on the load of `axis`, and an initial position within one.
 pub(super) fn refuse(file: &File, axis: &Axis, initial: &Initial, fixed: Option<Fixed>, report: &mut Report) {
     let (Some(stops), Some(given)) = (&axis.end_stops, file.axis.given().and_then(|axis| axis.end_stops.given()))
     else {

@@ -1,4 +1,4 @@
-//! What the firmware believes of the axis and its motor: the plant, with single values overridden.
+//! The firmware's estimate of the axis and its motor: the plant, with single values overridden.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -11,14 +11,13 @@ use servobench_drive::current::MotorEstimate;
 use servobench_plant::{Chain, SourceOutput, pmsm};
 use std::f64::consts::TAU;
 
-/// The estimate and whether it holds inertias at all: of a user's own MJCF file only what `[drive.estimate]` says is
-/// known.
+/// The estimate; true if it contains inertias: for a user's own MJCF file only those given in `[drive.estimate]` are known.
 pub(super) struct Belief {
     pub(super) estimate: Estimate,
     pub(super) knows_inertia: bool,
 }
 
-/// What the firmware believes of the axis, which the file has as `written`.
+/// The firmware's estimate of the axis; `written` is the axis in the file.
 pub(super) fn of_axis(
     given: Option<&file::Estimate>,
     written: &file::Axis,
@@ -51,7 +50,7 @@ pub(super) fn of_axis(
     Some(Belief { estimate, knows_inertia })
 }
 
-/// Axis coordinate per motor coordinate as the firmware believes: with its own `lead` or `gear_ratio`.
+/// Estimated axis coordinate per motor coordinate: with the estimate's own `lead` or `gear_ratio`.
 fn believed_transmission(
     given: &file::Estimate,
     written: &file::Axis,
@@ -76,9 +75,9 @@ fn believed_transmission(
     Some(lead.map_or(1.0, |lead| lead / TAU) / gear_ratio)
 }
 
-/// What the firmware believes of its synchronous motor.
+/// The firmware's estimate of its synchronous motor.
 pub(super) fn of_motor(given: Option<&file::Estimate>, motor: &pmsm::Params) -> MotorEstimate {
-    // The firmware has its own copy of what the plant is: both may differ.
+    // The firmware has a separate copy of the plant's values: both may differ.
     let pmsm::Params { electrical_ratio, resistance, inductance, flux_linkage } = *motor;
     let mut estimate = MotorEstimate { electrical_ratio, resistance, inductance, flux_linkage };
     if let Some(given) = given.and_then(|given| given.motor.given()) {
@@ -90,12 +89,12 @@ pub(super) fn of_motor(given: Option<&file::Estimate>, motor: &pmsm::Params) -> 
     estimate
 }
 
-/// A value that is `truth` unless the drive believes otherwise.
+/// The estimated value; the default is the true one, `truth`.
 pub(super) fn or_true(given: Option<&file::Estimate>, slot: fn(&file::Estimate) -> &Slot<f64>, truth: f64) -> f64 {
     given.and_then(|given| slot(given).given().copied()).unwrap_or(truth)
 }
 
-/// Objects to estimates of what is not there.
+/// Refuses estimates of parts that do not exist.
 pub(super) fn check_motor(given: &file::Estimate, motor: &Motor, report: &mut Report) {
     let mut refuse = |span, why: &str| {
         if let Some(span) = span {

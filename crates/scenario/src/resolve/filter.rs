@@ -1,4 +1,4 @@
-//! Times on the base ticks: sample times, averages, the period of a commanding task; and the input shapers.
+//! Times in base ticks: sample times, averages, the period of a commanding task; and the input shapers.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{self, File};
@@ -35,7 +35,7 @@ pub(super) fn filter(
     Some(filter)
 }
 
-/// An input shaper, when it is not "none".
+/// An input shaper, unless it is "none".
 #[expect(clippy::option_option, reason = "a wrong shaper is not the same as none")]
 fn shaping(given: &file::Shaper, said: &mut Reported, report: &mut Report) -> Option<Option<Shaping>> {
     let kind = *given.kind.given()?;
@@ -62,7 +62,7 @@ fn shaping(given: &file::Shaper, said: &mut Reported, report: &mut Report) -> Op
     Some(Some(shaping))
 }
 
-/// The samples of a move from rest to rest, when it has some.
+/// The sampling of a move from rest to rest, if it has one.
 #[expect(clippy::option_option, reason = "a wrong sample time is not the same as none")]
 pub(super) fn grid(
     keys: &Keys<'_>,
@@ -88,7 +88,7 @@ pub(super) fn grid(
     Some(Some(Grid { sample_time, sampling, execution }))
 }
 
-/// What is between the set-point and the drive, when there is something.
+/// Interpolation between the set-point and the drive, if there is one.
 #[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
 pub(super) fn interpolation(
     file: &File,
@@ -111,7 +111,7 @@ fn whole_ticks(
 ) -> Option<f64> {
     let hertz = f64::from(base_rate?.hertz());
     match whole::number(key, time.value, hertz, "base ticks") {
-        // Not as typed: what 83.33333333 us lacks of a tick at 12 kHz would add up over the samples of a move.
+        // Not as typed: the deviation of 83.33333333 us from a tick at 12 kHz would accumulate over the samples of a move.
         Ok(ticks) => Some(ticks / hertz),
         Err((message, help)) => {
             said.once(time.span, |report| report.error(time.span, message, help), report);

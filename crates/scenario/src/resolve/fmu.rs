@@ -1,4 +1,4 @@
-//! `[axis.fmu]` and `[[fmu]]`: which files, what they are connected to, and how often.
+//! `[axis.fmu]` and `[[fmu]]`: the files, their connections and the exchange period.
 mod mechanics;
 mod sensors;
 
@@ -20,17 +20,17 @@ use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long a call of an FMU may take, unless given (s).
+/// Default time limit of a call of an FMU (s).
 const CALL_TIMEOUT: f64 = 10.0;
-/// Memory of its process, unless given (MB).
+/// Default memory limit of its process (MB).
 const MEMORY: u32 = 2048;
 
-/// What the outputs of an FMU can be.
+/// Signals that an output of an FMU can provide.
 trait Port: Copy + PartialEq + 'static {
-    /// All of them.
+    /// All signals.
     fn all() -> impl Iterator<Item = Self> + Clone;
 
-    /// The name that files write.
+    /// The name in files.
     fn name(self) -> &'static str;
 }
 
@@ -44,7 +44,7 @@ impl Port for LoopSignal {
     }
 }
 
-/// Where files are, and how long a tick is.
+/// Sources of the files, and the base rate.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) base_rate: Option<Rate>,
@@ -95,7 +95,7 @@ pub(super) fn others(
     Some(all)
 }
 
-/// An FMU without its outputs, and these: what they can be, `P` says.
+/// An FMU without its outputs, and the outputs, whose signals are of type `P`.
 fn fmu<P: Port>(
     given: &file::Fmu,
     every: u32,
@@ -192,7 +192,7 @@ fn twice(given: &file::Fmu, index: usize, port: impl Port, report: &mut Report) 
     report.error(span.unwrap_or(given.span), format!("`{}` is given twice", port.name()), "one output is one signal");
 }
 
-/// A channel, or the output of an FMU.
+/// A signal of the axis, or the output of an FMU.
 fn signal(text: &str, names: &[String]) -> Option<InputSource> {
     match text {
         "time" => return Some(InputSource::Time),
@@ -248,7 +248,7 @@ fn path(file: &Slot<String>, sources: &Sources, report: &mut Report) -> Option<P
     }
 }
 
-/// What all FMUs together give to the loop.
+/// Checks the outputs of all FMUs to the loop together.
 fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'_>, report: &mut Report) {
     let place = |fmu: usize, output: usize| -> Span {
         let one = &given[fmu];
@@ -296,7 +296,7 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
     }
 }
 
-/// An FMU in place of the drive.
+/// Checks an FMU that replaces the drive.
 fn controller(file: &File, by_voltage: bool, span: Span, actuator: Option<&Actuator>, report: &mut Report) {
     let why = "and an FMU in place of the drive cannot be together";
     refuse(&[("bus", file.bus.span()), ("call", file.call.span())], why, "the FMU is the drive", report);

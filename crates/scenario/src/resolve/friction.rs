@@ -1,4 +1,4 @@
-//! From the keys of a body's friction to what engines have of it.
+//! Converts the keys of a body's friction to the friction used by engines.
 use super::axis::or_zero;
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -20,7 +20,7 @@ fn dry(keys: &FrictionKeys<'_>, motion: Coordinate, report: &mut Report) -> Opti
     {
         let unit = if motion == Coordinate::Linear { EFFORT.linear.unit } else { EFFORT.rotary.unit };
         let [above, below] = [sliding.value, resting.value].map(|effort| format!("{effort} {unit}"));
-        // What the scenario says is in question, not the model that it stands on.
+        // A value of the scenario is blamed before one of its model.
         let (span, message) = if sliding.span.source < resting.span.source {
             (sliding.span, format!("`coulomb` is {above}, above `static`, which is {below}"))
         } else {

@@ -1,4 +1,4 @@
-//! The inputs of a call as a file writes them, and what `[setpoint]` says where a block has such an input.
+//! The inputs of a call in the file, and their defaults from `[setpoint]`.
 use crate::block::{Given, keys};
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -7,7 +7,7 @@ use crate::resolve::keys::LIMITS;
 use crate::source::{At, Span};
 use servobench_plcopen::{BlockName, Input, Value};
 
-/// The inputs of a call, or those that an update changes.
+/// The inputs of a call, or those changed by an update.
 #[derive(Clone)]
 pub(super) struct Inputs<'a> {
     slots: Vec<&'a Slot<Given>>,
@@ -24,7 +24,7 @@ impl<'a> Inputs<'a> {
         Self { slots: Input::ALL.iter().map(|input| update.inputs.slot(*input)).collect(), header: call.span }
     }
 
-    /// These, and where one is absent that of `before`.
+    /// These inputs, with those of `before` where absent.
     pub(super) fn or(&self, before: &Self) -> Self {
         let slots = self.slots.iter().zip(&before.slots).map(|(own, before)| either(own, before)).collect();
         Self { slots, header: self.header }
@@ -43,12 +43,12 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Where they are.
+    /// Places of the given inputs.
     pub(super) fn spans(&self) -> impl Iterator<Item = (Input, Span)> {
         Input::ALL.iter().zip(&self.slots).filter_map(|(input, slot)| Some((*input, slot.span()?)))
     }
 
-    /// Objects to inputs that the block does not have.
+    /// Refuses inputs that the block does not have.
     pub(super) fn refuse_others(&self, block: BlockName, report: &mut Report) {
         let keys = keys(block);
         let has = match &*keys {
@@ -61,7 +61,7 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// The limits of `[setpoint]`, as far as its order uses them.
+/// The limits of `[setpoint]` that its order uses.
 pub(super) struct Defaults<'a>([&'a Slot<f64>; 4]);
 
 impl<'a> Defaults<'a> {
@@ -72,7 +72,7 @@ impl<'a> Defaults<'a> {
         Self(std::array::from_fn(|i| if i < order { limits[i] } else { &Slot::Absent }))
     }
 
-    /// All of them; infinite where there is none.
+    /// All limits; infinite where none is given.
     pub(super) fn limits(&self) -> Option<[f64; 4]> {
         let mut limits = [f64::INFINITY; 4];
         for (limit, slot) in limits.iter_mut().zip(self.0) {
@@ -87,7 +87,7 @@ impl<'a> Defaults<'a> {
     }
 }
 
-/// The own value before the other.
+/// `own`, or `other` if absent.
 fn either<'a, T>(own: &'a Slot<T>, other: &'a Slot<T>) -> &'a Slot<T> {
     if matches!(own, Slot::Absent) { other } else { own }
 }

@@ -1,4 +1,4 @@
-//! `[drive.inverter]` and `[drive.link]`: what the inverter does beside giving the voltage that it is asked for.
+//! `[drive.inverter]` and `[drive.link]`: deviations of the inverter from an ideal voltage source.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
@@ -8,7 +8,7 @@ use crate::source::{At, Span};
 use servobench_base::{ParamError, Rate};
 use servobench_plant::inverter::{Brake, LinkParams, MOST_DEAD, Modulation, Params, Sag};
 
-/// `None` where it does nothing else, or where there is no inverter.
+/// `None` for an ideal inverter, or without an inverter.
 pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> Result<Option<Params>, Reported> {
     let Some(given) = drive.inverter.optional()? else { return Ok(None) };
     if let (Some(Motor::IdealSource { .. }), Some(span)) = (known.motor, drive.inverter.span()) {
@@ -34,7 +34,7 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
     Ok((!params.is_ideal()).then_some(params))
 }
 
-/// The carrier of pulses goes with the base tick, and the current loop samples in its middles.
+/// Checks that the carrier fits the base rate, and that the current loop samples at middles of the carrier.
 fn check_carrier(
     drive: &file::Drive,
     carrier: &At<Rate>,
@@ -65,7 +65,7 @@ fn check_carrier(
     Err(Reported)
 }
 
-/// `None` where the voltage is constant. `dc_link` is that without load (V).
+/// `None` for a constant voltage. `dc_link` is the voltage without load (V).
 pub(super) fn link(
     drive: &file::Drive,
     known: &Known<'_>,
@@ -97,7 +97,7 @@ pub(super) fn link(
         brake,
     };
     if let Err(ParamError { value, bound, .. }) = params.check() {
-        // Each key has its own bound: what is left is how the voltages of the brake lie.
+        // Each key has its own bound: the remaining mistake is the relation of the brake's voltages.
         let span = given.brake.given().and_then(|brake| brake.off.span()).unwrap_or(given.span);
         let message = format!("`off` of {value} V must be {bound}");
         report.error(span, message, "the link has `drive.dc_link` without load, and the brake has to go off above it");

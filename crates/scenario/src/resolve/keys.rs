@@ -1,4 +1,4 @@
-//! What a move says of its profile, or `[setpoint]` for all.
+//! Keys of the profile, in a move or in `[setpoint]` for all moves.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 /// Keys of the limits, velocity first.
 pub(super) const LIMITS: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
 
-/// The keys that a move and `[setpoint]` have in common.
+/// The keys that moves and `[setpoint]` share.
 #[derive(Clone, Copy)]
 pub(super) struct Keys<'a> {
     pub(super) order: &'a Slot<u32>,
@@ -29,7 +29,7 @@ pub(super) struct Keys<'a> {
     pub(super) averages: &'a Slot<Many<f64>>,
 }
 
-/// What has been said of `[setpoint]` already: once is enough for all moves.
+/// Mistakes of `[setpoint]` reported so far: each is reported once for all moves.
 #[derive(Default)]
 pub(super) struct Reported {
     missing: Vec<&'static str>,
@@ -64,7 +64,7 @@ impl<'a> Keys<'a> {
         keys_of!(setpoint)
     }
 
-    /// These, and where one is absent that of `defaults`.
+    /// These keys, with those of `defaults` where absent.
     pub(super) fn or(&self, defaults: Option<&Self>) -> Self {
         let Some(defaults) = defaults else { return *self };
         Self {
@@ -82,7 +82,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// Their names, and where they are.
+    /// Their names and places.
     pub(super) fn named(&self) -> impl Iterator<Item = (&'static str, Option<Span>)> {
         let limits = LIMITS.into_iter().zip(self.limits).map(|(key, slot)| (key, slot.span()));
         limits.chain([
@@ -100,7 +100,7 @@ impl<'a> Keys<'a> {
         ])
     }
 
-    /// The order, and the limits that it needs; `header` is that of the move.
+    /// The order, and the limits that it needs; `header` is the header of the move.
     pub(super) fn order_and_limits(
         &self,
         header: Span,
@@ -112,7 +112,7 @@ impl<'a> Keys<'a> {
             if matches!(self.order, Slot::Absent) {
                 said.missing("order", header, "2, 3 or 4", report);
             }
-            // Whatever the order is, it limits these.
+            // Any order needs these limits.
             for (key, slot) in LIMITS.into_iter().zip(self.limits).take(2) {
                 if matches!(slot, Slot::Absent) {
                     said.missing(key, header, "every move needs it", report);
@@ -126,7 +126,7 @@ impl<'a> Keys<'a> {
         Some((order, Limits { velocity, acceleration, jerk, snap }))
     }
 
-    /// The limits, of which the first `needed` must be there, and the first `used` may; `what` is the move in words.
+    /// The limits; the first `needed` are required, the first `used` are allowed; `what` describes the move.
     pub(super) fn limits(
         &self,
         needed: usize,
@@ -157,7 +157,7 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// The move's own value before that of `[setpoint]`.
+/// The value of the move, or `default` if absent.
 fn either<'a, T>(own: &'a Slot<T>, default: &'a Slot<T>) -> &'a Slot<T> {
     if matches!(own, Slot::Absent) { default } else { own }
 }

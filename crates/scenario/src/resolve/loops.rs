@@ -24,18 +24,18 @@ pub(super) struct PositionLoop {
     pub(super) gain: f64,
 }
 
-/// What the gains follow from.
+/// Values from which the gains follow.
 pub(super) struct Knowledge<'a> {
     pub(super) base_rate: Option<Rate>,
     pub(super) motor: Option<&'a Motor>,
     pub(super) belief: Option<&'a Belief>,
-    /// Largest effort that the drive asks for.
+    /// Largest effort that the drive requests.
     pub(super) max_effort: Option<f64>,
-    /// Effort per unit of output of an ideal source, as the drive believes.
+    /// Effort per unit of output of an ideal source, as estimated by the drive.
     pub(super) gain: f64,
 }
 
-/// The velocity loop above a current loop of the rate `current`; `None` where there is none or something is wrong.
+/// The velocity loop above a current loop of the rate `current`; `None` if there is none or it has a mistake.
 pub(super) fn velocity(
     drive: &file::Drive,
     known: &Knowledge<'_>,
@@ -52,7 +52,7 @@ pub(super) fn velocity(
     let path = "drive.velocity";
     need(&given.rate, path, "rate", given.span, report);
     let rate = outer_rate(&given.rate, known.base_rate, current.map(|rate| ("current", rate)), report);
-    // Inertia as the drive believes that the motor feels it, τ/α = r²·M.
+    // Inertia at the motor as estimated by the drive, τ/α = r²·M.
     let known_inertia = known.belief.filter(|belief| belief.knows_inertia);
     let inertia = known_inertia.map(|belief| belief.estimate.inertia_at_the_motor());
     let gain = match one_of(&[("bandwidth", given.bandwidth.span()), ("gain", given.gain.span())], report) {
@@ -81,7 +81,7 @@ fn velocity_gain(gain: &Slot<Either>, known: &Knowledge<'_>, report: &mut Report
     let at = gain.at()?;
     match (at.value, known.motor?) {
         (Either::First(gain), _) => Some(gain),
-        // An amplifier in volts: the force per volt, as the drive knows it, makes it effort.
+        // For an amplifier in volts, the estimated force per volt converts to effort.
         (Either::Second(volts), Motor::IdealSource { .. }) => Some(volts * known.gain),
         (Either::Second(_), _) => {
             report.error(at.span, "a gain in volts belongs to an ideal source", "give torque per velocity");
@@ -104,7 +104,7 @@ fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report
         (VelocityKind::Pi, Some(time), _) => Ok(Some(time)),
         (VelocityKind::Pi, None, Some(omega)) => Ok(Some(4.0 / omega)),
         (VelocityKind::Pi, None, None) => {
-            // With a bandwidth the missing inertia has been said already.
+            // With a bandwidth, the missing inertia has already been reported.
             if given.gain.given().is_some() {
                 let help = "it cannot be derived: the drive knows no inertia of this axis";
                 report.missing_with_help("drive.velocity", "integral_time", given.span, help);
@@ -114,7 +114,7 @@ fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report
     }
 }
 
-/// The position loop above a velocity loop of the rate `velocity`; `None` where there is none or something is wrong.
+/// The position loop above a velocity loop of the rate `velocity`; `None` if there is none or it has a mistake.
 pub(super) fn position(
     drive: &file::Drive,
     base_rate: Option<Rate>,
@@ -143,7 +143,7 @@ pub(super) fn position(
     Some(PositionLoop { rate: rate?, gain: gain? })
 }
 
-/// A rate whose loop commands the one of `inner`, so that its turns must coincide with turns of that one.
+/// A rate of a loop that commands `inner`: each of its turns must coincide with one of `inner`.
 fn outer_rate(
     slot: &Slot<Rate>,
     base_rate: Option<Rate>,

@@ -1,4 +1,4 @@
-//! How the drive measures the velocity, and the integral and derivative parts of its outer loops.
+//! The drive's velocity measurement, and the integral and derivative parts of its outer loops.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
@@ -7,7 +7,7 @@ use crate::resolve::motor::Motor;
 use servobench_drive::measurement::{Method, Params, mt, observer};
 use servobench_drive::{derivative, position as position_loop};
 
-/// Period of a timer where the file has none (s).
+/// Default period of a timer (s).
 const TIMER: f64 = 100e-9;
 
 pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> Result<Option<Params>, Reported> {
@@ -67,7 +67,7 @@ pub(super) fn acceleration(drive: &file::Drive, report: &mut Report) -> Result<O
     derivative(&given.derivative_time, &given.derivative_filter_time, report)
 }
 
-/// Integral and derivative of the position loop; `None` where it has neither.
+/// Integral and derivative of the position loop; `None` if it has neither.
 pub(super) fn position(drive: &file::Drive, report: &mut Report) -> Result<Option<position_loop::Params>, Reported> {
     let Some(given) = drive.position.optional()? else { return Ok(None) };
     let params = position_loop::Params {

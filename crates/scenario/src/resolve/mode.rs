@@ -1,11 +1,11 @@
-//! Which steps of a program a mode of operation can carry in which the drive generates the profile itself.
+//! Steps of a program that a mode of operation can carry out when the drive generates the profile.
 use crate::diagnostic::Report;
 use crate::scenario::{BusMode, Step};
 use crate::source::Span;
 use servobench_motion::online::Target;
 use servobench_planner::{Filter, Follow, Generator, Method, Replanning, Request, TableMove};
 
-/// Objects to the step at `span` when a drive in `mode` cannot do it.
+/// Refuses the step at `span` if a drive in `mode` cannot carry it out.
 pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut Report) {
     let Step::Move(step) = step else { return };
     let generator = &step.request.generator;
@@ -46,12 +46,12 @@ pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut R
     }
 }
 
-/// Whether the master plans the move and sends points of it.
+/// True if the master plans the move and sends points of it.
 const fn is_sent_as_points(mode: BusMode, generator: &Generator) -> bool {
     matches!(mode, BusMode::InterpolatedPosition) && !matches!(generator, Generator::Table(_))
 }
 
-/// Whether the step says how a master is to plan it.
+/// True if the step contains keys for planning by a master.
 fn is_planned_otherwise(request: &Request) -> bool {
     let Filter { shapers, averages } = &request.filter;
     let is_sampled = match &request.generator {

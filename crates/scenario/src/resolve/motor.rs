@@ -1,4 +1,4 @@
-//! `[motor]`: one set of parameters from whichever a data sheet gives.
+//! `[motor]`: one set of parameters from the values given in a data sheet.
 use crate::diagnostic::Report;
 use crate::field::{Either, Reported, Slot};
 use servobench_base::{Coordinate, Dq};
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// What moves the axis, before a drive is there to command it.
+/// The motor or source of the axis, without a drive.
 pub(super) enum Motor {
     /// A synchronous motor and its largest phase current, peak (A).
     Pmsm {
@@ -122,7 +122,7 @@ fn wiring(motor: &file::Motor, report: &mut Report) -> Result<Wiring, Reported> 
     Ok(Wiring { swapped: given.swapped.optional()?.copied(), open: given.open.optional()?.map(|phase| (*phase, at)) })
 }
 
-/// Electrical angle per motor coordinate: pole pairs of a motor that turns, π/τ_p of a linear one.
+/// Electrical angle per motor coordinate: pole pairs of a rotary motor, π/τ_p of a linear one.
 fn electrical_ratio(motor: &file::Motor, report: &mut Report) -> Option<f64> {
     if let (Some(pairs), Some(pitch)) = (motor.pole_pairs.span(), motor.pole_pitch.span())
         && pairs.source == pitch.source
@@ -167,7 +167,7 @@ fn inductances(motor: &file::Motor, report: &mut Report) -> Option<Dq> {
     }
 }
 
-/// ψ from what is given: itself, or per ampere of amplitude `K_t = 1.5·p·ψ`, or line to line `K_e = √3·p·ψ`; with π/τ_p
+/// ψ from the given key: itself, or per ampere of amplitude `K_t = 1.5·p·ψ`, or line to line `K_e = √3·p·ψ`; with π/τ_p
 /// for p in a linear motor.
 fn flux_linkage(motor: &file::Motor, electrical_ratio: Option<f64>, report: &mut Report) -> Option<f64> {
     let constant = match report.motor? {

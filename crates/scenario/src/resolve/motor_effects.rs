@@ -1,4 +1,4 @@
-//! Parts of `[motor]`: what a real one does beside its equations.
+//! Parts of `[motor]`: effects of a real motor beyond its equations.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
@@ -15,10 +15,10 @@ use servobench_plant::pmsm::{
 };
 use std::f64::consts::TAU;
 
-/// The effects of `motor`, whose own parameters are `params`.
+/// The effects of `motor`; `params` are its parameters.
 ///
 /// # Errors
-/// [`Reported`] when a key is wrong.
+/// [`Reported`] for a wrong key.
 pub(super) fn resolve(
     motor: &file::Motor,
     params: &pmsm::Params,
@@ -42,7 +42,7 @@ pub(super) fn resolve(
     })
 }
 
-/// Objects to what is given in parts of the magnets' flux linkage where there is none.
+/// Refuses values relative to the magnets' flux linkage for a motor without magnets.
 fn refuse_without_magnets(motor: &file::Motor, params: &pmsm::Params, report: &mut Report) -> Result<(), Reported> {
     if params.flux_linkage > 0.0 {
         return Ok(());
@@ -76,10 +76,10 @@ fn refuse_without_magnets(motor: &file::Motor, params: &pmsm::Params, report: &m
     result
 }
 
-/// All of a list that may be absent.
+/// All items of a list that may be absent.
 fn each<T, U>(slot: &Slot<Many<T>>, resolved: impl FnMut(&At<T>) -> Result<U, Reported>) -> Result<Vec<U>, Reported> {
     let Some(all) = slot.optional()? else { return Ok(Vec::new()) };
-    // Every item, so that the mistakes of all are found.
+    // Every item is resolved, so that the mistakes in all items are found.
     let all: Vec<Result<U, Reported>> = all.0.iter().map(resolved).collect();
     all.into_iter().collect()
 }
@@ -182,7 +182,7 @@ fn network(given: &file::Thermal) -> Result<ThermalNetwork, Reported> {
     })
 }
 
-/// Magnets that the data sheet and the map have so different are worth a word.
+/// Relative difference of flux linkage between data sheet and map that causes a warning.
 const MAGNETS_DIFFER: f64 = 0.1;
 
 fn flux_map(
@@ -251,7 +251,7 @@ fn table(
     Ok(map)
 }
 
-/// Warnings of a table that may be that of another motor, or too small.
+/// Warns of a table that may belong to another motor, or is too small.
 fn doubtful(motor: &file::Motor, params: &pmsm::Params, data: &FluxData, map: &FluxMap, report: &mut Report) {
     let Some(span) = motor.flux_map.span() else { return };
     let (of_map, own) = (map.flux(Dq::default()).d, params.flux_linkage);

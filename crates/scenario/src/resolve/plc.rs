@@ -1,4 +1,4 @@
-//! `[plc]` and `[[call]]`: the PLC program, and what it needs of the rest of the file.
+//! `[plc]` and `[[call]]`: the PLC program, with its requirements on the rest of the file.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file;
@@ -12,18 +12,18 @@ use crate::source::{At, Sources, Span};
 use servobench_plcopen::program::{Call, Condition, Update};
 use servobench_plcopen::{BlockName, BufferMode, Input, Trigger, Value};
 
-/// What the calls need to know of the rest of the file.
+/// Values from the rest of the file that calls depend on.
 pub(super) struct Known<'a> {
-    /// Length of the run (s), as far as the file says it.
+    /// Length of the run (s), if the file gives it.
     pub(super) duration: Option<f64>,
-    /// After how much the axis comes round; absent on one with ends.
+    /// Period of a modulo axis; absent for an axis with ends.
     pub(super) modulo: &'a Slot<f64>,
-    /// Whether the drive is in profile velocity.
+    /// True if the drive is in the mode profile velocity.
     pub(super) is_told_velocities: bool,
     pub(super) sources: &'a Sources,
 }
 
-/// The PLC program, when there is one.
+/// The PLC program, if there is one.
 #[expect(clippy::option_option, reason = "a wrong program is not the same as none")]
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Option<Plc>> {
     let calls = match &file.call {
@@ -67,7 +67,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     Some(Some(Plc { homing_required, velocity_ramps, limits: defaults.limits()?, calls: calls? }))
 }
 
-/// Objects to what does not go with calls, and says what they need.
+/// Refuses tables that exclude calls, and reports missing ones that calls need.
 fn check_surroundings(file: &File, calls: &[At<file::Call>], report: &mut Report) {
     let Some(first) = calls.first().map(|call| call.value.span) else { return };
     if file.program.given().is_some_and(|program| !program.0.is_empty()) {
@@ -117,7 +117,7 @@ fn instances(calls: &[At<file::Call>], report: &mut Report) -> Vec<Instance> {
     instances
 }
 
-/// An instance has a name as programs write it (IEC 61131-3, identifiers).
+/// Checks that the name of an instance is an identifier (IEC 61131-3).
 fn check_name(name: &At<String>, report: &mut Report) {
     let mut letters = name.value.chars();
     let begins = letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == '_');
@@ -127,7 +127,7 @@ fn check_name(name: &At<String>, report: &mut Report) {
     }
 }
 
-/// Says what will be refused when the blocks are executed: whoever wants to see that is not held up.
+/// Warns of calls that will be refused at execution: not an error, since that may be the purpose of the scenario.
 fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mut Report) {
     let has = |block| calls.iter().any(|call| call.value.block.given() == Some(&block));
     if calls.iter().any(|call| call.value.block.given().is_none()) {
@@ -159,7 +159,7 @@ fn warn_of_refusals(calls: &[At<file::Call>], homing_required: bool, report: &mu
     }
 }
 
-/// When it starts, and the call.
+/// The start condition, and the call.
 fn call(
     given: &file::Call,
     name: &str,
@@ -200,7 +200,7 @@ fn call(
     (start, call())
 }
 
-/// How long `start` is waited for (s).
+/// Time limit of the wait for `start` (s).
 fn timeout(given: &file::Call, start: Option<Condition>, duration: Option<f64>, report: &mut Report) -> Option<f64> {
     let at = match &given.timeout {
         Slot::Absent => return Some(f64::INFINITY),
@@ -245,7 +245,8 @@ fn updates(
     updates.into_iter().collect()
 }
 
-/// Inputs are latched at the rising edge of `Execute` unless `ContinuousUpdate` is TRUE (section 2.4 of the standard).
+/// Refuses updates of latched inputs: those are taken at the rising edge of `Execute` unless `ContinuousUpdate` is TRUE (section 2.4 of the
+/// standard).
 fn refuse_updates(given: &file::Call, block: BlockName, span: Span, report: &mut Report) {
     if block.follows_inputs() {
         return;

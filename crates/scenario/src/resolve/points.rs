@@ -1,4 +1,4 @@
-//! A table of points, and how it is followed.
+//! A table of points, and the method by which it is followed.
 use crate::access::Refused;
 use crate::diagnostic::Report;
 use crate::field::Slot;
@@ -14,7 +14,7 @@ use servobench_motion::position_profile::PlateauShare;
 use servobench_motion::pvt::Knot;
 use servobench_planner::{CommandRate, Follow, FollowKind, Positioning, TableMove, Velocities, VelocitiesKind};
 
-/// The move, and what its positions count from; `limits` are velocity and acceleration, where [`chooses_by_limits`] says so.
+/// The move, and the origin of its positions; `limits` are velocity and acceleration, needed if [`chooses_by_limits`].
 pub(super) fn resolve(
     table: &At<TableOfPoints>,
     limits: Option<[f64; 2]>,
@@ -31,7 +31,7 @@ pub(super) fn resolve(
     Some((TableMove { knots: knots(&points?), velocities: velocities?, follow: follow? }, positioning))
 }
 
-/// Whether velocity and acceleration choose how the table is followed.
+/// True if the method depends on limits of velocity and acceleration.
 pub(super) fn chooses_by_limits(table: &TableOfPoints) -> bool {
     matches!(table.plateau_share.given(), Some(Automatic::Auto))
 }
@@ -57,7 +57,7 @@ fn knots(points: &Points) -> Vec<Knot> {
     both.map(|(i, (t, x))| Knot { t: *t, x: *x, v: velocity(i) }).collect()
 }
 
-/// What `read` makes of the text of `file`, when it is for an axis of this kind; `values` are its values in words.
+/// Result of `read` for the text of `file`, if it fits the coordinate of the axis; `values` names its values in words.
 pub(super) fn read<T>(
     file: &At<String>,
     values: &str,

@@ -9,7 +9,7 @@ use crate::source::{At, Sources};
 use servobench_planner::{Follow, FollowKind, Positioning, VelocitiesKind};
 use servobench_plcopen::{Follow as ProfileFollow, Pair};
 
-/// Positions, and what they count from.
+/// Positions, and their origin.
 pub(super) fn positions(
     table: &At<TableOfPoints>,
     sources: &Sources,
@@ -73,7 +73,7 @@ fn pairs(file: &At<String>, times: &[f64], values: &[f64], report: &mut Report) 
     Some(both.map(|((time, before), value)| Pair { delta_time: time - before, value: *value }).collect())
 }
 
-/// How an axis goes from position to position that is told velocities, or positions.
+/// The method by which an axis follows positions; `is_told_velocities` is true if the drive receives velocities instead of positions.
 pub(super) fn follow(
     table: &At<TableOfPoints>,
     is_told_velocities: bool,
@@ -110,7 +110,7 @@ pub(super) fn follow(
         }
         Some(FollowKind::Steps) if is_told_velocities => {
             refuse(&[("plateau_share", own.plateau_share.span())], "is for \"plateaus\"", "", report);
-            // A velocity in each cycle, unless fewer are asked for.
+            // One velocity per cycle, or the given lower rate.
             Some(own.command_rate.optional().ok()?.map_or(ProfileFollow::Spline, |rate| ProfileFollow::Steps(*rate)))
         }
         rule => {

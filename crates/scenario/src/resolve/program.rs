@@ -11,18 +11,18 @@ use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::{DirectionalLimits, Sides, Target};
 use servobench_planner::{Filter, Follow, Generator, PointToPoint, Positioning, Replanning, Request, TableMove};
 
-/// What the steps need to know of the rest of the file.
+/// Values from the rest of the file that steps depend on.
 struct Known<'a> {
     base_rate: Option<Rate>,
-    /// Whether there is a settling window.
+    /// True if there is a settling window.
     has_window: bool,
     sources: &'a Sources,
 }
 
-/// What happens before a step.
+/// The kind of the preceding step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Before {
-    /// Nothing that could be broken off.
+    /// No motion that could be aborted.
     Pause,
     /// A move that ends at rest.
     Move,
@@ -42,7 +42,7 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, rep
         before = match &resolved {
             Some(Step::Move(step)) if step.request.generator.ends_in_motion() => Before::Motion,
             Some(Step::Wait(_)) => Before::Pause,
-            // Where it has not become clear what it is, nothing that follows is to be blamed for it.
+            // A step with mistakes counts as a move to rest, so that the steps after it are not blamed.
             Some(Step::Move(_)) | None => Before::Move,
         };
         steps.push(resolved);
@@ -53,8 +53,8 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, rep
     steps.into_iter().collect()
 }
 
-/// Objects to the step whose pauses and given durations lead beyond the longest run. How long the other moves last is
-/// known when they are planned.
+/// Refuses the step at which given pauses and durations exceed the longest run. The durations of other moves are only known after
+/// planning.
 fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
     let mut end = 0.0;
     for step in program {
@@ -69,7 +69,7 @@ fn refuse_endless(program: &[At<file::ProgramStep>], report: &mut Report) {
     }
 }
 
-/// What a step does.
+/// The action of a step.
 enum Does {
     To(Option<f64>, Positioning),
     Velocity(Option<f64>),
@@ -141,7 +141,7 @@ fn step(
     Some(Step::Move(step))
 }
 
-/// Keys of moves that say nothing of their profile.
+/// Keys of moves that do not concern their profile.
 fn of_moves(step: &file::ProgramStep) -> impl Iterator<Item = (&'static str, Option<Span>)> {
     [
         ("end_velocity", step.end_velocity.span()),
@@ -153,7 +153,7 @@ fn of_moves(step: &file::ProgramStep) -> impl Iterator<Item = (&'static str, Opt
     .into_iter()
 }
 
-/// Objects to keys that `what` does not have.
+/// Refuses keys that `what` does not have.
 fn no_keys(keys: impl IntoIterator<Item = (&'static str, Option<Span>)>, what: &str, report: &mut Report) {
     for (key, span) in keys {
         if let Some(span) = span {
@@ -162,18 +162,18 @@ fn no_keys(keys: impl IntoIterator<Item = (&'static str, Option<Span>)>, what: &
     }
 }
 
-/// A move that is being resolved.
+/// A move being resolved.
 struct Context<'a> {
     step: &'a file::ProgramStep,
-    /// What the step says itself.
+    /// Keys of the step itself.
     own: &'a Keys<'a>,
-    /// What holds, the step's own before that of `[setpoint]`.
+    /// Keys in effect: the step's own, or those of `[setpoint]`.
     keys: &'a Keys<'a>,
     before: Before,
     known: &'a Known<'a>,
 }
 
-/// A move without what is common to all of them.
+/// A move without the parts common to all moves.
 struct Moved {
     generator: Generator,
     positioning: Positioning,
@@ -288,7 +288,7 @@ impl Context<'_> {
         Some(Moved { generator: Generator::Table(table), positioning, hold: 0.0 })
     }
 
-    /// The limits by which a share of plateaus is chosen.
+    /// The limits from which the share of plateaus is chosen.
     fn velocity_and_acceleration(&self, said: &mut Reported, report: &mut Report) -> Option<[f64; 2]> {
         for (key, slot) in LIMITS.into_iter().zip(self.keys.limits).take(2) {
             if matches!(slot, Slot::Absent) {
@@ -299,13 +299,13 @@ impl Context<'_> {
         Some([*velocity?, *acceleration?])
     }
 
-    /// Where it says that the move starts or ends in motion.
+    /// Place of the key by which the move starts or ends in motion.
     fn in_motion(&self) -> Option<Span> {
         let starts = (self.before == Before::Motion).then_some(self.step.span);
         self.step.aborts_after.span().or(self.step.end_velocity.span()).or(starts)
     }
 
-    /// Objects to what does not fit how the move starts and ends.
+    /// Refuses keys that do not fit the start and the end of the move.
     fn check_ends(&self, step: &MoveStep, report: &mut Report) {
         if let (Before::Pause, Some(span)) = (self.before, self.step.aborts_after.span()) {
             report.error(span, "there is no move to abort", "give the step before a move, or leave `aborts_after` out");

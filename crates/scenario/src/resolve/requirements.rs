@@ -10,19 +10,19 @@ use file::ExpectedOn;
 use servobench_files::suggestion;
 use servobench_metrics::{Expectation, Incident, Occasion, Tolerances};
 
-/// What the expectations need to know of the rest of the file.
+/// Values from the rest of the file that expectations depend on.
 pub(super) struct Known<'a> {
-    /// Length of the run (s), as far as the file says it.
+    /// Length of the run (s), if the file gives it.
     pub(super) duration: Option<f64>,
     pub(super) has_bus: bool,
     pub(super) plc: Option<&'a Plc>,
-    /// True where the travel has ends: `[axis.end_stops]`, or those of joints in a model of the user's own.
+    /// True if the travel has ends: `[axis.end_stops]`, or limits of joints in a user's own model.
     pub(super) has_ends: bool,
-    /// True where the motor has a thermal model.
+    /// True if the motor has a thermal model.
     pub(super) warms_up: bool,
 }
 
-/// What the run is held to.
+/// Requirements on the run.
 pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Option<Requirements> {
     let named = file.requirements.optional().ok()?.map_or(&[][..], |table| &table.0);
     let lifted = named.iter().filter(|named| !named.value.1).map(|named| named.value.0).collect();
@@ -75,7 +75,7 @@ fn expectation(
     Some(Expectation { on, from, to })
 }
 
-/// Reports keys that say nothing here.
+/// Reports keys that do not apply here.
 fn foreign(keys: &[(&str, Option<Span>)], where_they_belong: &str, report: &mut Report) {
     for (key, span) in keys {
         if let Some(span) = span {
@@ -84,7 +84,7 @@ fn foreign(keys: &[(&str, Option<Span>)], where_they_belong: &str, report: &mut 
     }
 }
 
-/// A key that this kind of expectation needs.
+/// A key required by this kind of expectation.
 fn needed<'a, T>(slot: &'a Slot<T>, key: &str, span: Span, report: &mut Report) -> Option<&'a At<T>> {
     if matches!(slot, Slot::Absent) {
         report.error(span, format!("missing `{key}` in `expect`"), "");
@@ -112,7 +112,7 @@ fn fault(given: &file::Expect, span: Span, known: &Known<'_>, report: &mut Repor
         "axis" if known.plc.is_none() => {
             Some("only function blocks have an axis with states: name the drive or the link")
         }
-        // The names of the link's faults are known where the loop is built.
+        // The names of the link's faults are only known where the loop is built.
         "axis" | "link" => None,
         "drive" if !is_code => Some("write the error code of the drive (603Fh): four digits and an h, \"8611h\""),
         _ if !is_code => Some("write the `ErrorID` of the block: four digits and an h, \"2002h\""),
@@ -125,7 +125,7 @@ fn fault(given: &file::Expect, span: Span, known: &Known<'_>, report: &mut Repor
 }
 
 impl Known<'_> {
-    /// Remedy where the axis lacks what an incident needs.
+    /// Remedy if the axis lacks what an incident requires.
     const fn rules_out(&self, incident: Incident) -> Option<&'static str> {
         match incident {
             Incident::EndStop if !self.has_ends => Some("give `[axis.end_stops]`, or leave `[[expect]]` out"),

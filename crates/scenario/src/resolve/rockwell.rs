@@ -7,14 +7,14 @@ use crate::source::At;
 use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
 use servobench_planner::Rockwell;
 
-/// The limits of a move that Rockwell's takes as operands.
+/// Operands of Rockwell's move that are limits of moves in general.
 pub(super) struct Operands<'a> {
-    /// Those of velocity and acceleration (SI), when they are there.
+    /// Limits of velocity and acceleration (SI), if given.
     pub(super) limits: Option<[f64; 2]>,
     pub(super) acceleration: &'a Slot<f64>,
-    /// Jerk in the table that `rockwell` is in, which must not contradict it.
+    /// Jerk in the table that contains `rockwell`, which must not contradict it.
     pub(super) jerk_beside: &'a Slot<f64>,
-    /// Jerk, wherever it is said.
+    /// Jerk, from any table.
     pub(super) jerk: &'a Slot<f64>,
 }
 
@@ -75,14 +75,14 @@ pub(super) fn resolve(
         report.error(keys.span, format!("{what} needs `maximum_jerk`"), "that for which the axis is configured");
         return None;
     }
-    // Where nothing asks for it there need not be one.
+    // Not required if no operand depends on it.
     let [acceleration, deceleration_jerk] = [maximum, maximum_down].map(|jerk| jerk.unwrap_or(f64::INFINITY));
     let maximum = MaximumJerk { acceleration, deceleration: deceleration_jerk };
     let ([speed, acceleration], distance, deceleration) = (operands.limits?, distance?, deceleration?);
     Some(Rockwell { operands: Move { distance, speed, acceleration, deceleration, shape }, maximum })
 }
 
-/// The speed of the master, which jerk in master units needs; it is not looked at without one.
+/// The speed of the master, required by jerk in master units; otherwise it is not used.
 fn master_speed(own: &file::Rockwell, report: &mut Report) -> f64 {
     let in_master_units = own.jerk_master_units.span().or(own.deceleration_jerk_master_units.span());
     match (in_master_units, own.master_speed.span()) {
@@ -102,10 +102,10 @@ fn master_speed(own: &file::Rockwell, report: &mut Report) -> f64 {
     own.master_speed.given().copied().unwrap_or(f64::NAN)
 }
 
-/// The jerk as one of five keys says it: value, part of the time, part of the maximum, time, master units.
+/// The jerk from one of five keys: value, share of the time, share of the maximum, time, master units.
 ///
 /// # Errors
-/// When that has been objected to.
+/// A mistake that has been reported.
 fn said_jerk(
     keys: [(&'static str, &Slot<f64>); 5],
     master_speed: f64,

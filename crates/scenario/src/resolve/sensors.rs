@@ -1,4 +1,4 @@
-//! `[motor.encoder]`, `[drive.load_encoder]`, `[drive.current.sensor]`: sensors and how they err.
+//! `[motor.encoder]`, `[drive.load_encoder]`, `[drive.current.sensor]`: sensors and their errors.
 use crate::diagnostic::Report;
 use crate::field::{Reported, Slot};
 use crate::file;
@@ -80,7 +80,7 @@ fn need_period(period: Option<f64>, keys: &file::Encoder, report: &mut Report) -
     })
 }
 
-/// The disc of an eccentric encoder is read at a radius that is larger than its eccentricity.
+/// Checks that the disc of an eccentric encoder is read at a radius larger than its eccentricity.
 fn check_eccentricity(errors: &EncoderErrors, keys: &file::Encoder, report: &mut Report) -> Result<(), Reported> {
     let EncoderErrors { eccentricity, radius, .. } = *errors;
     if eccentricity == 0.0 {
@@ -99,7 +99,7 @@ fn check_eccentricity(errors: &EncoderErrors, keys: &file::Encoder, report: &mut
     Ok(())
 }
 
-/// The encoder of a synchronous motor of `electrical_ratio`, for whose commutation it is read, too.
+/// The encoder of a synchronous motor of `electrical_ratio`, which also serves commutation.
 pub(super) fn with_commutation(
     encoder: Encoder,
     slot: &Slot<file::Encoder>,
@@ -111,7 +111,7 @@ pub(super) fn with_commutation(
     Ok(Encoder { errors: errors.errs().then_some(errors), ..encoder })
 }
 
-/// An ideal source is not commutated.
+/// Refuses a commutation offset: an ideal source is not commutated.
 pub(super) fn refuse_commutation(slot: &Slot<file::Encoder>, report: &mut Report) {
     if let Some(given) = slot.given() {
         let why = "belongs to a synchronous motor, this is an ideal source";
@@ -119,7 +119,7 @@ pub(super) fn refuse_commutation(slot: &Slot<file::Encoder>, report: &mut Report
     }
 }
 
-/// `None` where the sensors do not err.
+/// `None` for sensors without errors.
 pub(super) fn current(
     slot: &Slot<file::CurrentSensor>,
     base_rate: Option<Rate>,

@@ -1,6 +1,6 @@
-//! What must fit into the length of the run: the program, and what is measured.
+//! Checks that the program and the measures fit into the length of the run.
 //!
-//! How long a move lasts is known when it is planned, which is not done here. What is known is how long it lasts at least:
+//! The duration of a move is known after planning, which is not done here. Its lower bound is known:
 //!
 //! ```text
 //! T ≥ x/v + v/a   (v²/a ≤ x)     T ≥ 2·√(x/a)   (otherwise)
@@ -12,11 +12,11 @@ use crate::scenario::Step;
 use servobench_motion::Limits;
 use servobench_planner::{Generator, Positioning};
 
-/// Shorter by rounding only.
+/// Relative tolerance for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Objects to what cannot be in time; `steps` are those of the file, when all of them are right. A run that ends within its
-/// program is a run, but nobody should be surprised by it.
+/// Warns of a program that does not fit, and reports measures beyond the end; `steps` are those of the file, if all are valid. A run
+/// may end within its program, but not without a warning.
 pub(super) fn check(file: &File, steps: Option<&[Step]>, report: &mut Report) {
     let Some(run) = file.run.given().and_then(|run| run.duration.at()) else { return };
     if let Some(least) = steps.map(least_program)
@@ -33,7 +33,7 @@ pub(super) fn check(file: &File, steps: Option<&[Step]>, report: &mut Report) {
     }
 }
 
-/// How long the program lasts at least (s).
+/// Shortest duration of the program (s).
 fn least_program(steps: &[Step]) -> f64 {
     let (mut end, mut position) = (0.0, 0.0);
     for (k, step) in steps.iter().enumerate() {
@@ -57,7 +57,7 @@ fn least_program(steps: &[Step]) -> f64 {
         };
         end += aborted_after.or(step.request.duration).unwrap_or_else(|| match generator {
             Generator::PointToPoint(asked) => least_move(&asked.limits, position - from),
-            // What it makes of its start in motion, or of its jerk, is for the planner to say.
+            // Only the planner knows the effect of a start in motion, or of its jerk.
             Generator::Replanning(_) | Generator::Rockwell(_) => step.hold,
             Generator::Table(table) => {
                 table.knots.last().map_or(0.0, |last| last.t) - table.knots.first().map_or(0.0, |first| first.t)
@@ -67,7 +67,7 @@ fn least_program(steps: &[Step]) -> f64 {
     end
 }
 
-/// How long a move over `distance` lasts at least (s).
+/// Shortest duration of a move over `distance` (s).
 fn least_move(limits: &Limits, distance: f64) -> f64 {
     let (Limits { velocity, acceleration, .. }, distance) = (*limits, distance.abs());
     if velocity * velocity <= acceleration * distance {

@@ -7,10 +7,10 @@ use crate::source::Span;
 use servobench_base::Rate;
 use servobench_drive::filter::{Filter, MOST, Params};
 
-/// Damping ratio of poles where none is given.
+/// Default damping ratio of poles.
 const DAMPING: f64 = 0.7;
 
-/// The filters of the file in a velocity loop of the rate `rate`; what they lack of it, when that is not known, goes unsaid.
+/// The filters of the file for a velocity loop of the rate `rate`; if that is unknown, frequencies are not checked against it.
 pub(super) fn resolve(drive: &file::Drive, rate: Option<Rate>, report: &mut Report) -> Result<Params, Reported> {
     let Some(given) = drive.filter.optional()? else { return Ok(Params::default()) };
     if let Some(fifth) = given.0.get(MOST) {
@@ -72,7 +72,7 @@ fn filter(given: &TorqueFilter, rate: Option<Rate>, report: &mut Report) -> Resu
     })
 }
 
-/// What is sampled knows no frequency beyond half its rate.
+/// Checks that a frequency is below half the sampling rate.
 fn below_half(key: &str, slot: &Slot<f64>, rate: Option<Rate>, report: &mut Report) -> Result<(), Reported> {
     let (Some(at), Some(rate)) = (slot.at(), rate) else { return Ok(()) };
     let half = f64::from(rate.hertz()) / 2.0;

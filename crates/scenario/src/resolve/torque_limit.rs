@@ -1,7 +1,7 @@
 //! Limits of `torque_peak` that the drive's own limit cannot keep.
 //!
-//! `max_torque` bounds what the velocity loop asks for. What the motor gives follows through the current loop, whose step
-//! response overshoots by some per cent (its voltage goes out a period late), so a torque that saturates exceeds `max_torque`.
+//! `max_torque` bounds the request of the velocity loop. The torque of the motor follows through the current loop, whose step
+//! response overshoots by some per cent (its voltage acts a period late), so a saturated torque exceeds `max_torque`.
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::File;
@@ -10,12 +10,12 @@ use crate::scenario::Actuator;
 use servobench_base::Coordinate;
 use servobench_metrics::Name;
 
-/// How far above the drive's limit a limit of the motor's torque is still in doubt.
+/// Ratio to the drive's limit up to which a limit of the motor's torque causes a warning.
 const OVERSHOOT: f64 = 1.05;
-/// Equal values may differ by a rounding.
+/// Relative tolerance: equal values may differ by a rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Doubts limits of `torque_peak` from the drive's own limit to the overshoot of a current loop above it.
+/// Warns of limits of `torque_peak` between the drive's own limit and the overshoot of a current loop above it.
 pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     let (Actuator::Pmsm { drive, .. }, Some(given), Slot::Absent) = (actuator, file.drive.given(), &file.fmu) else {
         return;

@@ -1,12 +1,12 @@
-//! Times that must be whole numbers of something shorter: base ticks, bus cycles.
+//! Times that must be whole multiples of a shorter unit: base ticks, bus cycles.
 use crate::diagnostic::Report;
 use crate::source::At;
 use servobench_base::Rate;
 
-/// How many `units`, of which there are `per_second`, the `time` of `key` lasts: a whole number, one at least.
+/// Number of `units`, of which there are `per_second`, in the `time` of `key`: a whole number, at least one.
 ///
 /// # Errors
-/// What is wrong, and what would fit.
+/// The mistake, and the nearest time that fits.
 pub(super) fn number(key: &str, time: f64, per_second: f64, units: &str) -> Result<f64, (String, String)> {
     let number = time * per_second;
     if number.round() >= 1.0 && (number - number.round()).abs() <= 1e-9 * number {

@@ -1,30 +1,30 @@
-//! What moves the axis: the part of the plant that a drive commands, and the drive that goes with it.
+//! The actuator: motor or source, power stage and drive of the axis.
 use super::drive::Drive;
 use servobench_drive::Stage;
 use servobench_plant::{Encoder, IdealSource, Wiring, inverter, pmsm};
 
-/// What moves the axis, and what commands that.
+/// Motor or source of the axis with its drive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Actuator {
     /// The motor side follows the set-point exactly.
     Prescribed,
-    /// The power stage is off: no current, and the axis is free but for what acts on the rotor of its motor without one.
+    /// The power stage is off: no current; the axis is free except for effects of its motor that need no current.
     Off(Option<Box<IdleMotor>>),
     /// A permanent-magnet synchronous motor on an inverter.
     Pmsm {
         /// The motor.
         motor: pmsm::Params,
-        /// What it does beside its equations.
+        /// Effects of the motor beyond its equations.
         effects: Box<pmsm::Effects>,
-        /// How it is connected to the inverter.
+        /// Connection of the motor to the inverter.
         wiring: Wiring,
         /// Encoder on the motor.
         encoder: Encoder,
         /// DC-link voltage of the inverter (V).
         dc_link: f64,
-        /// What the inverter does beside giving the voltage that it is asked for; `None`: nothing.
+        /// Deviations of the inverter from an ideal voltage source; `None` for an ideal one.
         inverter: Option<inverter::Params>,
-        /// Its DC link; `None`: a constant voltage.
+        /// DC link of the inverter; `None`: a constant voltage.
         link: Option<inverter::LinkParams>,
         /// The drive.
         drive: Drive,
@@ -40,17 +40,17 @@ pub enum Actuator {
     },
 }
 
-/// A motor without current whose teeth or iron act on the axis all the same.
+/// A motor without current whose teeth or iron still act on the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdleMotor {
     /// The motor.
     pub motor: pmsm::Params,
-    /// What it does beside its equations.
+    /// Effects of the motor beyond its equations.
     pub effects: pmsm::Effects,
 }
 
 impl Actuator {
-    /// The drive, where there is one.
+    /// The drive, if there is one.
     #[must_use]
     pub const fn drive(&self) -> Option<&Drive> {
         match self {
@@ -59,7 +59,7 @@ impl Actuator {
         }
     }
 
-    /// The encoder on the motor, where a drive reads one.
+    /// The encoder on the motor, if a drive reads one.
     #[must_use]
     pub const fn encoder(&self) -> Option<Encoder> {
         match self {
@@ -68,14 +68,14 @@ impl Actuator {
         }
     }
 
-    /// Largest effort reference (N·m or N): the drive's effort limit, or what its current limit leaves of it.
+    /// Largest effort reference (N·m or N): the drive's effort limit, reduced to the effort at its current limit.
     #[must_use]
     pub fn max_effort(&self) -> f64 {
         self.drive().map_or(f64::INFINITY, |drive| drive.params.max_effort())
     }
 
-    /// Largest effort that the drive knows of (N·m or N): its limit, or what an ideal source's output leaves of it. A
-    /// thousand of CiA 402's torque objects stand for it; there is none where nothing has a limit.
+    /// Largest effort known to the drive (N·m or N): its limit, at most an ideal source's output. It corresponds to 1000 in CiA 402's
+    /// torque objects; `None` where nothing has a limit.
     #[must_use]
     pub fn rated_effort(&self) -> Option<f64> {
         let rated = match self {

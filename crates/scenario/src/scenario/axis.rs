@@ -1,4 +1,4 @@
-//! The mechanics: bodies and what couples them.
+//! The mechanics: bodies and their couplings.
 use servobench_base::Coordinate;
 use servobench_plant::{Chain, EndStops, FmuModel, MjcfModel, Switches};
 
@@ -15,21 +15,21 @@ pub struct Axis {
     pub mechanics: AxisMechanics,
     /// The mechanics as an FMU, for the engine `fmu`.
     pub fmu: Option<FmuModel>,
-    /// What the drive sees of its position besides encoders, wired normally open.
+    /// Switches on the axis that the drive reads, wired normally open.
     pub switches: Switches,
-    /// What the load meets at the ends of its travel.
+    /// Stops at the ends of the load's travel.
     pub end_stops: Option<EndStops>,
     /// Period of a modulo axis; `None` for one with ends.
     pub modulo: Option<f64>,
 }
 
-/// Where the bodies come from.
+/// Source of the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AxisMechanics {
-    /// Lumped bodies. Those that were coupled rigidly are merged already, the rotor's inertia is in.
+    /// Lumped bodies. Rigidly coupled bodies are already merged, the rotor's inertia is included.
     Bodies(Chain),
-    /// A user's own MJCF file; what it has to fit, [`MjcfModel::axis`], is known where the loop is built.
+    /// A user's own MJCF file; [`MjcfModel::axis`], which it has to fit, is known where the loop is built.
     Mjcf(MjcfModel),
-    /// Nothing that is known here: only the FMU of [`Axis::fmu`] knows.
+    /// None known here: only the FMU of [`Axis::fmu`] knows the mechanics.
     InTheFmu,
 }

@@ -1,4 +1,4 @@
-//! The fieldbus between the motion task and the drive, and what goes wrong on it.
+//! The fieldbus between the motion task and the drive, and its faults.
 use servobench_cia402::counter::Counter;
 use servobench_cia402::units::Object;
 use servobench_drive::EffortFeedforward;
@@ -8,7 +8,7 @@ use servobench_fieldbus::task::TaskFault;
 use servobench_fieldbus::trajectory::PointTransfer;
 use servobench_motion::interpolate::Mode as InterpolationMode;
 
-/// What is between the motion task and the drive: a master, a bus and the bus interface of the drive (CiA 402).
+/// Connection of the motion task to the drive: a master, a bus and the bus interface of the drive (CiA 402).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bus {
     /// Cycle of the bus (base ticks).
@@ -17,23 +17,23 @@ pub struct Bus {
     pub mode: BusMode,
     /// Cycle of the motion task (bus cycles).
     pub motion_every: u32,
-    /// How the master fills the bus cycles between two of the motion task's.
+    /// Interpolation by the master for the bus cycles between two cycles of the motion task.
     pub interpolation: InterpolationMode,
-    /// How the drive fills the base ticks between two frames: linear or cubic.
+    /// Interpolation by the drive for the base ticks between two frames: linear or cubic.
     pub drive_interpolation: InterpolationMode,
-    /// From the sampling of a frame to its effect (bus cycles).
+    /// Delay from the sampling of a frame to its effect (bus cycles).
     pub delay: u32,
-    /// Whether the velocity offset (60B1h) carries the velocity of the set-point.
+    /// True if the velocity offset (60B1h) carries the velocity of the set-point.
     pub velocity_offset: bool,
     /// Model of the effort that the torque offset (60B2h) carries.
     pub effort_offset: EffortFeedforward,
-    /// How late a command of the motion task may come without being predicted (base ticks).
+    /// Largest delay of a motion task command that is accepted without prediction (base ticks).
     pub margin: u32,
-    /// By how many cycles of the motion task the master predicts its motion.
+    /// Number of motion task cycles over which the master predicts its motion.
     pub run_ahead: u32,
-    /// How the master brings the drive to power.
+    /// Sequence in which the master enables the drive.
     pub sequencing: Sequencing,
-    /// How long the master waits for the drive (s).
+    /// Time that the master waits for the drive (s).
     pub drive_timeout: f64,
     /// The master's position loop; `None` where the drive closes it.
     pub position_loop: Option<PositionGains>,
@@ -41,19 +41,19 @@ pub struct Bus {
     pub counter: Counter,
     /// Units of the positions on the bus.
     pub units: DriveUnits,
-    /// Whether the master makes the actual velocity of differences of positions.
+    /// True if the master derives the actual velocity from differences of positions.
     pub velocity_from_differences: bool,
-    /// Whether the switches are wired normally closed: what the drive reports of them is inverted by the master.
+    /// True if the switches are wired normally closed: the master inverts the drive's report of them.
     pub reverse_switches: bool,
-    /// How the points of a table get into the buffer of the drive, with interpolated position.
+    /// Transfer of the points of a table into the buffer of the drive, with interpolated position.
     pub point_transfer: PointTransfer,
-    /// Time from point to point of a move that is no table (s), with interpolated position.
+    /// Time from point to point of a move without a table (s), with interpolated position.
     pub point_time: f64,
-    /// What goes wrong on the bus, in the order of the file.
+    /// Faults of the bus, in the order of the file.
     pub faults: Vec<BusFault>,
-    /// What goes wrong with the motion task, in the order of the file.
+    /// Faults of the motion task, in the order of the file.
     pub task_faults: Vec<TaskFault>,
-    /// What the master writes into the drive's objects before the first cycle, in the order of the file.
+    /// Values that the master writes to the drive's objects before the first cycle, in the order of the file.
     pub objects: Vec<ObjectWrite>,
 }
 
@@ -74,19 +74,19 @@ servobench_config::choices! {
 }
 
 impl BusMode {
-    /// Whether the master sends a set-point every cycle.
+    /// True if the master sends a set-point every cycle.
     #[must_use]
     pub const fn is_cyclic(self) -> bool {
         matches!(self, Self::CyclicPosition | Self::CyclicVelocity)
     }
 }
 
-/// So many units of the drive are so much of the axis.
+/// Ratio of drive units to the axis coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveUnits {
-    /// Units of the drive, at least one.
+    /// Drive units, at least one, that equal `axis`.
     pub drive: u32,
-    /// Axis coordinate (m or rad); negative for a motor that is mounted the other way round.
+    /// Axis coordinate (m or rad); negative for a motor mounted the other way round.
     pub axis: f64,
 }
 
@@ -98,10 +98,10 @@ impl DriveUnits {
     }
 }
 
-/// A value for an object of the drive. Whether the drive takes it is for its object dictionary to say.
+/// A value for an object of the drive. The drive's object dictionary decides if the drive accepts it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ObjectWrite {
-    /// Which object.
+    /// The object.
     pub object: Object,
     /// Value.
     pub value: i64,

@@ -1,13 +1,13 @@
-//! What else happens: external efforts, and where the axis starts.
+//! External efforts, and the initial state of the axis.
 
 /// An external effort.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Disturbance {
-    /// Body it acts on.
+    /// Body on which it acts.
     pub on: DisturbedBody,
     /// First instant (s).
     pub start: f64,
-    /// How long (s); infinite: to the end.
+    /// Duration (s); infinite: to the end.
     pub duration: f64,
     /// Amplitude (N or N·m, in the body's coordinate).
     pub effort: f64,

@@ -1,20 +1,19 @@
-//! The drive: its firmware, and the encoders that it reads.
+//! The drive: its firmware, and the encoders it reads.
 use servobench_drive::{Estimate, Params, current};
 use servobench_plant::{CurrentSensor, Encoder};
 
 /// A drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
-    /// What its firmware is set to.
+    /// Settings of its firmware.
     pub params: Params,
-    /// Which encoder closes the position loop.
+    /// Encoder that closes the position loop.
     pub position_feedback: Feedback,
-    /// What the firmware believes of the axis. The tool fills it from the plant; a scenario overrides single values to express
-    /// mismatch.
+    /// Estimate of the axis in the firmware. The tool derives it from the plant; a scenario overrides single values to express mismatch.
     pub estimate: Estimate,
-    /// What the gains of the current loop follow from; `None` without one.
+    /// Tuning from which the gains of the current loop follow; `None` without a current loop.
     pub current_tuning: Option<current::Tuning>,
-    /// Errors of the current sensors; `None` for sensors without.
+    /// Errors of the current sensors; `None` for ideal sensors.
     pub current_sensor: Option<CurrentSensor>,
 }
 

@@ -2,24 +2,24 @@
 use servobench_fmu_file::FmuFile;
 use servobench_signals::Signal;
 
-/// A Functional Mock-up Unit beside the axis and what it is connected to.
+/// A Functional Mock-up Unit beside the axis, with its connections.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fmu {
     /// Name of the instance.
     pub name: String,
-    /// The archive, how it is started and where it runs.
+    /// The archive, its start values and where it runs.
     pub file: FmuFile,
-    /// From exchange to exchange (base ticks).
+    /// Time between two exchanges (base ticks).
     pub every: u32,
-    /// Inputs by variable with the signal that each is given.
+    /// Inputs: variable and the signal connected to it.
     pub inputs: Vec<(String, InputSource)>,
-    /// Outputs by variable with what each is.
+    /// Outputs: variable and the signal it provides.
     pub outputs: Vec<(String, LoopSignal)>,
-    /// True where its efforts excite the axis, and explain that it swings.
+    /// True if its efforts excite the axis, and so explain oscillations.
     pub excites: bool,
 }
 
-/// What an input of an FMU is given (SI).
+/// Source of an FMU input (SI).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum InputSource {
     /// The time (s).
@@ -30,7 +30,7 @@ pub enum InputSource {
     ShaftVelocity,
     /// A signal of the axis.
     Signal(Signal),
-    /// An output of another FMU, in that one's unit converted to SI.
+    /// An output of another FMU, converted from its unit to SI.
     Fmu {
         /// Position among the scenario's FMUs.
         fmu: usize,
@@ -39,7 +39,7 @@ pub enum InputSource {
     },
 }
 
-/// What an output of an FMU can be beside the axis (SI).
+/// Signal of the loop that an output of an FMU can provide (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LoopSignal {
     /// `disturbance.motor`: an effort on the motor, in its own coordinate.
@@ -61,7 +61,7 @@ pub enum LoopSignal {
 }
 
 impl Fmu {
-    /// What it does to the motor and the load by an effort.
+    /// Signals by which it exerts an effort on the motor or the load.
     pub fn efforts(&self) -> impl Iterator<Item = LoopSignal> + '_ {
         let acts = |signal: &LoopSignal| matches!(signal, LoopSignal::MotorEffort | LoopSignal::LoadEffort);
         self.outputs.iter().map(|(_, signal)| *signal).filter(acts)
@@ -69,7 +69,7 @@ impl Fmu {
 }
 
 impl LoopSignal {
-    /// All of them.
+    /// All signals.
     pub const ALL: &'static [Self] = &[
         Self::MotorEffort,
         Self::LoadEffort,
@@ -81,7 +81,7 @@ impl LoopSignal {
         Self::VoltageQ,
     ];
 
-    /// The signal of the axis that the FMU gives.
+    /// The corresponding signal of the axis.
     #[must_use]
     pub const fn signal(self) -> Signal {
         match self {

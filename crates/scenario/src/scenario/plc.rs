@@ -6,11 +6,11 @@ use servobench_plcopen::program::Call;
 /// in the axis coordinate, torques in the motor's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plc {
-    /// Whether absolute moves of an axis that was not homed are refused.
+    /// True if absolute moves of an axis that was not homed are refused.
     pub homing_required: bool,
-    /// Where the ramps of velocities begin that the drive is told, in the mode [`ProfileVelocity`](super::BusMode::ProfileVelocity).
+    /// Start of the velocity ramps sent to the drive, in the mode [`ProfileVelocity`](super::BusMode::ProfileVelocity).
     pub velocity_ramps: Option<RampStart>,
-    /// What no command may exceed, of `[setpoint]`: |velocity|, |acceleration|, |jerk|, |snap|; infinite where there is none.
+    /// Limits of every command, from `[setpoint]`: |velocity|, |acceleration|, |jerk|, |snap|; infinite without a limit.
     pub limits: [f64; 4],
     /// The calls, at least one, in the order in which every cycle executes them.
     pub calls: Vec<Call>,

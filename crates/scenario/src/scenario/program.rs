@@ -16,22 +16,22 @@ pub enum Step {
 /// A move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoveStep {
-    /// The move as it would be from rest at position 0; the state in which it begins is known when the move before is planned.
+    /// The move as if from rest at position 0; its initial state is known once the previous move is planned.
     pub request: Request,
-    /// What its positions count from.
+    /// Origin of its positions.
     pub positioning: Positioning,
-    /// How long the velocity that it ends with is held (s).
+    /// Time for which its final velocity is held (s).
     pub hold: f64,
-    /// Takes over from the move before, so long after the start of that (s); at its end without.
+    /// Time after the start of the previous move at which this one takes over (s); `None`: at its end.
     pub aborts_after: Option<f64>,
-    /// Limits of what is measured on this move.
+    /// Limits of the metrics of this move.
     pub metric_limits: Vec<Limit>,
 }
 
-/// Between a slow task that commands and the drive.
+/// Interpolation between a slow commanding task and the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interpolation {
-    /// How values between two commands are found.
+    /// Method by which values between two commands are found.
     pub mode: Mode,
     /// Time between two commands (s), a whole number of base ticks.
     pub period: f64,

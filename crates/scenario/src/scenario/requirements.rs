@@ -1,13 +1,13 @@
-//! What a run is held to beside its limits.
+//! Requirements on a run in addition to its limits.
 use servobench_metrics::{Expectation, Requirement, Tolerances};
 
-/// What a run is held to beside its limits: every requirement but those that are lifted.
+/// Requirements on a run in addition to its limits: all except the lifted ones.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Requirements {
-    /// Those that the scenario lifts, in the order of the file.
+    /// Requirements that the scenario lifts, in the order of the file.
     pub lifted: Vec<Requirement>,
-    /// The faults that belong to the run.
+    /// Faults that belong to the run.
     pub expected: Vec<Expectation>,
-    /// How far off the request the axis may be.
+    /// Allowed deviations of the axis from the request.
     pub tolerances: Tolerances,
 }

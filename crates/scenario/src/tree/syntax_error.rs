@@ -1,7 +1,7 @@
-//! What the TOML parser finds wrong.
+//! Errors of the TOML parser.
 use std::ops::Range;
 
-/// An error of syntax and its bytes.
+/// A syntax error with its byte range.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SyntaxError {
     pub(super) span: Range<usize>,
@@ -9,12 +9,12 @@ pub(super) struct SyntaxError {
     pub(super) message: String,
 }
 
-/// The errors that are more than their message here.
+/// Errors that are treated separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A key or table is there already.
+    /// A duplicate key or table.
     Duplicate,
-    /// The parser gives up at a key without a value.
+    /// A key without a value, at which the parser stops.
     KeyWithoutValue,
     /// A text without quotes.
     Unquoted,
@@ -31,8 +31,8 @@ impl SyntaxError {
 }
 
 impl Kind {
-    /// The crate `toml` has one type of error for everything, whose message is all that tells them apart: this is the one place that
-    /// reads it, and tests of the tree fail when a release words it otherwise.
+    /// The crate `toml` has a single error type, and only the message tells the errors apart: this is the only place that reads it, and
+    /// tests of the tree fail when a release changes the wording.
     fn of(message: &str) -> Self {
         const KINDS: [(&str, Kind); 5] = [
             ("duplicate key", Kind::Duplicate),

@@ -73,7 +73,7 @@ fn what_is_there_twice_is_named_with_its_first_place() {
     assert_eq!(said, pairs.map(|(message, help)| (message.to_owned(), help.to_owned())));
 }
 
-/// Its keys are none of the table before.
+/// Its keys are not keys of the previous table.
 #[test]
 fn a_header_that_is_not_closed_takes_its_keys_with_it() {
     for text in ["[a]\nx = 1\n[limits\ny = 2\nz = \"\n[b]\nv = 3\n", "[a]\nx = 1\n[limits\ny = 2\n"] {

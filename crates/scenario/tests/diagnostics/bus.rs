@@ -1,10 +1,10 @@
-//! What is said of a fieldbus, of the objects of a drive and of the switches along an axis.
+//! Diagnostics of a fieldbus, of the objects of a drive and of the switches along an axis.
 use crate::{AXIS, mistakes, shortened, strings};
 use servobench_scenario::{LoadError, parse};
 
 const CYCLE: &str = "[bus]\ncycle = \"1 ms\"\nunits = { drive = 1, axis = \"1 um\" }\n";
 
-/// Mistakes and warnings in the axis with `addition` behind it; lines count from that of the addition.
+/// Mistakes and warnings in the axis with `addition` after it; lines count from that of the addition.
 fn said(axis: &str, addition: &str) -> [Vec<String>; 2] {
     let shift = axis.lines().count();
     let (sources, errors, warnings) = match parse("axis.toml", &format!("{axis}{addition}"), None) {
@@ -25,7 +25,7 @@ fn said(axis: &str, addition: &str) -> [Vec<String>; 2] {
     })
 }
 
-/// The axis whose drive leaves the feedforward to the master.
+/// The axis with a drive that leaves the feedforward to the master.
 fn bare() -> String {
     AXIS.replace("[drive.feedforward]\nvelocity = true\neffort = \"two-mass\"\n", "")
 }
@@ -156,7 +156,7 @@ fn keys_belong_to_modes() {
     ]);
 }
 
-/// In the modes in which the drive makes the way itself it has one way to make it.
+/// In the modes with profiles from the drive there is a single way to generate them.
 #[test]
 fn modes_carry_some_steps_only() {
     let axis = |step: &str| bare().replace("move_to = \"250 mm\"", step);

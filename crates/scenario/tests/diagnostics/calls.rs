@@ -1,4 +1,4 @@
-//! What is said of calls of function blocks.
+//! Diagnostics of calls of function blocks.
 mod tables;
 
 use crate::{AXIS, strings};
@@ -7,7 +7,7 @@ use servobench_scenario::{LoadError, parse};
 const BUS: &str = "[bus]\ncycle = \"1 ms\"\nunits = { drive = 1, axis = \"1 um\" }\n[plc]\nhoming_required = false\n";
 const POWER: &str = "[[call]]\nblock = \"MC_Power\"\nname = \"power\"\n";
 
-/// Mistakes and warnings in the axis on a bus with `calls` for its program; lines count from that of the calls.
+/// Mistakes and warnings in the axis on a bus with `calls` as its program; lines count from that of the calls.
 pub(crate) fn said(calls: &str) -> [Vec<String>; 2] {
     said_of(&lasting(), &format!("{BUS}{POWER}"), calls)
 }
@@ -17,12 +17,12 @@ fn lasting() -> String {
     AXIS.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n")
 }
 
-/// The file that [`said`] reads.
+/// The file of [`said`].
 pub(crate) fn text(calls: &str) -> String {
     lasting().replace("[[program]]\nmove_to = \"250 mm\"\n", &format!("{BUS}{POWER}{calls}"))
 }
 
-/// The same of `axis`, with `before` the calls.
+/// The same for `axis`, with `before` before the calls.
 fn said_of(axis: &str, before: &str, calls: &str) -> [Vec<String>; 2] {
     let (head, tail) = axis.split_once("[[program]]\nmove_to = \"250 mm\"\n").unwrap();
     let head = format!("{head}{before}");
@@ -120,7 +120,7 @@ fn a_block_has_its_inputs_and_no_others() {
                 "4:12: MC_Halt has no input `velocity`; its inputs are deceleration, jerk, snap, buffer_mode",
             ],
         ),
-        // Optional inputs of the standard, which a drive that is told efforts does not have.
+        // Optional inputs of the standard, which a drive with effort commands does not have.
         (
             &call("MC_TorqueControl", "torque = \"1 Nm\"\nacceleration = \"1 m/s2\"\njerk = \"1 m/s3\""),
             &[
@@ -204,7 +204,7 @@ fn directions_belong_to_blocks() {
     assert_eq!(said(&positive), [strings(&[]), strings(&[ignored])]);
 }
 
-/// What `[setpoint]` says is what the axis can do: a block refuses more, which a run may want to show.
+/// `[setpoint]` holds the limits of the axis: a block refuses higher ones, which a run may want to show.
 #[test]
 fn limits_of_the_axis_bound_those_of_blocks() {
     let beyond = call("MC_MoveAbsolute", "position = \"1 mm\"\nvelocity = \"31 m/min\"\ndeceleration = \"7 m/s2\"");
@@ -274,7 +274,7 @@ fn conditions_name_outputs_times_and_positions() {
                 "7:9: MC_MoveVelocity has no output `Done`; its outputs are InVelocity, Busy, Active, CommandAborted, Error",
             ],
         ),
-        // Nothing aborts it here, but that is for the run to find out.
+        // Nothing aborts it here, which only the run can show.
         (&format!("{}{}", move_when("\"power.Status\""), call("MC_Halt", "start = \"turn.CommandAborted\"")), &[]),
         (&move_when("{ at = \"2 s\" }"), &["4:16: the run is over by then: it lasts 2 s"]),
         (&move_when("{ after = \"power.Status\", delay = \"3 s\" }"), &["4:43: the run is over by then: it lasts 2 s"]),
@@ -312,7 +312,7 @@ fn calls_that_wait_for_each_other_never_start() {
                 "4:9: `a` waits for `b` waits for `c` waits for `a`: none of them ever starts; let one of them start by itself",
             ],
         ),
-        // One behind a circle is not to blame.
+        // A call after a circle is not to blame.
         (
             &format!("{}{}{}", halt("a", "b"), halt("b", "c"), halt("c", "b")),
             &["8:9: `b` waits for `c` waits for `b`: none of them ever starts; let one of them start by itself"],
@@ -406,7 +406,7 @@ fn velocities_of_positions_are_not_used() {
     assert_eq!(said(&calls), [strings(&[]), strings(&[warning])]);
 }
 
-/// Steps along the spline, and where their ramps begin, are for a drive that is told velocities.
+/// Steps along the spline, and the start of their ramps, are for a drive that receives velocities.
 #[test]
 fn velocities_are_told_to_a_drive_in_profile_velocity() {
     let steps =
@@ -433,7 +433,7 @@ fn velocities_are_told_to_a_drive_in_profile_velocity() {
     );
 }
 
-/// A limit that a call gives in vain.
+/// A limit in a call without effect.
 #[test]
 fn limits_beyond_the_order_are_told() {
     let profile = |keys: &str| call("Profile4th", &format!("position = \"1 mm\"\nsettling_time = \"50 ms\"\n{keys}"));
@@ -443,7 +443,7 @@ fn limits_beyond_the_order_are_told() {
     assert_eq!(said(&profile("order = 4\nsnap = \"1000 m/s4\"\njerk = \"50 m/s3\"")), [strings(&[]), strings(&[])]);
 }
 
-/// Each jerk of Rockwell's move is said in one way, and that of a trapezoid by the axis.
+/// Each jerk of Rockwell's move is given in a single way, and that of a trapezoid by the axis.
 #[test]
 fn the_jerks_of_rockwells_move() {
     let s_curve = |keys: &str| call("MAM", &format!("position = \"1 mm\"\nshape = \"s-curve\"\n{keys}"));
@@ -472,7 +472,7 @@ fn the_jerks_of_rockwells_move() {
     ]);
 }
 
-/// What will be refused when it is executed is doubtful, not wrong: a run may want to show just that.
+/// Calls that will be refused at execution cause warnings, not mistakes: a run may want to show that.
 #[test]
 fn what_will_be_refused_is_doubtful() {
     let axis = AXIS.replace("base_rate = \"16 kHz\"\n", "base_rate = \"16 kHz\"\nduration = \"2 s\"\n");

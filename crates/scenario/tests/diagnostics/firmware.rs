@@ -1,11 +1,11 @@
-//! Blocks of the firmware that answer real hardware.
+//! Blocks of the firmware for imperfections of real hardware.
 use crate::{AXIS, mistakes, warnings};
 
 fn with(lines: &str) -> Vec<String> {
     mistakes(&format!("{AXIS}\n{lines}\n"))
 }
 
-/// The only mistake says all of these.
+/// The only mistake contains all of `parts`.
 fn says(found: &[String], parts: &[&str]) {
     assert!(found.len() == 1 && parts.iter().all(|part| found[0].contains(part)), "{found:?}");
 }
@@ -35,7 +35,7 @@ fn what_chooses_the_current_is_one_thing() {
     says(&current("dead_time_compensation = { dead_time = \"2 us\" }"), &["missing `frequency`"]);
 }
 
-/// A motor without magnets has its torque by different inductances and a current in d; what is a part of the magnets' flux is refused.
+/// A motor without magnets has torque from different inductances and a current in d; values relative to the magnets' flux are refused.
 #[test]
 fn a_motor_without_magnets_needs_saliency_and_a_current_in_d() {
     let motor = |inductance: &str, current: &str, more: &str| {

@@ -1,8 +1,8 @@
-//! What is said of FMUs.
+//! Diagnostics of FMUs.
 use crate::AXIS;
 use servobench_scenario::{LoadError, load};
 
-/// What is said of the axis with `addition`, in a folder with the files `a.fmu` and `b.fmu`; lines count from the addition's.
+/// Diagnostics of the axis with `addition`, in a folder with the files `a.fmu` and `b.fmu`; lines count from the addition's.
 fn said(addition: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for file in ["a.fmu", "b.fmu"] {
@@ -110,7 +110,7 @@ fn steps_fit_and_keys_belong_together() {
             &format!("{LOAD}step = \"3 ms\"\n[coupling]\nstep = \"2 ms\"\n"),
             &["5:8: `step` is 48 base ticks, no whole number of steps of `[coupling]`, 32"],
         ),
-        // For algebraic loops, which every method may have.
+        // For algebraic loops, which are possible with every method.
         (&format!("{LOAD}[coupling]\niterations = 3\ntolerance = 1e-5\n"), &[]),
         (
             "[[fmu]]\nfile = \"a.fmu\"\nexcites = true\ninputs = { x = \"load.position\" }\n",
@@ -159,7 +159,7 @@ fn mechanics_need_their_engine_and_their_outputs() {
     ]);
 }
 
-/// With an FMU in place of the drive nothing but an FMU reads a sensor.
+/// With an FMU in place of the drive only FMUs read sensors.
 #[test]
 fn sensors_that_nothing_reads_are_mistakes() {
     let of = |inputs: &str, outputs: &str| {

@@ -1,4 +1,4 @@
-//! What is said of each kind of mistake, and where.
+//! Diagnostics of each kind of mistake, with their places.
 mod bus;
 mod calls;
 mod firmware;
@@ -80,7 +80,7 @@ fn shortened(line: &str) -> String {
     line.strip_prefix("axis.toml:").unwrap_or(line).to_owned()
 }
 
-/// The mistakes after `old` in the axis became `new`.
+/// The mistakes after `old` in the axis was replaced by `new`.
 fn after(old: &str, new: &str) -> Vec<String> {
     assert_eq!(AXIS.matches(old).count(), 1, "`{old}` must be there once");
     mistakes(&AXIS.replace(old, new))

@@ -45,7 +45,7 @@ fn names_of_models_and_channels() {
     assert_eq!(channel, ["48:30: \"load.veloctiy\" is not a value of `channels`; did you mean `load.velocity`?"]);
 }
 
-/// What a table lacks may be in the model that was not found.
+/// Keys missing from a table may be in the model that was not found.
 #[test]
 fn a_model_that_is_not_found_is_the_only_mistake() {
     let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"x\"\n[motor]\nmodel = \"y\"\n[drive]\nmodel = \"z\"\n";

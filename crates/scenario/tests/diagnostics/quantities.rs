@@ -27,7 +27,7 @@ fn a_bare_number_is_told_its_unit() {
     }
 }
 
-/// Each by itself would pass, and the gains derived from them would be infinite or zero.
+/// Each value by itself would pass, and the gains derived from them would be infinite or zero.
 #[test]
 fn a_number_beyond_every_machine_is_refused() {
     let cases = [
@@ -115,7 +115,7 @@ fn what_is_no_quantity_is_pointed_at_inside_the_text() {
     }
 }
 
-/// What is proposed must be right: a wrong guess of a prefix would be wrong by a power of ten.
+/// Proposals must be right: a wrong guess of a prefix would be wrong by a power of ten.
 #[test]
 fn engineers_spellings_get_the_unit_that_is_meant() {
     let cases = [

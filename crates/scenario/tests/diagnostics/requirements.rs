@@ -1,4 +1,4 @@
-//! What is said of requirements and of expected faults.
+//! Diagnostics of requirements and of expected faults.
 use crate::calls::said;
 use crate::{AXIS, mistakes, strings};
 use servobench_metrics::{Expectation, Incident, Occasion, Requirement};

@@ -1,4 +1,4 @@
-//! What is missing, what contradicts, what does not fit together; several mistakes at once.
+//! Missing, contradictory and incompatible keys; several mistakes at once.
 use crate::{AXIS, after, mistakes, warnings};
 use servobench_scenario::LoadError;
 use std::path::Path;
@@ -52,7 +52,7 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
     );
 }
 
-/// A zero that nobody finds, or that comes again in each turn, is nowhere.
+/// A zero without homing has no place, and one on a modulo axis recurs every turn.
 #[test]
 fn a_place_of_the_zero_needs_homing() {
     let homeless = "49:11: `home_at` is where homing puts the zero, and nothing homes the axis; call \"MC_Home\", or leave \
@@ -63,7 +63,7 @@ fn a_place_of_the_zero_needs_homing() {
     assert!(with(home).iter().all(|said| !said.contains("home_at")), "{:?}", with(home));
 }
 
-/// A motor that turns needs a lead; that it has none must not make everything else of it wrong.
+/// A rotary motor needs a lead; its absence must not cause further mistakes.
 #[test]
 fn a_motor_turns_or_is_linear_by_its_own_keys() {
     let said = "5:1: missing `lead` in `axis`; give the travel per revolution of the motor; a linear motor has \
@@ -151,7 +151,7 @@ fn task_rates_that_do_not_divide_the_base_rate() {
     assert_eq!(sample, ["42:15: `sample_time` is 4.8000 base ticks, not a whole number; 312.5 us fits"]);
 }
 
-/// The scenario is in question where it contradicts a model, which is right by itself.
+/// A scenario that contradicts a model is blamed: the model is right by itself.
 #[test]
 fn what_contradicts_a_model_is_pointed_at_in_the_scenario() {
     let text = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmodel = \"ball-screw\"\ntable.coulomb = \"50 N\"\n[motor]\n\
@@ -387,8 +387,8 @@ fn what_is_doubtful_is_a_warning() {
     assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` does nothing without `static`"]);
 }
 
-/// `max_torque` bounds what the drive asks for, not what the motor gives: a limit from there to 5 % above is missed whenever
-/// the torque saturates.
+/// `max_torque` bounds the drive's request, not the motor's torque: a limit from there to 5 % above is missed whenever the torque
+/// saturates.
 #[test]
 fn a_limit_of_the_torque_at_the_drives_own_is_doubtful() {
     let said = |limit: &str| {
@@ -409,7 +409,7 @@ fn a_limit_of_the_torque_at_the_drives_own_is_doubtful() {
     }
 }
 
-/// 13.3 Arms are 18.8 A of amplitude, which is all there is for both axes.
+/// 13.3 Arms are 18.8 A of amplitude, the limit for both axes together.
 #[test]
 fn a_current_of_the_d_axis_leaves_some_for_the_other() {
     let said = |current: &str| {

@@ -1,10 +1,10 @@
-//! What is said of moves: which keys go together, and which moves can follow each other.
+//! Diagnostics of moves: combinations of keys, and sequences of moves.
 use crate::AXIS;
 use servobench_scenario::{LoadError, parse};
 use std::path::Path;
 
-/// `line:column: message; help` of every mistake in the axis with `setpoint` added to `[setpoint]` and `program` for its
-/// program; lines count from that of the addition.
+/// `line:column: message; help` of every mistake in the axis with `setpoint` added to `[setpoint]` and `program` as its program; lines
+/// count from that of the addition.
 fn mistakes(setpoint: &str, program: &str) -> Vec<String> {
     let (before, behind) = AXIS.split_once("[[program]]\nmove_to = \"250 mm\"\n").unwrap();
     let shift = before.lines().count();
@@ -199,7 +199,7 @@ fn tables_of_points() {
                 "2:41: `passes` is for velocities that are \"smooth\"",
             ],
         ),
-        // The limits of `[setpoint]` choose the share, or those of the step.
+        // The limits of `[setpoint]`, or those of the step, determine the share.
         ("averages = []\n", &table("file = \"points.csv\", follow = \"plateaus\", plateau_share = \"auto\""), &[]),
         (
             "averages = []\n",

@@ -1,4 +1,4 @@
-//! What would never end, what would never act, and what has too little time.
+//! Endless runs, actions without effect, and lack of time.
 use crate::{AXIS, after, mistakes, warnings};
 
 /// Beyond 2⁶⁴ ticks a counter would start again: such a run once passed with no tick at all.
@@ -33,7 +33,7 @@ fn a_disturbance_that_acts_on_no_tick_is_refused() {
     assert_eq!(mistakes(&ends), ["48:9: the run is over by then: it lasts 2 s"]);
 }
 
-/// An axis whose motor follows the set-point whatever acts on it.
+/// An axis whose motor follows the set-point exactly.
 fn prescribed(load: &str) -> String {
     format!("[run]\nbase_rate = \"4 kHz\"\n[axis]\nmotion = \"linear\"\n[motor]\nkind = \"prescribed\"\n{load}\n")
 }

@@ -13,8 +13,8 @@ const TABLES: [&str; 3] = [
      5e3,-1,5,-1\r\n5e3,0,5,0\r\n5e3,1,5,1\r\n",
 ];
 
-/// What is read is a grid; what is a map has a flux for all currents and an energy that comes back; what is refused has a place in the text
-/// and says why.
+/// A table that is read is a grid; a map has a flux for all currents and a conservative energy; a refusal has a place in the text and a
+/// reason.
 #[test]
 fn flux_tables() {
     fuzz(check!(), 2_000, Splice::text(&TABLES, WORDS), |text| match read_flux_table(text) {

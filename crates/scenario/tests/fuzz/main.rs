@@ -1,5 +1,5 @@
-//! Fuzz targets: whatever is in a file, it is a scenario in which every number makes sense, or a list of mistakes with
-//! places in their files. `docs/testing.md` says how to run more of them.
+//! Fuzz targets: any file is a scenario in which every number makes sense, or yields a list of mistakes with places in their files.
+//! `docs/testing.md` explains how to run more of them.
 mod flux;
 mod points;
 mod quantities;
@@ -12,7 +12,7 @@ use servobench_scenario::{Diagnostic, LoadError, Loaded, Sources, embedded_model
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every scenario that we ship, and nothing at all.
+/// Every scenario in the repository, and the empty file.
 const SCENARIOS: [&str; 20] = [
     "",
     include_str!("../../../../scenarios/demo/jerk.toml"),
@@ -36,7 +36,7 @@ const SCENARIOS: [&str; 20] = [
     include_str!("../../../../scenarios/hardware/saturation.toml"),
 ];
 
-/// What mistakes are made of: the punctuation of TOML, keys, names, units, and numbers at every end of the scale.
+/// Ingredients of mistakes: the punctuation of TOML, keys, names, units, and numbers at every end of the scale.
 #[rustfmt::skip]
 const WORDS: &[&str] = &[
     "\"", "\"\"\"", "'", "'''", "[", "[[", "]", "]]", "{", "}", "=", " = ", ",", ".", "#", "\n", "\r\n", "\t", "\\",
@@ -59,7 +59,7 @@ const WORDS: &[&str] = &[
     "99999999999999999999", "1979-05-27T07:32:00Z",
 ];
 
-/// What is loaded is sound; every place that is named is in its file.
+/// A loaded scenario is sound; every reported place is in its file.
 fn check_outcome(outcome: Result<Loaded, LoadError>) {
     match outcome {
         Ok(loaded) => {
@@ -83,7 +83,7 @@ fn check_places(sources: &Sources, all: &[Diagnostic]) {
     }
 }
 
-/// Where the scenarios are, with their models beside them.
+/// Folder of the scenarios, with their models beside them.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
 }
@@ -103,7 +103,7 @@ fn with_model(scenario: &str, table: &str) -> String {
     format!("{before}[{table}]\nmodel = \"fuzzed\"{after}")
 }
 
-/// Right scenarios with a model of one kind that may be wrong: its mistakes are told at their places in the model.
+/// Valid scenarios with a model of one kind that may be wrong: its mistakes are reported at their places in the model.
 fn models(target: Target, (folder, table): (&str, &str), users: &[&str]) {
     let home = tempfile::tempdir().unwrap();
     let place = home.path().join("models").join(folder);

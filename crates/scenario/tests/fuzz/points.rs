@@ -11,8 +11,7 @@ const TABLES: [&str; 5] = [
     "time [ms],step [mm],velocity [mm/s],jerk [m/s3]\n0,9e32,0,1\n10,5,,\n20,-15,750,0\n",
 ];
 
-/// What is read is a table: finite, in the order of time, a velocity or none for each point; what is refused has a place in
-/// the text.
+/// A table that is read is finite, in the order of time, with a velocity or `None` for each point; a refusal has a place in the text.
 #[test]
 fn points() {
     fuzz(check!(), 3_000, Splice::text(&TABLES, WORDS), |text| match read_points(text) {
@@ -37,7 +36,7 @@ const PROFILES: [&str; 3] = [
     "time [us],velocity [rpm]\n-1,0\n1e6,5\n",
 ];
 
-/// The same of a profile, which has a value for each point.
+/// The same for a profile, which has a value for each point.
 #[test]
 fn profiles() {
     fuzz(check!(), 3_000, Splice::text(&PROFILES, WORDS), |text| {

@@ -22,7 +22,7 @@ const QUANTITIES: [&str; 12] = [
 const DERIVATIVES: [Derivative; 5] =
     [Derivative::Position, Derivative::Velocity, Derivative::Acceleration, Derivative::Jerk, Derivative::Snap];
 
-/// A value and its proper unit read back to the same bits; a refusal repeats what was written.
+/// A value with its proper unit reads back to the same bits; a refusal quotes the text.
 #[test]
 fn quantities() {
     fuzz(check!(), 3_000, Splice::text(&QUANTITIES, WORDS), |text| {

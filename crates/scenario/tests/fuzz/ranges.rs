@@ -6,7 +6,7 @@ const RANGES: [&str; 4] =
     ["axis.load.frequency=14 Hz..22 Hz", "axis.load.mass=12 kg±10 %", "a = -1e3..2.5e-3 m", "a=5+-2"];
 const WORDS: &[&str] = &["..", "±", "+-", "=", "%", "Hz", "nan", "inf", "1e999", "-", ".", " "];
 
-/// Whatever is in it, it is a key with two finite ends in order, or a sentence that says how it is written.
+/// Any text is a key with two finite ends in order, or yields a message with the correct notation.
 #[test]
 fn ranges() {
     fuzz(check!(), 3_000, Splice::text(&RANGES, WORDS), |text| match text.parse::<KeyRange>() {

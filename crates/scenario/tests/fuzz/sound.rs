@@ -1,4 +1,4 @@
-//! What the loop may take for granted of every scenario that was loaded.
+//! Properties that the loop may assume of every loaded scenario.
 use servobench_base::{Rate, Setpoint};
 use servobench_motion::online::Target;
 use servobench_planner::{Averages, Generator, Request, Shaping};
@@ -6,7 +6,7 @@ use servobench_plcopen::program::{Condition, Inputs, Rows};
 use servobench_plcopen::{Absent, BlockName, Input, InputType, Pair, Value};
 use servobench_scenario::*;
 
-/// Every number is finite and on its side of zero, or infinite where that has a meaning.
+/// Every number is finite and has the right sign, or is infinite where that has a meaning.
 pub(crate) fn check(scenario: &Scenario) {
     let Scenario { base_rate, axis, actuator, .. } = scenario;
     assert!(!scenario.engines.is_empty());
@@ -120,7 +120,7 @@ fn step(step: &Step) {
     }
 }
 
-/// How many limits the generator needs.
+/// Number of limits that the generator needs.
 fn generator(generator: &Generator) -> usize {
     match generator {
         Generator::PointToPoint(asked) => {
@@ -214,7 +214,7 @@ fn condition(condition: Condition, plc: &Plc) {
     }
 }
 
-/// What a block needs is there, and each value is on its side of zero.
+/// The inputs that a block needs are given, each with the right sign.
 fn inputs(block: BlockName, inputs: &Inputs) {
     for own in block.inputs() {
         let is_needed = matches!(own.absent, Absent::Refused(_) | Absent::Limit(_));
@@ -265,7 +265,7 @@ fn optional(what: &str, value: Option<f64>) {
     }
 }
 
-/// Positive, or infinite for none.
+/// Positive, or infinite for no limit.
 fn limit(what: &str, value: f64) {
     assert!(value > 0.0, "{what} is {value}");
 }

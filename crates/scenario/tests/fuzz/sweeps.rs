@@ -13,7 +13,7 @@ const SWEEPS: [&str; 3] = [
     "scenario = \"\"\n[[vary]]\nkey = \"c\"\ntriangular = { from = 0, mode = 0.5, to = 1e3 }\n[draws]\ncount = 1000\n",
 ];
 
-/// Whatever is in it, it is a sweep whose points are finite and can be written, or a list of mistakes with places.
+/// Any text is a sweep whose points are finite and can be written, or yields a list of mistakes with places.
 #[test]
 fn sweeps() {
     fuzz(check!(), 3_000, Splice::text(&SWEEPS, WORDS), |text| match parse_sweep("any.toml", text, Path::new("")) {

@@ -1,4 +1,4 @@
-//! The coupling of a body, by its own keys or by the mode in which it swings.
+//! The coupling of a body, by its own keys or by its mode.
 use super::*;
 
 const SWAYING: &str = r#"
@@ -41,7 +41,7 @@ fn a_frequency_and_a_damping_ratio_are_another_way_to_say_it() {
     let (stiffness, damping) = with(&["axis.load.damping_ratio=0.1", "axis.load.mass=3 kg"]).unwrap();
     near(stiffness, 145.1e3);
     near(damping, 0.2 * (145.1e3_f64 * 3.0).sqrt());
-    // The command line displaces what the scenario says, whichever way it says so.
+    // The command line takes precedence over the scenario, by either key.
     assert_eq!(with(&["axis.load.damping=5 N s/m"]).unwrap(), (145.1e3, 5.0));
 }
 

@@ -1,4 +1,4 @@
-//! Models and files beside a scenario, and parts that may be left out.
+//! Models and files beside a scenario, and optional parts.
 use super::*;
 
 #[test]
@@ -20,7 +20,7 @@ fn models_beside_the_scenario_come_before_embedded_ones() {
     let deep = folder.path().join("a/b");
     std::fs::create_dir_all(&deep).unwrap();
     std::fs::create_dir_all(folder.path().join("models/drives")).unwrap();
-    // A project: what is above it is none of the scenario's business.
+    // A project: files above it are out of the scenario's reach.
     std::fs::create_dir_all(folder.path().join(".git")).unwrap();
     let mine =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/drives/servo-16khz.toml"))

@@ -70,7 +70,7 @@ fn gains_follow_from_bandwidths() {
     assert!(same(current.gains.k_i.q, TAU * 1200.0 * motor.resistance), "the integral time is L/R");
 }
 
-/// A wrong belief of the inertia reaches the gain: the firmware knows its estimate only.
+/// A wrong estimate of the inertia reaches the gain: the firmware knows only its estimate.
 #[test]
 fn an_estimate_overrides_single_values() {
     let right = scenario(SCREW);
@@ -85,8 +85,8 @@ fn an_estimate_overrides_single_values() {
     assert!(same(current.motor.flux_linkage, plant.flux_linkage));
 }
 
-/// Oracle: by hand. A drive that believes in half the lead sees twice the revolutions per millimetre; the inertia at the
-/// shaft of the motor is what it is.
+/// Oracle: by hand. A drive that assumes half the lead sees twice the revolutions per millimetre; the inertia at the shaft of the
+/// motor does not change.
 #[test]
 fn what_the_drive_believes_does_not_change_the_plant() {
     let text = format!("{SCREW}[drive.estimate]\nlead = \"5 mm\"\ngear_ratio = 3\ndc_link = \"600 V\"\n");
@@ -101,8 +101,8 @@ fn what_the_drive_believes_does_not_change_the_plant() {
     assert!(same(dc_link, 560.0) && same(current.max_voltage, inverter::voltage_limit(600.0)));
 }
 
-/// Oracle: by hand. Gains in volts are volts whatever the drive believes a volt to be; the limit of the output becomes one
-/// of the effort that it believes in.
+/// Oracle: by hand. Gains in volts do not depend on the drive's estimate of a volt; the limit of the output becomes a limit of the
+/// estimated effort.
 #[test]
 fn an_ideal_source_has_a_gain_that_the_drive_believes() {
     let text =

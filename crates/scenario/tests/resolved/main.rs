@@ -1,4 +1,4 @@
-//! What a scenario becomes: derived gains, merged bodies, overridden models.
+//! The resolved scenario: derived gains, merged bodies, overridden models.
 mod coupling;
 mod files;
 mod loops;
@@ -50,7 +50,7 @@ fn motor(scenario: &Scenario) -> (&pmsm::Params, f64, &current::Params) {
     }
 }
 
-/// The ideal source and its gain as the drive knows it.
+/// The ideal source and its gain as estimated by the drive.
 fn source(scenario: &Scenario) -> (&IdealSource, f64) {
     match &scenario.actuator {
         Actuator::IdealSource { source, drive, .. } => match drive.params.stage {
@@ -77,7 +77,7 @@ fn params(scenario: &Scenario) -> &Params {
     &drive(scenario).params
 }
 
-/// Equal but for a few roundings.
+/// Equal up to a few roundings.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-14 * a.abs().max(b.abs())
 }

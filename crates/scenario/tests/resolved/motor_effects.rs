@@ -1,4 +1,4 @@
-//! Effects of a real motor, as the file has them.
+//! Effects of a real motor, as given in the file.
 use super::*;
 use servobench_base::Dq;
 use servobench_plant::pmsm::{
@@ -167,7 +167,7 @@ fn saturation_is_a_curve_of_what_the_data_sheet_gives() {
     }
 }
 
-/// The table is read beside the scenario, checked, and told apart from what may be another motor's.
+/// The table is read beside the scenario, checked, and compared with the motor's data.
 #[test]
 fn a_flux_map_is_read_from_its_file() {
     let folder = tempfile::tempdir().unwrap();

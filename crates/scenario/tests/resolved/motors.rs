@@ -1,4 +1,4 @@
-//! Motors, and what stands for one.
+//! Motors, and models in place of one.
 use super::*;
 
 const LINEAR: &str = r#"
@@ -86,8 +86,8 @@ fn the_emps_controller_in_newtons() {
     assert_eq!(scenario.engines, [EngineName::Exact, EngineName::Rapier, EngineName::Mujoco]);
 }
 
-/// Oracle: 12 kHz ticks are 1/12000 s apart, whatever decimal fraction is typed for it; 16 000 samples of the typed time
-/// would be 6e-7 samples short, and set-points would switch a tick late.
+/// Oracle: 12 kHz ticks are 1/12000 s apart, whatever decimal fraction is typed; 16 000 samples of the typed time would be 6e-7
+/// samples short, and set-points would switch a tick late.
 #[test]
 fn a_sample_time_is_whole_ticks_to_the_bit() {
     for (typed, ticks) in

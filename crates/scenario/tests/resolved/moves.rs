@@ -43,7 +43,7 @@ duration = "2 s"
     assert!(same(*pause, 0.2));
 }
 
-/// Every way of moving, and what the steps take from `[setpoint]`.
+/// Every kind of move, and the keys that steps inherit from `[setpoint]`.
 #[test]
 fn moves_of_every_family() {
     let folder = tempfile::tempdir().unwrap();
@@ -127,7 +127,7 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     assert_eq!(generator(turning), online(Target::Velocity(0.1), Order::Third, Effort::Refined));
     assert_eq!((passing.hold, turning.hold), (0.0, 0.2));
     assert!([passing, turning].iter().all(|step| step.request.generator.ends_in_motion()));
-    // Nothing of its own says so: the move before ends in motion.
+    // No key of its own requires it: the move before ends in motion.
     assert_eq!(generator(home), to(0.0, 0.0));
 
     let knots = vec![Knot::new(0.0, 0.0), Knot::moving(0.01, 0.005, 0.5), Knot::new(0.02, 0.015)];
@@ -143,7 +143,7 @@ rockwell = { shape = "s-curve", deceleration = "8 m/s2", jerk_of_time = "25 %", 
     assert!(positioning.eq([true, true, false, true, false, false, false]));
 }
 
-/// One shaper is a table, several are a list, and "none" is left out of it.
+/// One shaper is a table, several are a list, and "none" is omitted from it.
 #[test]
 fn shapers_of_several_modes() {
     let zv = Shaping { shaper: Shaper::Zv, frequency: 17.5, damping: 0.0 };

@@ -1,4 +1,4 @@
-//! Errors of sensors and effects of the inverter, as the file has them.
+//! Errors of sensors and effects of the inverter, as given in the file.
 use super::*;
 use servobench_plant::{Converter, CurrentSensor, EncoderErrors, Signals, Track};
 
@@ -16,7 +16,7 @@ model = "servo-16khz"
 dc_link = "320 V"
 "#;
 
-/// Oracle: by hand, in SI. All values differ, so that none is in the place of another.
+/// Oracle: by hand, in SI. All values differ, so that a mix-up shows.
 #[test]
 fn every_key_of_an_encoder_becomes_its_parameter() {
     let found = scenario(&format!(

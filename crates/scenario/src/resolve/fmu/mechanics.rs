@@ -36,20 +36,20 @@ impl Port for BodySignal {
     }
 }
 
-/// What acts on mechanics.
+/// Signals that act on mechanics.
 const ON_MECHANICS: [Signal; 3] = [Signal::EffortMotor, Signal::DisturbanceMotor, Signal::DisturbanceLoad];
 /// Position and velocity of the two bodies that mechanics can have; a velocity needs its position.
 const BODIES: [[BodySignal; 2]; 2] =
     [[BodySignal::ShaftPosition, BodySignal::ShaftVelocity], [BodySignal::LoadPosition, BodySignal::LoadVelocity]];
 
-/// The mechanics as an FMU, as far as its own table says.
+/// The mechanics as an FMU, according to its own table.
 pub(in crate::resolve) struct Mechanics {
     fmu: Fmu,
     outputs: Vec<(String, BodySignal)>,
 }
 
 impl Mechanics {
-    /// Which of its variables are what on an axis with these coordinates of motor and load and this transmission.
+    /// The model with its variables assigned, for these coordinates of motor and load and this transmission.
     pub(in crate::resolve) fn model(self, [motor, axis]: [Coordinate; 2], transmission: f64) -> Option<FmuModel> {
         let Self { fmu, outputs } = self;
         let input = |signal, unit| {
@@ -81,7 +81,7 @@ fn port(variable: &str, unit: &str) -> SiPort {
     SiPort { variable: variable.to_owned(), unit: si_unit(unit) }
 }
 
-/// The mechanics as an FMU, where there are such.
+/// The mechanics as an FMU, if there is one.
 #[expect(clippy::option_option, reason = "a wrong table is not the same as none")]
 pub(in crate::resolve) fn mechanics(file: &File, known: Known<'_>, report: &mut Report) -> Option<Option<Mechanics>> {
     let slot = file.axis.given().map_or(&Slot::Absent, |axis| &axis.fmu);

@@ -1,4 +1,4 @@
-//! The sensors of an axis whose drive an FMU replaces: only what is given to an FMU is measured.
+//! The sensors of an axis whose drive an FMU replaces: only signals connected to an FMU are measured.
 use crate::diagnostic::Report;
 use crate::file::{Encoder, File};
 use crate::resolve::refuse;
@@ -7,7 +7,7 @@ use crate::source::Authority;
 use crate::table::Keys as _;
 use servobench_signals::Signal;
 
-/// Refuses the errors of sensors that no FMU is given, and warns of a resolution that none is.
+/// Refuses errors of sensors that no FMU reads, and warns of an unused resolution.
 pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Report) {
     let given = |signal| all.iter().flat_map(|fmu| &fmu.inputs).any(|(_, one)| *one == InputSource::Signal(signal));
     let motor = file.motor.given().and_then(|motor| motor.encoder.given());
@@ -38,7 +38,7 @@ pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Rep
     }
 }
 
-/// What of an encoder changes nothing, as no FMU is given `signal`.
+/// Reports keys of an encoder that have no effect, as no FMU reads `signal`.
 fn encoder_is_idle(encoder: &Encoder, signal: Signal, report: &mut Report) {
     let why = format!("is not used: an FMU replaces the drive, and none is given `{}`", signal.name());
     let help = format!("connect an input to `{}`, or leave it out", signal.name());
@@ -46,7 +46,7 @@ fn encoder_is_idle(encoder: &Encoder, signal: Signal, report: &mut Report) {
     let (of_resolution, errors): (Vec<_>, Vec<_>) =
         encoder.spans().into_iter().partition(|(key, _)| resolution.contains(key));
     refuse(&errors, &why, &help, report);
-    // An FMU that stands for a drive with its encoder counts itself.
+    // An FMU that stands for a drive with its encoder counts by itself.
     for (key, span) in of_resolution {
         if let Some(span) = span.filter(|span| span.source.authority() != Authority::Model) {
             report.warning(span, format!("`{key}` {why}"), help.as_str());

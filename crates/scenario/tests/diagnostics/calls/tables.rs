@@ -1,4 +1,4 @@
-//! What is said of tables: profiles, their scales, switches of cams.
+//! Diagnostics of tables: profiles, their scales, switches of cams.
 use super::*;
 
 #[test]
@@ -140,7 +140,7 @@ fn switches_of_cams() {
             ],
         ),
     ]);
-    // What an update keeps is not said again.
+    // Inputs that an update keeps are not reported again.
     let kept = "switches = [{ track = 0, first = \"2 mm\", last = \"1 mm\" }]\n\
                 updates = [{ when = { at = \"1 s\" }, enable_mask = 0 }]";
     check(&[(
@@ -152,7 +152,7 @@ fn switches_of_cams() {
     )]);
 }
 
-/// On an axis that comes round after 100 mm a window may go over the zero, and every position is within the period.
+/// On an axis with a period of 100 mm a window may cross the zero, and every position is within the period.
 #[test]
 fn switches_of_cams_on_a_modulo_axis() {
     let modulo = lasting().replace("lead = \"10 mm\"\n", "lead = \"10 mm\"\nmodulo = \"100 mm\"\n");
