@@ -1,17 +1,17 @@
-//! What can be said of a plan: its polynomials, their extreme values, where a limit binds.
+//! Analysis of a plan: its polynomials, their extreme values, and the times at which a limit is reached.
 use crate::plan::Plan;
 use servobench_base::Setpoint;
 
-/// A stretch of time in which the set-point is one polynomial.
+/// A time span in which the set-point is a single polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// When it begins (s).
+    /// Start (s).
     pub start: f64,
     /// Its length (s), above zero.
     pub length: f64,
     /// The set-point at its beginning.
     pub state: Setpoint,
-    /// Whether the set-point stays as it is instead of going on with its derivatives.
+    /// True if the set-point is held constant instead of following its derivatives.
     pub is_held: bool,
 }
 
@@ -24,34 +24,34 @@ pub struct Peak {
     pub highest: f64,
 }
 
-/// A time at which a derivative is at its limit.
+/// A time or time span in which a derivative is at its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Binding {
-    /// Which derivative of position, 1 to 4.
+    /// Derivative of position, 1 to 4.
     pub derivative: usize,
-    /// From when (s).
+    /// Start (s).
     pub start: f64,
-    /// For how long (s); 0 for an instant.
+    /// Duration (s); 0 for an instant.
     pub length: f64,
     /// The value there.
     pub value: f64,
 }
 
-/// How often a time is halved: to its rounding.
+/// Bisections of a time interval, down to rounding.
 const HALVINGS: usize = 60;
 
-/// A value this near to its limit, as a part of it, is there.
+/// Relative distance to a limit up to which a value counts as at the limit.
 const NEAR: f64 = 1e-9;
 
 impl Span {
-    /// The set-point `since` (s) after its beginning.
+    /// The set-point `since` (s) after the start.
     #[must_use]
     pub fn after(&self, since: f64) -> Setpoint {
         if self.is_held { self.state } else { self.state.after(since) }
     }
 
-    /// The times since its beginning (s) at which the derivative `k` may be extreme: both ends, and between them where the
-    /// next derivative is zero.
+    /// The times since the start (s) at which the derivative `k` may be extreme: both ends, and between them the zeros of the next
+    /// derivative.
     fn turns(&self, k: usize) -> impl Iterator<Item = f64> {
         let Self { length, state, is_held, .. } = *self;
         let inner = match k {
@@ -70,7 +70,7 @@ impl Span {
 }
 
 impl Span {
-    /// The times since its beginning (s) at which the velocity changes its sign: one at most between those at which it is extreme.
+    /// The times since the start (s) at which the velocity changes sign: at most one between neighbouring extremes of it.
     fn reversals(&self) -> impl Iterator<Item = f64> {
         let mut ends: Vec<f64> = self.turns(1).collect();
         ends.sort_by(f64::total_cmp);
@@ -126,7 +126,7 @@ pub(crate) fn peaks(plan: &Plan) -> [Peak; 4] {
     peaks
 }
 
-/// The lowest and the highest position.
+/// The lowest and the highest position of a plan.
 pub(crate) fn positions(plan: &Plan) -> Peak {
     let ends = [plan.start().x, plan.end().x];
     let mut peak = Peak { lowest: ends[0].min(ends[1]), highest: ends[0].max(ends[1]) };
@@ -151,7 +151,7 @@ pub(crate) fn bindings(plan: &Plan) -> Vec<Binding> {
         let first = found.len();
         for span in spans(plan) {
             let inside = derivative(&span.after(0.5 * span.length), k);
-            // Between the limits of both directions the ends are at one, too.
+            // With the limits of both directions, the ends of a span may be at a limit while its interior is not.
             let is_there = |value: f64| at_limit(value) && value * inside > 0.0;
             let is_whole = is_there(inside) && span.turns(k).all(|t| is_there(derivative(&span.after(t), k)));
             if is_whole {
@@ -173,7 +173,7 @@ pub(crate) fn bindings(plan: &Plan) -> Vec<Binding> {
     found
 }
 
-/// Adds `next`, or lengthens the last of those from `first` on when they touch.
+/// Adds `next`, or extends the last of those from `first` on if they touch.
 fn push(found: &mut Vec<Binding>, first: usize, next: Binding) {
     let last = if found.len() > first { found.last_mut() } else { None };
     match last {

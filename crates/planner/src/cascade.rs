@@ -1,19 +1,19 @@
-//! A sampled move as the forward-Euler cascade makes it.
+//! A sampled move as computed by the forward-Euler cascade.
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
 use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Order, PlanError};
 
-/// Samples at most that are kept of a move.
+/// Largest number of samples stored for a move.
 pub(crate) const MOST_SAMPLES: f64 = 1e7;
 
-/// The refusal of a sample time (s) with which a move takes more samples than are kept.
+/// The error for a sample time (s) with which a move has too many samples.
 pub(crate) fn too_many(sample_time: f64) -> PlanError {
     let bound = "long enough for a move of at most 10 million samples";
     ParamError { name: "sample_time", value: sample_time, bound }.into()
 }
 
-/// A move of so many samples (s) from 0 to `distance`.
+/// A move in `samples` samples, `duration` (s), from 0 to `distance`.
 pub(crate) struct Sampled {
     pub(crate) order: Order,
     pub(crate) distance: f64,
@@ -23,7 +23,7 @@ pub(crate) struct Sampled {
 }
 
 impl Sampled {
-    /// Its set-points, each held until the next, when `runs` are sent.
+    /// Set-points of the cascade driven by `runs`, each held until the next.
     pub(crate) fn cascade(&self, runs: impl Iterator<Item = Run>) -> Result<Polynomials, PlanError> {
         let Self { order, distance, sample_time, samples, duration } = *self;
         if samples as f64 > MOST_SAMPLES {

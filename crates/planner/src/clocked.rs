@@ -1,4 +1,4 @@
-//! Position profiles for a drive on a bus: commands once per cycle, in whole units of the drive.
+//! Position profiles for a drive on a bus: one command per cycle, in whole units of the drive.
 use crate::plan::{Plan, PlanDetails, Sending};
 use crate::polynomials::{Between, Polynomials};
 use crate::table::{CommandRate, Follow, MOST_COMMANDS, TableMove, within};
@@ -7,37 +7,37 @@ use servobench_motion::PlanError;
 use servobench_motion::position_profile::{Clock, ClockedPlateaus, ClockedSpline, Command, Spline};
 use servobench_motion::pvt::{Knot, Table};
 
-/// How velocity commands get to the drive.
+/// Timing and resolution of velocity commands to a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandCycle {
-    /// Time from one instant at which a command can be sent to the next (s).
+    /// Time between two instants at which a command can be sent (s).
     pub period: f64,
     /// One of those instants, from the start of the move (s).
     pub first: f64,
-    /// The velocity (m/s or rad/s) of which the drive takes whole multiples up to 2³¹ − 1, and accelerations of as much per second up to
-    /// 2³² − 1; 0 for a drive that takes any.
+    /// Unit (m/s or rad/s) of the drive's velocities, whole multiples up to 2³¹ − 1, and per second of its accelerations, up to 2³² − 1;
+    /// 0 for a drive that accepts any value.
     pub unit: f64,
 }
 
-/// Part of the time between two commands by which a ramp may miss the second and still be taken to end there.
+/// Share of the time between two commands by which a ramp may miss the second and still count as ending there.
 const NEAR: f64 = 1e-9;
 
-/// Commands of a move, and what a drive makes of them that goes to each velocity in a straight line.
+/// Commands of a move as executed by a drive that changes to each velocity along a straight line.
 struct Obeyed {
-    /// When each straight line begins (s), and the set-point there.
+    /// Start of each straight line (s), and the set-point there.
     parts: Vec<(f64, Setpoint)>,
-    /// At the end of the move (s).
+    /// End of the move (s).
     until: f64,
     end: Setpoint,
 }
 
 impl TableMove {
-    /// Whether a drive is sent velocities for it.
+    /// True if a drive is sent velocities for it.
     pub(crate) const fn is_sent(&self) -> bool {
         !matches!(self.follow, Follow::Segments)
     }
 
-    /// The same in `factor` times the time.
+    /// The same move in `factor` times the time.
     pub(crate) fn slowed(&self, factor: f64) -> Self {
         let start = self.knots.first().map_or(0.0, |knot| knot.t);
         let slowed =
@@ -51,7 +51,7 @@ impl TableMove {
         Self { knots: self.knots.iter().map(slowed).collect(), follow, ..*self }
     }
 
-    /// The plan for a drive that gets its commands so.
+    /// The plan for a drive that receives its commands in `cycle`.
     pub(crate) fn plan_in(&self, cycle: &CommandCycle) -> Result<Plan, PlanError> {
         non_negative("command_unit", cycle.unit)?;
         let clock = Clock::new(self.knots.first().map_or(0.0, |knot| knot.t) + cycle.first, cycle.period)?;
@@ -75,7 +75,7 @@ impl TableMove {
         }
     }
 
-    /// The plan that follows the spline by as many commands per second, or by one at each instant.
+    /// The plan that follows the spline with `rate` commands per second, or one at each instant if those are fewer.
     fn stepped_in(&self, rate: f64, clock: Clock, unit: f64) -> Result<Plan, PlanError> {
         let (mut knots, mut scratch) = (self.knots.clone(), vec![0.0; self.knots.len()]);
         let (start, end) = self.ends();
@@ -93,7 +93,7 @@ impl TableMove {
         Ok(self.plan_of(obeyed, PlanDetails::Commands { commands, error, sending: Sending::Rate(most) }))
     }
 
-    /// The plan of the fewest whole commands per second that keeps so near to the spline.
+    /// The plan with the fewest whole commands per second whose error to the spline is at most `allowed`.
     fn within(&self, allowed: f64, clock: Clock, unit: f64) -> Result<Plan, PlanError> {
         let error = |plan: &Plan| match plan.details() {
             PlanDetails::Commands { error, .. } => *error,
@@ -139,11 +139,11 @@ impl TableMove {
     }
 }
 
-/// The commands as the drive takes them, whose velocity is `before` at first: the nearest whole `unit` of each velocity, and of the
-/// acceleration that leads there in the same time, at least one.
+/// The commands as accepted by a drive whose initial velocity is `before`: the nearest whole `unit` of each velocity, and of the
+/// acceleration that reaches it in the same time, at least one.
 ///
 /// # Errors
-/// [`PlanError`] for a velocity or an acceleration of more units than the drive's objects hold.
+/// [`PlanError`] for a velocity or an acceleration that exceeds the range of the drive's objects.
 fn rounded(commands: impl Iterator<Item = Command>, before: f64, unit: f64) -> Result<Vec<Command>, PlanError> {
     let (mut exact, mut taken) = (before, before);
     let round = |command: Command| {
@@ -172,7 +172,7 @@ fn rounded(commands: impl Iterator<Item = Command>, before: f64, unit: f64) -> R
     commands.map(round).collect()
 }
 
-/// What a drive makes of `commands` from `state` at `start` until `until` (s).
+/// Motion of a drive that executes `commands` from `state` at `start` until `until` (s).
 fn obeyed(commands: &[Command], mut state: Setpoint, start: f64, until: f64) -> Obeyed {
     let (mut parts, mut t) = (Vec::with_capacity(2 * commands.len() + 1), start);
     let mut go = |state: &mut Setpoint, a: f64, to: f64| {
@@ -201,7 +201,7 @@ fn obeyed(commands: &[Command], mut state: Setpoint, start: f64, until: f64) -> 
 }
 
 impl Obeyed {
-    /// The set-point at `t` (s), of the table's own time.
+    /// The set-point at `t` (s), in the time of the table.
     fn at(&self, t: f64) -> Setpoint {
         let part = self.parts.partition_point(|(begin, _)| *begin <= t).saturating_sub(1);
         match self.parts.get(part) {
@@ -210,7 +210,7 @@ impl Obeyed {
         }
     }
 
-    /// The largest difference of position to `table` at any time (m or rad), exact but for rounding.
+    /// Largest difference of position from `table` at any time (m or rad), exact except for rounding.
     fn largest_difference(&self, table: Table<'_>) -> f64 {
         let knots = table.knots();
         let begins = self.parts.iter().map(|(begin, _)| *begin).chain(knots.iter().map(|knot| knot.t));
@@ -231,7 +231,7 @@ impl Obeyed {
     }
 }
 
-/// When a position that goes on with its derivatives turns (s): v + a·s + j/2·s² = 0, without cancellation.
+/// Zeros of the velocity (s): v + a·s + j/2·s² = 0, without cancellation.
 fn turns(from: &Setpoint) -> [f64; 2] {
     let Setpoint { v, a, j, .. } = *from;
     let q = -(a + (a * a - 2.0 * j * v).sqrt().copysign(a));

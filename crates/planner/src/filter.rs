@@ -1,4 +1,4 @@
-//! What may stand between a generator and the drive.
+//! Filters between a generator and the drive.
 use crate::cascade::{MOST_SAMPLES, too_many};
 use crate::plan::Plan;
 use crate::polynomials::{Between, Polynomials};
@@ -10,17 +10,16 @@ use servobench_motion::shape::{Impulses, MovingAverage, Shaper, Vibration};
 /// Input shapers, then moving averages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
-    /// Each a sum of parts of the set-point, each later than the one before; exact at any time. One behind the other, for the
-    /// modes of the axis.
+    /// Each a sum of scaled and delayed set-points, exact at any time. Applied in series, one for each mode of the axis.
     pub shapers: Vec<Shaping>,
-    /// Means of the last samples.
+    /// Moving averages after the shapers.
     pub averages: Option<Averages>,
 }
 
-/// An input shaper and the vibration that it takes out.
+/// An input shaper and the vibration that it suppresses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shaping {
-    /// Which shaper.
+    /// Type of the shaper.
     pub shaper: Shaper,
     /// Natural frequency of the vibration (Hz).
     pub frequency: f64,
@@ -28,7 +27,7 @@ pub struct Shaping {
     pub damping: f64,
 }
 
-/// Moving averages, one after the other, of samples; a set-point is held until the next one.
+/// Moving averages in series, of samples; a set-point is held until the next one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Averages {
     /// Their lengths (s), whole numbers of samples.
@@ -37,22 +36,22 @@ pub struct Averages {
     pub sample_time: f64,
 }
 
-/// A length this near to a whole number of samples (in samples) is one.
+/// Distance to a whole number of samples (in samples) up to which a length counts as whole.
 const NEAR: f64 = 1e-6;
 
 impl Filter {
     /// No filter.
     pub const NONE: Self = Self { shapers: Vec::new(), averages: None };
 
-    /// The impulses of all shapers, of each with each of the others; nothing without shapers.
+    /// The impulses of all shapers, convolved; `None` without shapers.
     ///
     /// # Errors
-    /// As [`Shaping::impulses`] and [`Impulses::and`].
+    /// Those of [`Shaping::impulses`] and [`Impulses::and`].
     pub fn impulses(&self) -> Result<Option<Impulses>, PlanError> {
         self.shapers.iter().map(Shaping::impulses).reduce(|all, next| all?.and(&next?)).transpose()
     }
 
-    /// The same with the impulses of the shapers.
+    /// The filter with the impulses of its shapers.
     pub(crate) fn solved(&self) -> Result<Solved<'_>, PlanError> {
         Ok(Solved { impulses: self.impulses()?, averages: self.averages.as_ref() })
     }
@@ -62,7 +61,7 @@ impl Shaping {
     /// The impulses of the shaper.
     ///
     /// # Errors
-    /// As [`Vibration::new`] and [`Shaper::impulses`].
+    /// Those of [`Vibration::new`] and [`Shaper::impulses`].
     pub fn impulses(&self) -> Result<Impulses, PlanError> {
         self.shaper.impulses(&Vibration::new(TAU * self.frequency, self.damping)?)
     }
@@ -75,13 +74,13 @@ pub(crate) struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    /// The same with the impulses at whole samples of `sample_time` (s), as the set-points that they shape are.
+    /// The same filter with the impulses at whole samples of `sample_time` (s), as are the set-points that they shape.
     pub(crate) fn sampled(self, sample_time: f64) -> Result<Self, PlanError> {
         let impulses = self.impulses.map(|impulses| impulses.on_grid(sample_time)).transpose()?;
         Ok(Self { impulses, ..self })
     }
 
-    /// How much longer a move is behind it (s).
+    /// Time by which it lengthens a move (s).
     pub(crate) fn length(&self) -> f64 {
         self.impulses.as_ref().map_or(0.0, Impulses::duration)
             + self.averages.map_or(0.0, |averages| averages.lengths.iter().sum())
@@ -89,10 +88,10 @@ impl Solved<'_> {
 }
 
 impl Averages {
-    /// What they make of `plan`.
+    /// The set-points of `plan` after the averages.
     pub(crate) fn of(&self, plan: &Plan) -> Result<Polynomials, PlanError> {
         let sample_time = positive("sample_time", self.sample_time)?;
-        // Before the move it rests: what acts from its first instant on is new to the averages, as snap is that is switched there.
+        // Before the move the axis rests: a derivative that begins at the first instant, such as snap, is a step to the averages.
         let start = Setpoint::at_rest(plan.start().x);
         let mut filters = Vec::with_capacity(self.lengths.len());
         let mut total = 0;

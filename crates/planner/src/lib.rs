@@ -1,8 +1,8 @@
-//! From a move as it was asked for to a set-point over time: every generator of `servobench-motion` behind one interface.
+//! From the request for a move to a set-point over time: every generator of `servobench-motion` behind one interface.
 //!
-//! A [`Request`] says what is wanted: from rest to rest, from a state of motion, by Rockwell's words, through a table. Planned, it is a
-//! [`Plan`]: the set-point at any time, its polynomials, its peaks against the limits and what is particular to its generator. A plan may be
-//! stretched and shaped; it stays a plan.
+//! A [`Request`] describes the move: from rest to rest, from a state of motion, by Rockwell's operands, through a table. Planning yields
+//! a [`Plan`]: the set-point at any time, its polynomials, its peaks against the limits and the details of its generator. A plan can be
+//! stretched and shaped, which yields another plan.
 //!
 //! ```
 //! use servobench_motion::{Limits, Order};

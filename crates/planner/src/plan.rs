@@ -17,33 +17,33 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Plan {
     course: Arc<dyn Course + Send + Sync>,
-    /// Parts of the course and how much later they come: one of all at once unless it is shaped.
+    /// Scaled and delayed parts of the trajectory: one of amplitude 1 without delay unless the plan is shaped.
     parts: Vec<Impulse>,
-    /// Limits of velocity, acceleration, jerk, snap; infinite where there is none.
+    /// Limits of velocity, acceleration, jerk, snap; infinite without a limit.
     limits: [Sides; 4],
     details: PlanDetails,
-    /// Duration of the published profile (s), where this is another.
+    /// Duration of the published profile (s), if the plan is another.
     published: Option<f64>,
-    /// Length of what filters it (s).
+    /// Length of its filter (s).
     filter: f64,
-    /// How set-points are made of a sampled profile.
+    /// Computation of set-points from a sampled profile.
     execution: Execution,
-    /// Sample time (s), where a set-point stays until the next one instead of going on with its derivatives.
+    /// Sample time (s), if each set-point is held until the next one instead of following its derivatives.
     held: Option<f64>,
 }
 
-/// What is particular to the generator of a plan.
+/// Details of a plan that depend on its generator.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlanDetails {
     /// A profile from rest to rest.
     Profile(Box<Profile>),
-    /// A sampled move of the fewest samples, through boxes or not.
+    /// A sampled move with the fewest samples, of any shape.
     Shortest(Box<Shortest>),
-    /// A way from a state of motion.
+    /// A trajectory from a state of motion.
     Transition {
         /// Its order.
         order: Order,
-        /// How far it goes beyond the limits, as a part of them.
+        /// Amount by which it exceeds the limits, relative to them.
         excess: f64,
     },
     /// A move by Rockwell's operands.
@@ -55,22 +55,21 @@ pub enum PlanDetails {
     },
     /// A move along the segments of a table.
     Table {
-        /// The highest derivative that is no impulse: 1 where velocity jumps, 2 where acceleration does.
+        /// The highest derivative without impulses: 1 where velocity jumps, 2 where acceleration does.
         order: usize,
     },
     /// A table followed by profile velocities.
     Commands {
-        /// What is sent.
+        /// The commands.
         commands: Vec<Command>,
-        /// What the position differs at most (m or rad): with plateaus from the points at their times, otherwise from the spline's at
-        /// any time.
+        /// Largest difference of position (m or rad): with plateaus from the points at their times, otherwise from the spline at any time.
         error: f64,
-        /// When.
+        /// Times of the commands.
         sending: Sending,
     },
 }
 
-/// When velocity commands are sent.
+/// Times at which velocity commands are sent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sending {
     /// At the beginning of the ramp from one plateau to the next.
@@ -78,11 +77,11 @@ pub enum Sending {
         /// Share of a segment at either end in which velocity changes.
         share: f64,
     },
-    /// So many times per second.
+    /// This many times per second.
     Rate(f64),
 }
 
-/// Longest duration (s) that a move can be stretched to: its fourth power is still a normal number.
+/// Longest duration (s) to which a move can be stretched: its fourth power is still a normal number.
 const LONGEST: f64 = 1e60;
 
 impl Plan {
@@ -100,7 +99,7 @@ impl Plan {
         }
     }
 
-    /// That of `profile`.
+    /// The plan along `profile`.
     pub(crate) fn along(profile: &Profile, execution: Execution) -> Result<Self, PlanError> {
         let details = PlanDetails::Profile(Box::new(*profile));
         match (execution, profile.samples()) {
@@ -119,7 +118,7 @@ impl Plan {
         }
     }
 
-    /// That of `shortest`.
+    /// The plan along `shortest`.
     pub(crate) fn along_shortest(shortest: Shortest, execution: Execution) -> Result<Self, PlanError> {
         let sample_time = shortest.sample_time();
         let details = PlanDetails::Shortest(Box::new(shortest.clone()));
@@ -146,17 +145,17 @@ impl Plan {
         Self { published, ..self }
     }
 
-    /// The same course in `duration` seconds, what filters it included, every derivative lower in proportion.
+    /// The same trajectory in `duration` seconds including the length of its filter; every derivative is reduced in proportion.
     pub(crate) fn stretched_to(mut self, duration: f64, filter: f64) -> Result<Self, PlanError> {
         let shortest = self.course.duration() + filter;
         let inner = positive("duration", duration)? - filter;
         if inner < self.course.duration() * (1.0 - 1e-12) {
             return Err(PlanError::TooShort { duration, shortest });
         }
-        // The published profile would have been slowed, too.
+        // The published profile would also be slowed.
         self.published = None;
         if matches!(self.details, PlanDetails::Shortest(_)) {
-            // Asked for its own duration: see the request.
+            // The duration is its own, see `Request::slowed`.
             return Ok(self);
         }
         if let PlanDetails::Profile(profile) = &self.details {
@@ -180,13 +179,13 @@ impl Plan {
         Ok(self)
     }
 
-    /// The rest of it from `start` (s) on, as a plan whose times and positions count from there; of one that nothing filters.
+    /// The remainder of an unfiltered plan from `start` (s) on, as a plan whose times and positions count from there.
     #[must_use]
     pub fn rest(&self, start: f64) -> Self {
         Self { course: Arc::new(Rest::of(Arc::clone(&self.course), start)), ..self.clone() }
     }
 
-    /// The same move behind `filter`.
+    /// The same move after `filter`.
     pub(crate) fn filtered(mut self, filter: &Solved<'_>) -> Result<Self, PlanError> {
         if let Some(impulses) = &filter.impulses {
             self.parts = impulses.iter().collect();
@@ -206,57 +205,57 @@ impl Plan {
         self.course.duration() + self.parts.last().map_or(0.0, |last| last.time)
     }
 
-    /// How much of the duration is that of what filters it (s).
+    /// Share of the duration that is due to its filter (s).
     #[must_use]
     pub const fn filter_length(&self) -> f64 {
         self.filter
     }
 
-    /// Sample time (s) of a plan whose set-points stay until the next one.
+    /// Sample time (s) of a plan whose set-points are held until the next one.
     #[must_use]
     pub const fn held(&self) -> Option<f64> {
         self.held
     }
 
-    /// The set-point at `t` (s); before the start the first, from the end on that of the end, which goes on at its velocity.
+    /// The set-point at `t` (s); before the start that of the start, after the end that of the end, continued at its velocity.
     ///
-    /// For many in the order of time: [`Reader`](crate::Reader).
+    /// For many times in ascending order: [`Reader`](crate::Reader).
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         self.reader_at(t).at(t)
     }
 
-    /// Where it starts.
+    /// Set-point at the start.
     #[must_use]
     pub fn start(&self) -> Setpoint {
         self.at(0.0)
     }
 
-    /// Where it ends.
+    /// Set-point at the end.
     #[must_use]
     pub fn end(&self) -> Setpoint {
         self.at(self.duration())
     }
 
-    /// Limits of velocity, acceleration, jerk and snap that it was planned with; infinite where there is none.
+    /// Limits of velocity, acceleration, jerk and snap of the planning; infinite without a limit.
     #[must_use]
     pub const fn limits(&self) -> &[Sides; 4] {
         &self.limits
     }
 
-    /// What is particular to its generator.
+    /// Details that depend on its generator.
     #[must_use]
     pub const fn details(&self) -> &PlanDetails {
         &self.details
     }
 
-    /// Duration of the published profile for the same request (s), where this is another one.
+    /// Duration of the published profile for the same request (s), if the plan is another.
     #[must_use]
     pub const fn published_duration(&self) -> Option<f64> {
         self.published
     }
 
-    /// The highest derivative of position that is no impulse: 1 to 4.
+    /// The highest derivative of position without impulses: 1 to 4.
     #[must_use]
     pub fn order(&self) -> usize {
         match &self.details {
@@ -280,14 +279,14 @@ impl Plan {
         analysis::peaks(self)
     }
 
-    /// The lowest and the highest position: beyond start and end where the move turns round.
+    /// The lowest and the highest position: beyond start and end if the move reverses.
     #[must_use]
     pub fn positions(&self) -> Peak {
         analysis::positions(self)
     }
 
-    /// The largest magnitudes of velocity, acceleration, jerk and snap; infinite above its order. Of a profile that nothing
-    /// filters by its closed forms.
+    /// The largest magnitudes of velocity, acceleration, jerk and snap; infinite above its order. For an unfiltered profile from its
+    /// closed forms.
     #[must_use]
     pub fn largest(&self) -> [f64; 4] {
         if let Some(profile) = self.plain_profile() {
@@ -297,7 +296,7 @@ impl Plan {
         self.peaks().map(|Peak { lowest, highest }| highest.max(-lowest))
     }
 
-    /// Where velocity, acceleration, jerk and snap are at their limits.
+    /// Times at which velocity, acceleration, jerk and snap are at their limits.
     #[must_use]
     pub fn bindings(&self) -> Vec<Binding> {
         analysis::bindings(self)
@@ -305,7 +304,7 @@ impl Plan {
 
     /// Start and length (s) of the longest part at constant velocity; length 0 without one.
     ///
-    /// Of a profile without one the start is its middle.
+    /// For a profile without one the start is its middle.
     #[must_use]
     pub fn cruise(&self) -> (f64, f64) {
         match self.plain_profile() {
@@ -314,7 +313,7 @@ impl Plan {
         }
     }
 
-    /// The profile, where nothing filters it.
+    /// The profile, if it is not filtered.
     fn plain_profile(&self) -> Option<&Profile> {
         match &self.details {
             PlanDetails::Profile(profile) if self.filter == 0.0 && self.held.is_none() => Some(profile),
@@ -332,7 +331,7 @@ impl Plan {
 }
 
 impl PlanDetails {
-    /// Those of the same move in a time that is `factor` times as long.
+    /// Changes them to those of the same move in `factor` times the time.
     fn slow(&mut self, factor: f64) {
         match self {
             Self::Rockwell { acceleration, deceleration } => {

@@ -1,4 +1,4 @@
-//! A move as points, between which a drive goes along cubics by itself (PVT), and how far from the move that leads.
+//! A move as points, between which a drive generates cubics (PVT), and their deviation from the move.
 use crate::analysis::Span;
 use crate::plan::Plan;
 use crate::request::{Generator, Request};
@@ -7,50 +7,49 @@ use servobench_base::{ParamError, Setpoint, positive};
 use servobench_motion::PlanError;
 use servobench_motion::pvt::Knot;
 
-/// When the points of a move are.
+/// Times of the points of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointTimes {
     /// Time from point to point (s).
     pub spacing: f64,
-    /// Whole multiples of it are the time of the last point (s), which comes that much behind the end of a move to rest; at the end
-    /// itself where it is zero.
+    /// Unit (s) of the time of the last point, which is a whole multiple at or after the end of a move to rest; zero: exactly the end.
     pub unit: f64,
 }
 
-/// The way through the points of a move.
+/// The trajectory through the points of a move.
 #[derive(Debug, Clone)]
 pub struct PointMove {
     /// The points, from time 0 on.
     pub knots: Vec<Knot>,
-    /// The way through them.
+    /// The trajectory through them.
     pub way: Plan,
-    /// How far it leads from the move.
+    /// Deviation of that from the move.
     pub deviation: Deviation,
 }
 
-/// Where two moves are the farthest apart.
+/// The largest deviation between two moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// By how much (m or rad), a magnitude.
+    /// Magnitude (m or rad).
     pub distance: f64,
-    /// When (s).
+    /// Time (s).
     pub time: f64,
 }
 
-/// What a time counts as one with (s, as a part of it).
+/// Relative tolerance for equal times.
 const NEAR: f64 = 1e-9;
-/// Points at most: as many as a table has that is read.
+/// Largest number of points: that of a table that can be read.
 const MOST_POINTS: f64 = 5e6;
-/// Longest time from point to point that is looked for (ms): what a point can say.
+/// Longest time from point to point in the search (ms): the range of a point's time.
 const LONGEST: u8 = 255;
-/// Steps of a bisection that leave nothing of an interval but rounding.
+/// Bisections that reduce an interval to rounding.
 const BISECTIONS: u32 = 60;
 
 impl PointTimes {
-    /// Time from point to point by default (s).
+    /// Default time from point to point (s).
     pub const SPACING: f64 = 0.01;
 
-    /// Points every `spacing` (s), the last of a move to rest at a whole millisecond if the others are, as drives count them.
+    /// Points every `spacing` (s); the last of a move to rest is at a whole millisecond if the spacing is, as drives count time.
     #[must_use]
     pub fn every(spacing: f64) -> Self {
         let milliseconds = 1e3 * spacing;
@@ -58,7 +57,7 @@ impl PointTimes {
         Self { spacing, unit: if is_whole { 1e-3 } else { 0.0 } }
     }
 
-    /// The time of point `k` (s): the nearest number to the decimal one where the spacing is whole microseconds.
+    /// The time of point `k` (s): for a spacing of whole microseconds the nearest number to the decimal one.
     fn time(self, k: f64) -> f64 {
         multiple(self.spacing, k)
     }
@@ -75,18 +74,18 @@ impl PointTimes {
     }
 }
 
-/// `k` times `time` (s), rounded once where the time is whole microseconds.
+/// `k` times `time` (s), rounded once if the time is a whole number of microseconds.
 fn multiple(time: f64, k: f64) -> f64 {
     let whole = (1e6 * time).round();
     if (1e6 * time - whole).abs() < NEAR * whole { k * whole / 1e6 } else { k * time }
 }
 
 impl Plan {
-    /// The move as points at `times`, with the velocities that it has there.
+    /// The move as points at `times`, with its velocities there.
     ///
     /// # Errors
-    /// [`PlanError::Parameter`] for a time between points that is not above zero, or so short that there were more than five million
-    /// points; [`PlanError`] for points that are no table.
+    /// [`PlanError::Parameter`] for a time between points that is not above zero, or that leads to more than five million points;
+    /// [`PlanError`] for points that are not a valid table.
     pub fn in_points(&self, times: PointTimes) -> Result<PointMove, PlanError> {
         positive("point_time", times.spacing)?;
         let last = times.last(self);
@@ -111,8 +110,8 @@ impl Plan {
         self.through(knots)
     }
 
-    /// The same where they are as rare as keeps the way through them within `allowed` (m or rad) of the move: whole milliseconds
-    /// apart, 255 at most. And the time from point to point (s).
+    /// The move as points that are as rare as possible with a deviation of at most `allowed` (m or rad): at equal distances of whole
+    /// milliseconds, at most 255. Returns the times of the points with the move.
     ///
     /// # Errors
     /// [`PlanError::Parameter`] for a deviation that is not above zero, or smaller than that of points every millisecond; the others
@@ -130,10 +129,10 @@ impl Plan {
         Err(ParamError { name: "allowed_deviation", value: allowed, bound }.into())
     }
 
-    /// The way through `knots`, which stand for this move from their first time on.
+    /// The trajectory through `knots`, which represent this move from their first time on.
     ///
     /// # Errors
-    /// [`PlanError`] for points that are no table.
+    /// [`PlanError`] for points that are not a valid table.
     pub fn through(&self, knots: Vec<Knot>) -> Result<PointMove, PlanError> {
         let table = TableMove { knots, velocities: Velocities::Given, follow: Follow::Segments };
         let way = Request::new(Generator::Table(table.clone())).plan()?.within(*self.limits());
@@ -141,7 +140,7 @@ impl Plan {
         Ok(PointMove { knots: table.knots, way, deviation })
     }
 
-    /// Where this move and `other`, which begin at the same time, are the farthest apart: exact but for rounding.
+    /// Largest deviation between this move and `other`, which begin at the same time: exact except for rounding.
     #[must_use]
     pub fn deviation(&self, other: &Self) -> Deviation {
         let mut farthest = Deviation { distance: 0.0, time: 0.0 };
@@ -169,7 +168,7 @@ impl Plan {
     }
 }
 
-/// The polynomials of a plan, the last of which goes on as long as is asked for.
+/// The polynomials of a plan, the last of which extends to any requested time.
 struct Pieces<I> {
     spans: I,
     now: Span,
@@ -187,7 +186,7 @@ impl<'a> Pieces<Box<dyn Iterator<Item = Span> + 'a>> {
         Self { spans, now, end }
     }
 
-    /// That which holds at `t` (s), not before the last one that was asked for.
+    /// The polynomial at `t` (s), which must not precede the previous request.
     fn at(&mut self, t: f64) -> Span {
         while self.now.start + self.now.length <= t && self.now.start < self.end.start {
             self.now = self.spans.next().unwrap_or(self.end);
@@ -196,7 +195,7 @@ impl<'a> Pieces<Box<dyn Iterator<Item = Span> + 'a>> {
     }
 }
 
-/// The distance of two polynomials: Σ c[k]·t^k.
+/// The difference of two polynomials: Σ c[k]·t^k.
 struct Apart {
     c: [f64; 5],
 }
@@ -215,7 +214,7 @@ impl Apart {
         self.c.iter().rev().fold(0.0, |sum, c| sum * t + c)
     }
 
-    /// What the magnitude is at most up to `length`.
+    /// Upper bound of the magnitude up to `length`.
     fn bound(&self, length: f64) -> f64 {
         self.c.iter().rev().fold(0.0, |sum, c| sum * length + c.abs())
     }
@@ -225,7 +224,7 @@ impl Apart {
         c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * 4.0 * c4))
     }
 
-    /// Times up to `length` at which the distance may be extreme: both ends, and where the slope changes its sign.
+    /// Times up to `length` at which the distance may be extreme: both ends, and the sign changes of the slope.
     fn turns(&self, length: f64) -> Vec<f64> {
         let [_, _, c2, c3, c4] = self.c;
         // Between the zeros of its derivative, c2 + 3·c3·t + 6·c4·t², the slope is monotonic.

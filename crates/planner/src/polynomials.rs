@@ -1,35 +1,35 @@
-//! A course of any number of polynomials, kept on the heap.
+//! A trajectory of any number of polynomials, on the heap.
 use servobench_base::Setpoint;
 use servobench_motion::{Course, Piece};
 
-/// Polynomials one after the other.
+/// Consecutive polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Polynomials {
-    /// When each begins (s), the first at 0, ascending.
+    /// Start of each (s), the first at 0, ascending.
     starts: Vec<f64>,
-    /// The set-points at their beginning.
+    /// The set-points at the starts.
     anchors: Vec<Setpoint>,
     between: Between,
     duration: f64,
     end: Setpoint,
-    /// A beginning that is nearer than this counts as reached (s).
+    /// A start closer than this counts as reached (s).
     tolerance: f64,
 }
 
-/// What a set-point does until the next one.
+/// Continuation of a set-point until the next one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Between {
-    /// It goes on with its derivatives.
+    /// Continues with its derivatives.
     Polynomial,
-    /// It stays.
+    /// Is held.
     Held,
 }
 
-/// Part of a sample by which its beginning may be missed.
+/// Share of a sample by which its start may be missed.
 const NEAR: f64 = 1e-9;
 
 impl Polynomials {
-    /// Those that begin at the times and with the set-points of `parts`, the first at time 0, up to `end` at `duration` (s).
+    /// Polynomials that start at the times and set-points of `parts`, the first at time 0, up to `end` at `duration` (s).
     pub(crate) fn new(
         parts: impl IntoIterator<Item = (f64, Setpoint)>,
         between: Between,
@@ -37,13 +37,13 @@ impl Polynomials {
         end: Setpoint,
     ) -> Self {
         let (starts, anchors): (Vec<f64>, _) = parts.into_iter().unzip();
-        // A multiple of the sample time differs from that of a rate by a rounding or two.
+        // A multiple of the sample time differs from one of a task's period by a rounding or two.
         let samples = if between == Between::Held { starts.len() as f64 } else { f64::INFINITY };
         let tolerance = (4.0 * f64::EPSILON * duration).max(NEAR * duration / samples);
         Self { starts, anchors, between, duration, end, tolerance }
     }
 
-    /// Those that `piece` gives one after the other from `start` (s) until `end` (s) of its own time.
+    /// The polynomials that `piece` returns in sequence from `start` (s) until `end` (s) of its own time.
     pub(crate) fn collect(start: f64, end: f64, mut piece: impl FnMut(f64) -> Piece) -> Self {
         let (mut t, mut parts) = (start, Vec::new());
         while t < end {
@@ -56,7 +56,7 @@ impl Polynomials {
 }
 
 impl Polynomials {
-    /// The set-points at the beginning of each with its length (s).
+    /// The set-point at the start of each, with its length (s).
     pub(crate) fn parts(&self) -> impl Iterator<Item = (Setpoint, f64)> {
         let ends = self.starts.iter().skip(1).copied().chain([self.duration]);
         self.anchors.iter().zip(self.starts.iter().zip(ends)).map(|(anchor, (start, end))| (*anchor, end - start))

@@ -1,17 +1,17 @@
-//! Set-points in the order of time, without a search at each.
+//! Set-points at ascending times, without a search for each.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::plan::Plan;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Piece;
 
-/// What holds of a [`Plan`] at one time and for a while after it.
+/// The polynomials of a [`Plan`] valid at one time and for a while after it.
 ///
 /// Nothing is allocated after the first look-up.
 #[derive(Debug, Clone, Stateful)]
 pub struct Reader {
-    /// The polynomial of the first part, which has no delay: the only one, unless the plan is shaped.
+    /// The polynomial of the first part, which has no delay: the only one unless the plan is shaped.
     first: Piece,
-    /// Those of the parts that come later: part, delay (s), polynomial.
+    /// Those of the delayed parts: amplitude, delay (s), polynomial.
     later: Vec<(f64, f64, Piece)>,
 }
 
@@ -22,7 +22,7 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// What holds at `t` (s) of `plan`.
+    /// Looks up the polynomials at `t` (s) of `plan`.
     pub fn look_up(&mut self, plan: &Plan, t: f64) {
         self.first = plan.course().piece(t);
         self.later.clear();
@@ -37,14 +37,14 @@ impl Reader {
         }));
     }
 
-    /// Whether it still holds at `t` (s), a time not before that of the look-up.
+    /// True if it is still valid at `t` (s), a time not before that of the look-up.
     #[inline(always)]
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
         self.first.holds(t) && self.later.iter().all(|(_, delay, piece)| piece.holds(t - delay))
     }
 
-    /// The set-point at `t` (s), a time at which it holds.
+    /// The set-point at `t` (s), a time at which it is valid.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
@@ -57,9 +57,9 @@ impl Reader {
         Setpoint { x, v, a, j, s }
     }
 
-    /// The same with the later parts: position and its derivatives.
+    /// The set-point with the delayed parts: position and its derivatives.
     fn with_later(&self, first: Setpoint, t: f64) -> [f64; 5] {
-        // Differences from the first part: at rest all are the same bit for bit.
+        // Differences from the first part: at rest all parts agree bit for bit.
         let Setpoint { x, v, a, j, s } = self.later.iter().fold(first, |sum, (part, delay, piece)| {
             let Setpoint { x, v, a, j, s } = piece.at(t - delay);
             Setpoint {
@@ -73,14 +73,14 @@ impl Reader {
         [x, v, a, j, s]
     }
 
-    /// When the first of its polynomials ceases to hold (s).
+    /// Earliest end of validity of its polynomials (s).
     pub(crate) fn ends(&self) -> f64 {
         self.later.iter().map(|(_, delay, piece)| piece.ends() + delay).fold(self.first.ends(), f64::min)
     }
 }
 
 impl Plan {
-    /// A reader that has found what holds at `t` (s).
+    /// A reader after the look-up at `t` (s).
     pub(crate) fn reader_at(&self, t: f64) -> Reader {
         let mut reader = Reader::default();
         reader.look_up(self, t);

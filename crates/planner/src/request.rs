@@ -1,4 +1,4 @@
-//! What can be asked for.
+//! Requests for moves.
 use crate::clocked::CommandCycle;
 use crate::filter::Filter;
 use crate::plan::{Plan, PlanDetails};
@@ -8,19 +8,19 @@ use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transi
 use servobench_motion::sampled::{Execution, Shortest};
 use servobench_motion::{Limits, Order, PlanError, Profile, rockwell};
 
-/// A move as it was asked for.
+/// The request for a move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// What generates its set-points, and from what.
+    /// Generator of its set-points, with its operands.
     pub generator: Generator,
-    /// How long it lasts (s), slowed with every derivative in proportion; as fast as its limits allow without.
+    /// Duration (s), with every derivative slowed in proportion; `None`: as fast as its limits allow.
     pub duration: Option<f64>,
-    /// What filters it.
+    /// Filter of the set-points.
     pub filter: Filter,
-    /// How velocity commands get to the drive, of a table that is followed by them; at any time and exactly without.
+    /// Timing of velocity commands, for a table that is followed by them; `None`: at any time and exactly.
     pub commands: Option<CommandCycle>,
-    /// What velocity and acceleration of a table are held against, which is followed whatever they are; every other generator has
-    /// limits of its own. Infinite where there is none.
+    /// Limits against which velocity and acceleration of a table are checked; the table is followed regardless. All other generators have
+    /// separate limits. Infinite without a limit.
     pub table_limits: [Sides; 2],
 }
 
@@ -46,20 +46,20 @@ pub struct PointToPoint {
     pub order: Order,
     /// Limits.
     pub limits: Limits,
-    /// Which profile.
+    /// Choice of the profile.
     pub method: Method,
-    /// Samples of which all times are whole multiples; continuous without.
+    /// Samples of which all times are whole multiples; `None`: continuous.
     pub grid: Option<Grid>,
 }
 
-/// How a move from rest to rest is sampled.
+/// Sampling of a move from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Sample time (s).
     pub sample_time: f64,
-    /// How its times are made whole.
+    /// Method by which its times become whole.
     pub sampling: Sampling,
-    /// How set-points are made of its samples.
+    /// Computation of set-points from its samples.
     pub execution: Execution,
 }
 
@@ -74,7 +74,7 @@ servobench_config::choices! {
 }
 
 impl Grid {
-    /// As it is published, and held exactly.
+    /// Sampling as published, held exactly.
     #[must_use]
     pub const fn new(sample_time: f64) -> Self {
         Self { sample_time, sampling: Sampling::Published, execution: Execution::ExactHold }
@@ -95,15 +95,15 @@ servobench_config::choices! {
 /// A move from any state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replanning {
-    /// Where from.
+    /// Initial state.
     pub from: Setpoint,
-    /// Where to.
+    /// Target.
     pub target: Target,
     /// Order of the profile, 2, 3 or 4.
     pub order: Order,
     /// Limits by direction.
     pub limits: DirectionalLimits,
-    /// How much work it may be.
+    /// Bound of the computing effort.
     pub effort: Effort,
 }
 
@@ -112,12 +112,12 @@ pub struct Replanning {
 pub struct Rockwell {
     /// Its operands.
     pub operands: rockwell::Move,
-    /// What the axis is configured for.
+    /// Maximum jerk configured for the axis.
     pub maximum: rockwell::MaximumJerk,
 }
 
 impl Request {
-    /// As fast as the limits allow, and not filtered.
+    /// As fast as the limits allow, without a filter.
     #[must_use]
     pub const fn new(generator: Generator) -> Self {
         let table_limits = [Sides::both(f64::INFINITY); 2];
@@ -161,12 +161,12 @@ impl Request {
 }
 
 impl Request {
-    /// `plan`, which this request is, in `duration` seconds, of which what filters it takes `filter`.
+    /// Stretches `plan`, the plan of this request, to `duration` seconds, including the length `filter` of its filter.
     fn slowed(&self, plan: Plan, duration: f64, filter: f64) -> Result<Plan, PlanError> {
         if let (Generator::Table(table), Some(cycle)) = (&self.generator, &self.commands)
             && table.is_sent()
         {
-            // Commands stay at their instants.
+            // Commands keep their instants.
             let factor = (duration - filter) / plan.duration();
             let is_slower = factor > 1.0 && factor.is_finite() && plan.duration() > 0.0;
             return if is_slower { table.slowed(factor).plan_in(cycle) } else { plan.stretched_to(duration, filter) };
@@ -177,7 +177,7 @@ impl Request {
         if shortest.method == Method::Published || (plan.duration() + filter - duration).abs() <= 1e-9 * duration {
             return plan.stretched_to(duration, filter);
         }
-        // Slower than its limits it need not be the shortest: through boxes all its times stay whole samples.
+        // Below its limits it need not be the shortest: with moving averages all its times stay whole samples.
         let grid = Some(Grid { sampling: Sampling::Fewest, ..*grid });
         let boxes = PointToPoint { method: Method::Published, grid, ..*shortest };
         boxes.plan()?.stretched_to(duration, filter)

@@ -1,13 +1,13 @@
-//! The rest of a course from a time on.
+//! The remainder of a trajectory from a time on.
 use servobench_motion::{Course, Piece};
 use std::sync::Arc;
 
-/// A course from `start` (s) on: its times and positions count from there.
+/// A trajectory from `start` (s) on: its times and positions count from there.
 #[derive(Clone)]
 pub(crate) struct Rest {
     course: Arc<dyn Course + Send + Sync>,
     start: f64,
-    /// Where it is at the start.
+    /// Position at the start.
     origin: f64,
 }
 

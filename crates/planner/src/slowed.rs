@@ -1,8 +1,8 @@
-//! A course in a longer time.
+//! A trajectory in a longer time.
 use servobench_motion::{Course, Piece};
 use std::sync::Arc;
 
-/// A course passed more slowly: the k-th derivative is lower by `factor`^k.
+/// A trajectory followed more slowly: the k-th derivative is lower by `factor`^k.
 #[derive(Clone)]
 pub(crate) struct Slowed {
     pub(crate) course: Arc<dyn Course + Send + Sync>,

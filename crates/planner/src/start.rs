@@ -1,4 +1,4 @@
-//! Where and how a move begins.
+//! The start of a move.
 use crate::request::{Generator, PointToPoint, Replanning, Request, Rockwell};
 use crate::table::{Follow, TableMove};
 use servobench_base::Setpoint;
@@ -7,23 +7,23 @@ use servobench_motion::pvt::Knot;
 use servobench_motion::rockwell::{Jerk, Shape};
 use servobench_motion::{Limits, PlanError, rockwell};
 
-/// What the positions of a request count from.
+/// Origin of the positions of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Positioning {
     /// The zero of the axis.
     Absolute,
-    /// Where the axis is when the move begins.
+    /// The position of the axis at the start of the move.
     Relative,
 }
 
-/// A first point that is nearer (m or rad) is where the axis is: sums of targets are rounded.
+/// Distance of the first point (m or rad) up to which it counts as the position of the axis: sums of targets are rounded.
 const NEAR: f64 = 1e-9;
 
 impl Request {
-    /// The request of the same move that begins in the state `start`, whose position is the zero of the plan.
+    /// The request for the same move from the state `start`, whose position becomes the zero of the plan.
     ///
     /// # Errors
-    /// [`PlanError::Point`] of a table whose first point is elsewhere.
+    /// [`PlanError::Point`] for a table whose first point is elsewhere.
     pub fn begun_in(&self, start: &Setpoint, positioning: Positioning) -> Result<Self, PlanError> {
         let origin = match positioning {
             Positioning::Absolute => start.x,
@@ -52,7 +52,7 @@ impl Request {
 }
 
 impl TableMove {
-    /// The same from time 0 and position 0, if its first point is at `origin`.
+    /// The same move from time 0 and position 0, if its first point is at `origin`.
     fn begun_at(&self, origin: f64, positioning: Positioning) -> Result<Self, PlanError> {
         let first = self.knots.first().copied().unwrap_or_default();
         if (first.x - origin).abs() > NEAR {
@@ -73,7 +73,7 @@ impl TableMove {
 }
 
 impl Generator {
-    /// How far the move goes from the zero of its positions, if that is asked for.
+    /// Distance of the target from the zero of its positions, if the move has such a target.
     #[must_use]
     pub const fn distance(&self) -> Option<f64> {
         match self {
@@ -84,7 +84,7 @@ impl Generator {
         }
     }
 
-    /// Whether the axis still moves at the end.
+    /// True if the axis still moves at the end.
     #[must_use]
     pub fn ends_in_motion(&self) -> bool {
         match self {
@@ -94,7 +94,7 @@ impl Generator {
         }
     }
 
-    /// Order of the profile, 2, 3 or 4: the highest derivative that is no impulse, of a table the highest that it can be.
+    /// Order of the profile, 2, 3 or 4: the highest derivative without impulses, for a table the highest possible.
     #[must_use]
     pub const fn order(&self) -> usize {
         match self {
@@ -105,7 +105,7 @@ impl Generator {
         }
     }
 
-    /// Limits of |velocity|, |acceleration|, |jerk|, |snap|, above zero where those below are others; infinite where there is none.
+    /// Limits of |velocity|, |acceleration|, |jerk|, |snap|, the upper ones if the lower differ; infinite without a limit.
     #[must_use]
     pub const fn limits(&self) -> [f64; 4] {
         match *self {

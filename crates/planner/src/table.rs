@@ -1,4 +1,4 @@
-//! Moves through tables: as they are, or as a drive follows that is told velocities.
+//! Moves through tables: along the table itself, or as followed by a drive that receives velocities.
 use crate::plan::{Plan, PlanDetails, Sending};
 use crate::polynomials::{Between, Polynomials};
 use servobench_base::{ParamError, Setpoint};
@@ -11,9 +11,9 @@ use servobench_motion::{Course, PlanError};
 pub struct TableMove {
     /// The points; the move begins at the time of the first.
     pub knots: Vec<Knot>,
-    /// How fast they are passed.
+    /// Choice of the velocities at the points.
     pub velocities: Velocities,
-    /// How they are followed.
+    /// Method by which they are followed.
     pub follow: Follow,
 }
 
@@ -52,28 +52,28 @@ servobench_config::choices! {
     }
 }
 
-/// How often velocities are sent.
+/// Number of velocities sent per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CommandRate {
-    /// So many per second.
+    /// This many per second.
     Given(f64),
-    /// At the lowest whole number per second that keeps the drive so near to the spline (m or rad).
+    /// The lowest whole number per second with at most this deviation of the drive from the spline (m or rad).
     LowestWithin(f64),
 }
 
 impl Velocities {
-    /// Passes by default: what the source of the formulas shows.
+    /// Default number of passes: that in the source of the formulas.
     pub const PASSES: u32 = 2;
 }
 
 impl Follow {
-    /// Share of a segment in which velocity changes, by default.
+    /// Default share of a segment in which velocity changes.
     pub const PLATEAU_SHARE: f64 = 0.25;
 }
 
-/// A difference below this part of the largest value is none.
+/// Relative tolerance: a smaller difference, relative to the largest value, counts as zero.
 const ROUNDING: f64 = 1e-9;
-/// Commands at most that are kept of a move.
+/// Largest number of commands stored for a move.
 pub(crate) const MOST_COMMANDS: f64 = 1e7;
 
 impl TableMove {
@@ -125,7 +125,7 @@ impl TableMove {
         (velocity(self.knots.first()), velocity(self.knots.last()))
     }
 
-    /// The plan that follows the spline by as many commands per second as `choose` says, unless these are `too_many`.
+    /// The plan that follows the spline with the number of commands per second from `choose`; `too_many` is the error if that is excessive.
     fn stepped(
         &self,
         choose: impl FnOnce(Spline<'_>) -> Result<f64, PlanError>,
@@ -148,7 +148,7 @@ impl TableMove {
     }
 }
 
-/// Looks whether `commands`, sent to a drive at velocity `start`, are within the limits of a share that is looked for.
+/// Checks that `commands`, sent to a drive at velocity `start`, are within the limits of a share that is searched for.
 pub(crate) fn within(commands: &[Command], start: f64, share: PlateauShare) -> Result<(), PlanError> {
     let PlateauShare::SmallestPartOf { velocity, acceleration } = share else { return Ok(()) };
     let most = |of: fn(&Command) -> f64, first: f64| commands.iter().map(of).fold(first, f64::max);
@@ -162,7 +162,7 @@ pub(crate) fn within(commands: &[Command], start: f64, share: PlateauShare) -> R
     }
 }
 
-/// The highest derivative that is no impulse, of a way that is entered at velocity `start`.
+/// The highest derivative without impulses, for a trajectory entered at velocity `start`.
 fn order(way: &Polynomials, start: f64) -> usize {
     let (mut jumps, mut largest) = ([0.0_f64; 2], [0.0_f64; 2]);
     let mut before = Setpoint { v: start, ..Setpoint::default() };
@@ -185,8 +185,8 @@ fn order(way: &Polynomials, start: f64) -> usize {
     }
 }
 
-/// The way of a drive that obeys `commands` from `state` at `start` until `end` (s), a straight line of velocity after each:
-/// set-points with the times from `start` (s) at which they begin, and where it ends.
+/// The motion of a drive that executes `commands` from `state` at `start` until `end` (s), each with a linear change of velocity:
+/// set-points with the times from `start` (s) at which they begin, and the final state.
 fn obeyed(commands: &[Command], mut state: Setpoint, start: f64, end: f64) -> (Vec<(f64, Setpoint)>, Setpoint) {
     let untils = commands.iter().skip(1).map(|command| command.t).chain([end]);
     let mut parts = Vec::with_capacity(commands.len());

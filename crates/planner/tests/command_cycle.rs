@@ -1,4 +1,4 @@
-//! Position profiles for a drive on a bus: what is announced is what the commands lead to.
+//! Position profiles for a drive on a bus: the commands lead to the announced motion.
 use servobench_motion::position_profile::{Command, Spline};
 use servobench_motion::pvt::Knot;
 use servobench_planner::{
@@ -31,7 +31,7 @@ const CYCLES: [CommandCycle; 4] = [
     CommandCycle { period: 0.5e-3, first: 0.2e-3, unit: 1e-4 },
 ];
 
-/// Oracle: the plan itself, looked at in many places, against points and spline. Commands are whole units and at instants.
+/// Oracle: the plan itself, sampled densely, against points and spline. Commands are whole units and at instants.
 #[test]
 fn what_is_announced_is_what_the_commands_lead_to() {
     for cycle in CYCLES {
@@ -88,7 +88,7 @@ fn the_lowest_rate_within_an_error_is_that_of_the_cycle_or_refused() {
     assert!(request(Follow::Steps { rate: CommandRate::LowestWithin(f64::NAN) }, CYCLES[0]).plan().is_err());
 }
 
-/// Commands beyond what the objects of the drive hold, and cycles that mean nothing.
+/// Commands beyond the range of the drive's objects, and cycles without meaning.
 #[test]
 fn what_cannot_be_sent_is_refused() {
     let unit = |unit| CommandCycle { unit, ..CYCLES[0] };

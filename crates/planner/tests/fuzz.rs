@@ -1,4 +1,4 @@
-//! Whatever is asked for: a plan or a refusal in words, never a panic, never a set-point that is no number.
+//! Any request: a plan or a refusal in words, never a panic, never a set-point that is not a number.
 use servobench_base::Setpoint;
 use servobench_fuzz::{Number, ValueGenerator, check, fuzz, produce};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
@@ -13,7 +13,7 @@ use servobench_planner::{
 };
 use std::f64::consts::TAU;
 
-/// Numbers that a request of any family is made of, and which family and variant it is.
+/// Numbers for a request of any family, and the choice of family and variant.
 #[derive(Debug)]
 struct Asked {
     family: u8,
@@ -113,7 +113,7 @@ impl Asked {
             _ => Vec::new(),
         };
         shapers.retain(|shaping| shaping.impulses().is_ok());
-        // As many samples as a person would wait for.
+        // As many samples as a user would accept.
         let averages = (self.filter.is_multiple_of(7) && other > 1e-3)
             .then(|| Averages { lengths: vec![3.0 * other, other], sample_time: other });
         let duration = self.filter.is_multiple_of(5).then_some(one);
@@ -145,7 +145,7 @@ fn holds(plan: &Plan) {
     }
 }
 
-/// Long moves of short samples take their time: they are for the planners' own targets.
+/// Long moves of short samples take time: they are covered by the planners' own targets.
 fn is_quick(request: &Request) -> bool {
     match &request.generator {
         Generator::PointToPoint(PointToPoint { grid: Some(grid), distance, order, limits, .. }) => {

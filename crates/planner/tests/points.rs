@@ -1,4 +1,4 @@
-//! Moves as points, and how far from the move the way through them leads.
+//! Moves as points, and the deviation of the trajectory through them.
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target};
 use servobench_motion::sampled::Execution;
@@ -14,7 +14,7 @@ fn plan(order: Order, distance: f64, grid: Option<Grid>) -> Plan {
     Request::new(Generator::PointToPoint(asked)).plan().unwrap()
 }
 
-/// What is found by looking at the move and at the way through its points, often.
+/// The deviation found by dense sampling of the move and of the trajectory through its points.
 fn seen(plan: &Plan, points: &PointMove) -> f64 {
     let end = plan.duration().max(points.way.duration());
     (0..=200_000)
@@ -36,7 +36,7 @@ fn at_constant_snap_the_deviation_is_that_of_the_cubic() {
     assert!((place.fract() - 0.5).abs() < 1e-4, "{:?}", points.deviation);
 }
 
-/// Oracle: at order 3 each segment is a cubic; points at its ends leave nothing but rounding of positions of 1 m.
+/// Oracle: at order 3 each segment is a cubic; points at its ends leave only rounding of positions of 1 m.
 #[test]
 fn where_points_are_at_the_ends_of_segments_the_way_is_the_move() {
     // 0.1 s of jerk, 0.1 s of acceleration, 0.7 s of cruise.
@@ -50,8 +50,8 @@ fn where_points_are_at_the_ends_of_segments_the_way_is_the_move() {
     assert!(between.deviation.distance > 1e-6, "{:?}", between.deviation);
 }
 
-/// Oracle: 200 000 looks. Between two of them, 7 µs apart, the distance changes by no more than the difference of velocities, which
-/// is that of the accelerations (below 10 m/s²) over an interval: far below a thousandth of what is found.
+/// Oracle: 200 000 samples. Between two of them, 7 µs apart, the distance changes by at most the difference of velocities, which
+/// is that of the accelerations (below 10 m/s²) over an interval: far below a thousandth of the result.
 #[test]
 fn the_deviation_is_what_is_seen() {
     let euler = Grid { sample_time: 4e-3, sampling: Sampling::Published, execution: Execution::ForwardEuler };
@@ -74,7 +74,7 @@ fn the_deviation_is_what_is_seen() {
     }
 }
 
-/// The last point is at the first whole millisecond at which the move is at rest, where the others are at whole ones.
+/// The last point is at the first whole millisecond at which the move is at rest, if the others are at whole ones.
 #[test]
 fn the_last_point_ends_the_move() {
     let plan = plan(Order::Third, 0.3712, None);
@@ -86,14 +86,14 @@ fn the_last_point_ends_the_move() {
     for spacing in [0.008, 0.0083] {
         assert_eq!((last(spacing).x.to_bits(), last(spacing).v), (0.3712_f64.to_bits(), Some(0.0)));
     }
-    // Equal times throughout, as drives count them that have one for all points.
+    // Equal times throughout, for drives with a single time for all points.
     let equal = plan.in_points(PointTimes { spacing: 0.008, unit: 0.008 }).unwrap();
     for pair in equal.knots.windows(2) {
         assert!((pair[1].t - pair[0].t - 0.008).abs() < 1e-12);
     }
 }
 
-/// A move that ends in motion ends where it does.
+/// A move that ends in motion has its last point at its end.
 #[test]
 fn a_move_that_ends_in_motion_has_its_last_point_there() {
     let limits = DirectionalLimits {
@@ -113,7 +113,7 @@ fn a_move_that_ends_in_motion_has_its_last_point_there() {
     );
 }
 
-/// The longest spacing keeps what is asked for, and a longer one does not.
+/// The longest spacing keeps the requested deviation, and a longer one does not.
 #[test]
 fn the_fewest_points_keep_the_deviation() {
     let plan = plan(Order::Fourth, 0.37, None);
@@ -139,7 +139,7 @@ fn odd_times_and_moves() {
     }
     // Longer than the move: its two ends.
     assert_eq!(plan.in_points(PointTimes::every(1e6)).unwrap().knots.len(), 2);
-    // A move of no distance rests for a millisecond, so that it is a table.
+    // A move without distance rests for a millisecond, so that it is a table.
     let still = self::plan(Order::Third, 0.0, None).in_points(PointTimes::every(0.01)).unwrap();
     assert_eq!((still.knots.len(), still.knots[1].t, still.deviation.distance), (2, 1e-3, 0.0));
     assert!(self::plan(Order::Third, 0.0, None).in_points(PointTimes::every(0.0101)).is_err());

@@ -1,4 +1,4 @@
-//! Where a plan leads beside its ends, and on which instants a shaped one is.
+//! Positions of a plan beyond its ends, and sample instants of a shaped plan.
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Target};
 use servobench_motion::shape::Shaper;
@@ -24,7 +24,7 @@ fn the_positions_of_a_move_that_turns_round_are_beyond_its_target() -> Result<()
     Ok(())
 }
 
-/// It lasted 551.667 ms, and its rows were 0.552 ms apart.
+/// Regression: such a move lasted 551.667 ms, with rows 0.552 ms apart.
 #[test]
 fn a_sampled_move_behind_a_shaper_stays_on_its_grid() -> Result<(), PlanError> {
     let limits = Limits { acceleration: 5.0, jerk: 500.0, ..LIMITS };

@@ -1,4 +1,4 @@
-//! Plans of every family against what their generators say themselves.
+//! Plans of every family against their generators.
 mod peaks;
 
 use servobench_base::Setpoint;
@@ -142,7 +142,7 @@ fn a_reader_finds_what_a_look_up_finds() {
     }
 }
 
-/// Oracle: the shaper's own sum, and that nothing of a mode is left: ZVD at its frequency.
+/// Oracle: the shaper's own sum, and a mode that vanishes: ZVD at its frequency.
 #[test]
 fn a_shaped_plan_is_the_sum_of_its_parts() {
     let shaper = shaping(Shaper::Zvd, 0.02);
@@ -163,7 +163,7 @@ fn a_shaped_plan_is_the_sum_of_its_parts() {
     assert!(matches!(refused, PlanError::TooShort { shortest, .. } if (shortest - shaped.duration()).abs() < 1e-12));
 }
 
-/// Oracle: the sum of parts once more, of parts, and that each shaper takes out its own mode behind the other.
+/// Oracle: the sum of parts applied twice, and that each shaper in series suppresses its own mode.
 #[test]
 fn shapers_of_several_modes_stand_one_behind_the_other() {
     let low = Shaping { shaper: Shaper::Zvd, frequency: 11.0, damping: 0.02 };
@@ -192,7 +192,7 @@ fn shapers_of_several_modes_stand_one_behind_the_other() {
     assert!(matches!(refused, PlanError::TooManyImpulses { impulses: 64, capacity: 32 }), "{refused}");
 }
 
-/// Oracle: a mean written down as a sum.
+/// Oracle: a mean written as a sum.
 #[test]
 fn averages_are_means_of_the_last_samples() {
     let generator = point_to_point(0.3, Method::Published);
@@ -212,8 +212,7 @@ fn averages_are_means_of_the_last_samples() {
     assert_eq!(refused.to_string(), "`averages` must be a whole number of samples, 1 to 10 million, got 0.009");
 }
 
-/// What a drive makes of velocity commands differs from the spline by what was announced: at most, and at some time by just
-/// that.
+/// The motion of a drive by velocity commands differs from the spline by the announced error: at most, and at some time by exactly that.
 #[test]
 fn commands_lead_as_near_to_the_spline_as_announced() {
     let plan = plan(Generator::Table(table(Follow::Steps { rate: CommandRate::Given(200.0) }, Velocities::Given)));
@@ -228,11 +227,11 @@ fn commands_lead_as_near_to_the_spline_as_announced() {
         (plan.at(t).x - spline.at(0.5 + t).x).abs()
     };
     let largest = (0..=500_000).map(off).fold(0.0, f64::max);
-    // 5000 looks between two commands miss the top of a parabola by 1e-8 of it.
+    // 5000 samples between two commands miss the top of a parabola by 1e-8 of it.
     assert!((largest / error - 1.0).abs() < 1e-6 && *error > 0.0, "{largest} {error}");
 }
 
-/// Every position is hit where velocities have plateaus. Rounding of 0.05 m, added up over the segments.
+/// Every position is hit if velocities have plateaus. Rounding of 0.05 m, summed over the segments.
 #[test]
 fn plateaus_hit_every_position() {
     let table = table(Follow::Plateaus { share: 0.3.into() }, Velocities::Given);
@@ -252,7 +251,7 @@ fn the_gain_over_the_published_profile_is_known() {
     assert!((plan.duration() / told - libm::pow(0.75, 0.25)).abs() < 1e-9, "{told}");
 }
 
-/// Oracle: the cascade written down as sums. 1e-15: those of 0.02 m over some hundred samples.
+/// Oracle: the cascade written as sums. 1e-15: those of 0.02 m over some hundred samples.
 #[test]
 fn the_cascade_sums_sample_by_sample() {
     let hold = plan(sampled(Sampling::Published, Execution::ExactHold));
@@ -295,7 +294,7 @@ fn what_would_fill_the_memory_is_refused() {
     );
 }
 
-/// One command per second less would not keep the drive so near.
+/// One command per second less would exceed the error.
 #[test]
 fn the_lowest_rate_within_an_error_is_found() {
     let steps = |follow| {
@@ -313,8 +312,7 @@ fn the_lowest_rate_within_an_error_is_found() {
     );
 }
 
-/// What cannot be kept is said of the error that was asked for, not of a rate that was not: late times are known too roughly, and
-/// memory ends.
+/// The refusal names the requested error, not a rate that was not requested: late times are too coarse, and memory ends.
 #[test]
 fn an_error_that_is_too_small_is_refused_by_its_name() {
     let late = |error: f64| {
@@ -336,7 +334,7 @@ fn an_error_that_is_too_small_is_refused_by_its_name() {
     assert_eq!(refused.to_string(), format!("`allowed` must be {bound}, got 0.0000000000000001"));
 }
 
-/// A velocity would jump where the parts of a shaper begin, or where time is stretched.
+/// A velocity would jump at the impulses of a shaper, or with stretched time.
 #[test]
 fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
     let shapers = vec![shaping(Shaper::Zv, 0.0)];
@@ -349,7 +347,7 @@ fn a_move_that_starts_in_motion_is_neither_filtered_nor_slowed() {
     }
 }
 
-/// Oracle: the documented example of the generator, 50 samples instead of 55 through boxes and 56 as published; and the
+/// Oracle: the documented example of the generator, 50 samples instead of 55 with moving averages and 56 as published; and the
 /// cascade, which ends on the distance at the same sample.
 #[test]
 fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
@@ -368,7 +366,7 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
         for (peak, limit) in plan.largest().into_iter().zip([1.0, 5.0, 50.0, 1000.0]) {
             assert!(peak <= limit * (1.0 + 1e-9), "{peak} {limit}");
         }
-        // Slowed to its own time it stays what it is, below that of boxes there is nothing, above it goes through boxes.
+        // Slowed to its own time it does not change; below that of moving averages nothing fits, above it uses moving averages.
         let slowed = |duration| request(execution, Some(duration)).plan();
         assert!(matches!(slowed(0.25).unwrap().details(), PlanDetails::Shortest(_)));
         assert!(matches!(slowed(0.26), Err(PlanError::TooShort { shortest, .. }) if (shortest - 0.275).abs() < 1e-12));
@@ -377,8 +375,8 @@ fn the_shortest_sampled_move_is_shorter_than_any_boxes() {
     }
 }
 
-/// Velocity jumps between linear segments, acceleration where a cubic spline begins; the five points of an S-curve join with
-/// neither.
+/// Velocity jumps between linear segments, acceleration at the start of a cubic spline; the five points of an S-curve join without
+/// either.
 #[test]
 fn a_table_says_what_jumps() {
     let order = |knots: Vec<Knot>, velocities| {
@@ -391,8 +389,8 @@ fn a_table_says_what_jumps() {
     assert_eq!(order(servobench_motion::pvt::s_curve(0.0, 1.0, 0.1).unwrap().to_vec(), Velocities::Given), 3);
 }
 
-/// Oracle: what a drive makes of the commands as they are told, straight lines of velocity one after the other, at the end of
-/// each. Half the pace takes a quarter of the acceleration and an eighth of the jerk.
+/// Oracle: the motion of a drive by the commands, straight lines of velocity one after the other, at the end of each. Half the
+/// pace takes a quarter of the acceleration and an eighth of the jerk.
 #[test]
 fn what_is_told_of_a_slowed_move_is_slowed() {
     for follow in [Follow::Plateaus { share: 0.3.into() }, Follow::Steps { rate: CommandRate::Given(50.0) }] {
@@ -424,8 +422,8 @@ fn what_is_told_of_a_slowed_move_is_slowed() {
     assert!((8.0 * slowed / acceleration - 1.0).abs() < 1e-12, "{slowed} {acceleration}");
 }
 
-/// The share that limits choose is told, keeps them, and is refused where none does. Oracle: of one segment V = p/(T·(1 − α)) and
-/// a = V/(α·T), the same part of both limits.
+/// The share chosen by limits is reported, meets them, and is refused if none does. Oracle: for one segment V = p/(T·(1 − α)) and
+/// a = V/(α·T), the same share of both limits.
 #[test]
 fn a_share_of_plateaus_is_chosen_by_limits() {
     let knots = vec![Knot::new(1.0, 0.0), Knot::new(2.0, 0.1)];
@@ -446,7 +444,7 @@ fn a_share_of_plateaus_is_chosen_by_limits() {
     );
 }
 
-/// Before a move the axis rests: the derivative that is switched at its first instant comes in sample by sample, as all others do.
+/// Before a move the axis rests: a derivative that begins at the first instant enters sample by sample, as all others do.
 #[test]
 fn averages_begin_with_an_axis_at_rest() {
     for order in [Order::Second, Order::Third, Order::Fourth] {

@@ -1,8 +1,8 @@
-//! Peaks, cruises, and where limits bind.
+//! Peaks, cruises, and binding limits.
 use super::*;
 
-/// The spans follow each other without a gap and are the plan; so every value lies within the peaks. 1e-9: differences of
-/// positions that belong to anchors at different times.
+/// The spans are contiguous and reproduce the plan; so every value lies within the peaks. 1e-9: differences of positions that belong to
+/// anchors at different times.
 #[test]
 fn spans_are_the_plan_and_peaks_bound_it() {
     for plan in all() {
@@ -50,7 +50,7 @@ fn peaks_and_cruise_of_a_profile_are_its_closed_forms() {
     }
 }
 
-/// A shaper of two impulses leaves of the cruise what both parts have of it.
+/// A shaper of two impulses leaves the part of the cruise that both impulses share.
 #[test]
 fn the_cruise_is_the_longest_part_at_constant_velocity() {
     let shaper = shaping(Shaper::Zv, 0.02);
@@ -67,7 +67,7 @@ fn the_cruise_is_the_longest_part_at_constant_velocity() {
     assert!(length > 0.0, "a cruise at the limit");
 }
 
-/// Lambrechts' move, all of whose dwells last 0.05 s but the cruise, meets its limits where its figure says.
+/// Lambrechts' move, with dwells of 0.05 s except the cruise, meets its limits at the times in his figure.
 #[test]
 fn bindings_are_where_the_published_figure_shows_them() {
     let plan = plan(point_to_point(1.0, Method::Published));
@@ -88,14 +88,14 @@ fn bindings_are_where_the_published_figure_shows_them() {
     assert_eq!(of(4).len(), 8);
 }
 
-/// From the jerk limit on one side straight to that on the other: where it leaves the one, it is at none.
+/// From the jerk limit on one side straight to that on the other: in between it is at neither.
 #[test]
 fn a_way_from_limit_to_limit_is_no_binding() {
     let limits = DirectionalLimits::from(LIMITS);
     let (target, order, effort) = (Target::Velocity(0.5), Order::Fourth, Effort::Fast);
     let plan = plan(Generator::Replanning(Replanning { from: Setpoint::default(), target, order, limits, effort }));
     let jerks: Vec<Binding> = plan.bindings().into_iter().filter(|found| found.derivative == 3).collect();
-    // 50 ms of snap up to the limit, and from there 100 ms down to that of the other side.
+    // 50 ms of snap up to the limit, and then 100 ms down to the limit of the other side.
     let [high, low] = &jerks[..] else { panic!("{jerks:?}") };
     assert!(high.value > 0.0 && low.value < 0.0 && (high.start - 0.05).abs() < 1e-12, "{jerks:?}");
     assert!((low.start - high.start - high.length - 0.1).abs() < 1e-12, "{jerks:?}");
