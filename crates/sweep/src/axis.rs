@@ -1,4 +1,4 @@
-//! A key and the values that it takes one after the other.
+//! A key and the values that it takes in turn.
 use crate::error::SweepError;
 use servobench_base::Shortest;
 use servobench_config::choices;
@@ -18,12 +18,12 @@ choices! {
 pub enum Value {
     /// A number in a unit; the unit of a pure number is empty.
     Number(f64, String),
-    /// Anything else, as a scenario has it: a name, a list, `true`.
+    /// Any other value of a scenario: a name, a list, `true`.
     Text(String),
 }
 
 impl Value {
-    /// As it stands behind the key on the command line: `50 m/s3`.
+    /// The value as written after the key on the command line: `50 m/s3`.
     #[must_use]
     pub fn written(&self) -> String {
         match self {
@@ -42,7 +42,7 @@ impl Value {
         }
     }
 
-    /// Its unit; empty where there is none.
+    /// Its unit; empty if it has none.
     #[must_use]
     pub fn unit(&self) -> &str {
         match self {
@@ -89,10 +89,10 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// `key` over `count` values in `unit`, the ends among them.
+    /// `key` over `count` values in `unit`, including both ends.
     ///
     /// # Errors
-    /// As [`spaced`].
+    /// Those of [`spaced`].
     pub fn range(
         key: &str,
         [from, to]: [f64; 2],
@@ -106,10 +106,10 @@ impl Axis {
     }
 }
 
-/// `count` numbers from one end to the other, both of which are among them to the bit.
+/// `count` numbers from one end to the other, including both ends to the bit.
 ///
 /// # Errors
-/// [`SweepError::NotFinite`], [`SweepError::TooFew`], [`SweepError::NoLogarithm`] name `key`.
+/// [`SweepError::NotFinite`], [`SweepError::TooFew`], [`SweepError::NoLogarithm`], with the name `key`.
 pub fn spaced(key: &str, [from, to]: [f64; 2], count: usize, spacing: Spacing) -> Result<Vec<f64>, SweepError> {
     let key = || key.to_owned();
     for (what, value) in [("`from`", from), ("`to`", to)] {
@@ -120,7 +120,7 @@ pub fn spaced(key: &str, [from, to]: [f64; 2], count: usize, spacing: Spacing) -
     if count < 2 {
         return Err(SweepError::TooFew { key: key(), count });
     }
-    // A product below the smallest number is 0 although neither end is.
+    // A product below the smallest number is 0 even if neither end is.
     let same_sign = from.signum() * to.signum() > 0.0 && from != 0.0 && to != 0.0;
     if spacing == Spacing::Logarithmic && !same_sign {
         return Err(SweepError::NoLogarithm { key: key(), from, to });
@@ -131,12 +131,12 @@ pub fn spaced(key: &str, [from, to]: [f64; 2], count: usize, spacing: Spacing) -
         match spacing {
             _ if k == 0 => from,
             _ if k == last => to,
-            // Not the difference of the ends, which may be beyond all numbers.
+            // Not the difference of the ends, which may overflow.
             Spacing::Linear => neat(from * (1.0 - share) + to * share, size, ROUNDING),
             Spacing::Logarithmic => {
                 let (low, high) = (libm::log(from.abs()), libm::log(to.abs()));
                 let value = from.signum() * libm::exp(low * (1.0 - share) + high * share);
-                // What a logarithm is rounded by counts as much as it is large.
+                // The rounding error of the value grows with the magnitude of its logarithm.
                 neat(value, value.abs(), ROUNDING * (1.0 + low.abs().max(high.abs())))
             }
         }
@@ -145,19 +145,19 @@ pub fn spaced(key: &str, [from, to]: [f64; 2], count: usize, spacing: Spacing) -
     Ok((0..count).map(at).collect())
 }
 
-/// Roundings of a value between two ends, in parts of the larger one.
+/// Rounding error of a value between two ends, relative to the larger one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Digits within which a value counts as a decimal number that was meant.
+/// Number of digits up to which a value counts as an intended decimal number.
 const DIGITS: i32 = 12;
 
-/// `value`, which is rounded by `rounding` parts of `size`; the decimal number of a few digits that is so near, if there is one: 11 for
-/// 10.999999999999998, and 0 for 2e-17 between -1 and 1.
+/// `value`, which has a rounding error of `rounding`, relative to `size`; replaced by a decimal number of few digits within that error, if
+/// there is one: 11 for 10.999999999999998, and 0 for 2e-17 between -1 and 1.
 fn neat(value: f64, size: f64, rounding: f64) -> f64 {
     let off = rounding * size;
     if value.abs() <= off {
         return 0.0;
     }
-    // A decimal at the place of the last digit of a number as large as `size`.
+    // The decimal place of the last digit of a number as large as `size`.
     #[expect(clippy::cast_possible_truncation, reason = "at most twice the exponents of a number")]
     let digits = DIGITS - (libm::floor(libm::log10(size)) - libm::floor(libm::log10(value.abs()))) as i32;
     let Some(decimals) = usize::try_from(digits - 1).ok() else { return value };
@@ -184,7 +184,7 @@ mod tests {
         assert!((negative[1] + 10.0).abs() < 1e-13, "{negative:?}");
     }
 
-    /// Every range from 1 to N, up and down and through zero: each number as it would be written by hand.
+    /// Every range from 1 to N, up and down and through zero: each number exact as written by hand.
     #[test]
     fn whole_numbers_stay_whole() {
         for last in 2..=400_u32 {
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(decades, [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6]);
         let twice = spaced("x", [1.0, 1024.0], 11, Spacing::Logarithmic).unwrap();
         assert_eq!(twice, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0]);
-        // Large seeds, and what is no decimal number keeps its digits.
+        // Large seeds; a number that is not a short decimal keeps its digits.
         let large = spaced("seed", [4_294_967_286.0, 4_294_967_295.0], 10, Spacing::Linear).unwrap();
         assert_eq!(large[3].to_bits(), 4_294_967_289_f64.to_bits());
         assert_eq!(spaced("x", [0.0, 1.0], 4, Spacing::Linear).unwrap()[1].to_bits(), (1.0_f64 / 3.0).to_bits());
@@ -237,7 +237,7 @@ mod tests {
     }
 
     proptest! {
-        /// The ends to the bit, in order, nothing beyond them; and each text is read as the number that it is of.
+        /// Both ends to the bit, in order, no value outside; and each text parses to its number.
         #[test]
         fn a_range_has_its_ends_and_its_order(from in -1e300..1e300_f64, to in -1e300..1e300_f64, count in 2..50_usize) {
             let found = spaced("k", [from, to], count, Spacing::Linear).unwrap();

@@ -1,17 +1,17 @@
-//! The binomial distribution, to all digits for any number of trials.
+//! The binomial distribution, to full precision for any number of trials.
 //!
 //! ```text
 //! P(B ≥ k) = I_p(k, n − k + 1)        P(B ≤ k) = I_q(n − k, k + 1)        q = 1 − p
 //! I_x(a, b) = P(B = a of a + b − 1) · a (1 − x) / (β₁ + α₂/(β₂ + α₃/(β₃ + …)))
 //! ```
 //! Sources: NIST Digital Library of Mathematical Functions, 8.17.5; A. DiDonato & A. Morris, *Algorithm 708: significant digit computation of
-//! the incomplete beta function ratios*, ACM Transactions on Mathematical Software 18 (1992), `BFRAC` (continued fraction); C. Loader, *Fast
-//! and accurate computation of binomial probabilities*, 2000 (the factor before it: differences of logarithms of factorials would lose
-//! as many digits as these have, eight of ten million trials). Where p is near an end, what is counted is compared with what is
-//! expected on the side of the small numbers.
+//! the incomplete beta function ratios*, ACM Transactions on Mathematical Software 18 (1992), `BFRAC` (continued fraction); C. Loader,
+//! *Fast and accurate computation of binomial probabilities*, 2000 (the factor before it: differences of logarithms of factorials would
+//! lose as many digits as these have, eight for ten million trials). For p near an end, the count is compared with its
+//! expectation on the side of the small numbers.
 use core::f64::consts::PI;
 
-/// Terms of the continued fraction at most; of n trials it takes some √n.
+/// Largest number of terms of the continued fraction; n trials need about √n.
 const MOST_TERMS: u32 = 1_000_000;
 
 /// The probability of `hits` or more of `trials`, each a hit with probability `p`.
@@ -37,12 +37,12 @@ pub(crate) fn at_most(hits: u64, trials: u64, p: f64) -> f64 {
     }
 }
 
-/// Whether `hits` are more than are expected: the continued fraction converges fast for what is beyond them.
+/// True if `hits` exceeds the expected number: the continued fraction converges fast beyond it.
 fn is_above(hits: u64, trials: u64, p: f64) -> bool {
     p * (trials as f64 + 3.0) < hits as f64 + 1.0
 }
 
-/// Of `hits` or more, which are above what is expected.
+/// Probability of `hits` or more, above the expected number.
 fn upper_tail(hits: u64, trials: u64, p: f64) -> f64 {
     let (k, n) = (hits as f64, trials as f64);
     if hits == trials {
@@ -52,7 +52,7 @@ fn upper_tail(hits: u64, trials: u64, p: f64) -> f64 {
     density(hits, trials, p) * k * (1.0 - p) * fraction
 }
 
-/// Of `hits` or fewer, which are below what is expected.
+/// Probability of `hits` or fewer, below the expected number.
 fn lower_tail(hits: u64, trials: u64, p: f64) -> f64 {
     let (k, n) = (hits as f64, trials as f64);
     if hits == 0 {
@@ -62,12 +62,12 @@ fn lower_tail(hits: u64, trials: u64, p: f64) -> f64 {
     density(hits, trials, p) * (n - k) * p * fraction
 }
 
-/// `k` − `n`·p, without large numbers that nearly are the same.
+/// `k` − `n`·p, without differences of nearly equal large numbers.
 fn excess(k: f64, n: f64, p: f64) -> f64 {
     if p <= 0.5 { k - n * p } else { n * (1.0 - p) - (n - k) }
 }
 
-/// The probability of just `hits` of `trials`, neither none nor all, 0 < p < 1.
+/// The probability of exactly `hits` of `trials`, neither none nor all, 0 < p < 1.
 fn density(hits: u64, trials: u64, p: f64) -> f64 {
     let (k, n) = (hits as f64, trials as f64);
     let (rest, off) = (n - k, excess(k, n, p));
@@ -79,7 +79,7 @@ fn density(hits: u64, trials: u64, p: f64) -> f64 {
     (n / (2.0 * PI * k * rest)).sqrt() * libm::exp(exponent)
 }
 
-/// How much Stirling's formula falls short: ln n! − ln(√(2πn) (n/e)ⁿ). From 16 on the fifth term of the series is below 1e-16.
+/// Error of Stirling's formula: ln n! − ln(√(2πn) (n/e)ⁿ). From 16 on the fifth term of the series is below 1e-16.
 fn of_stirling(n: f64) -> f64 {
     if n < 16.0 {
         return libm::lgamma(n + 1.0) - (n + 0.5) * libm::log(n) + n - 0.5 * libm::log(2.0 * PI);
@@ -89,7 +89,7 @@ fn of_stirling(n: f64) -> f64 {
         / n
 }
 
-/// x ln(x/m) + m − x, where `off` is x − m. Near each other the terms cancel: then it is a series in off/(x + m).
+/// x ln(x/m) + m − x, where `off` is x − m. For x near m the terms cancel, and a series in off/(x + m) replaces them.
 fn deviance(x: f64, m: f64, off: f64) -> f64 {
     if off.abs() >= 0.1 * (x + m) {
         return x * libm::log(x / m) - off;
@@ -132,7 +132,7 @@ fn continued_fraction(a: f64, b: f64, x: f64, lambda: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Oracle: the sum itself, in terms that follow from each other. A sum of n rounded terms errs by some n·ε.
+    /// Oracle: the sum itself, by recurrence of its terms. A sum of n rounded terms has an error of some n·ε.
     #[test]
     fn tails_are_the_sums_that_they_stand_for() {
         for (trials, p) in [(1_u64, 0.3), (10, 0.5), (59, 0.95), (200, 0.01), (1000, 0.37), (1000, 0.999)] {
@@ -142,7 +142,7 @@ mod tests {
                 let last = terms[terms.len() - 1];
                 terms.push(last * (n - k as f64 + 1.0) / k as f64 * p / (1.0 - p));
             }
-            // (1 − p)ⁿ of 0.001¹⁰⁰⁰ is below all numbers: such a row is summed from the other end.
+            // (1 − p)ⁿ of 0.001¹⁰⁰⁰ underflows: such a row is summed from the other end.
             if terms[0] == 0.0 {
                 terms = vec![libm::exp(n * libm::log(p))];
                 for k in (0..trials).rev() {
@@ -162,9 +162,9 @@ mod tests {
         }
     }
 
-    /// Oracle: mpmath 1.4 with 60 digits, `betainc(k, n - k + 1, 0, p, regularized=True)`. What p is rounded by moves a tail by n times as
-    /// much at the worst: the tolerance is that of √n roundings, as the terms of the exponent are of the order of the distance from
-    /// the mean in standard deviations squared.
+    /// Oracle: mpmath 1.4 with 60 digits, `betainc(k, n - k + 1, 0, p, regularized=True)`. The rounding of p changes a tail by at most n
+    /// times as much: the tolerance is that of √n roundings, as the terms of the exponent are of the order of the distance from the mean in
+    /// standard deviations squared.
     #[test]
     fn ten_million_trials_lose_no_digits() {
         for (hits, trials, p, expected) in [

@@ -1,4 +1,4 @@
-//! A few points that meet every value: what is wrong with a sweep is found before it runs.
+//! A few points that cover every value, to find mistakes of a sweep before it runs.
 use crate::axis::Value;
 use crate::draws::Draws;
 use crate::sweep::{Arrangement, Sweep};
@@ -9,13 +9,13 @@ use std::collections::BTreeSet;
 pub struct KeyColumn<'a> {
     /// The key.
     pub key: &'a str,
-    /// The unit of its numbers, empty where they are pure; `None` where it has other values than numbers in one unit.
+    /// The unit of its numbers, empty for pure numbers; `None` unless all values are numbers in one unit.
     pub unit: Option<&'a str>,
 }
 
 impl Sweep {
-    /// Points in ascending order among which there is each combination, when there are no more than `most` of them, or else each value of
-    /// each axis, beside the first values of the others; and of each key that is drawn the least and the greatest value.
+    /// Points in ascending order that cover all combinations if there are at most `most` of them, or else each value of each axis,
+    /// with the first values of the others; and for each drawn key its least and its greatest value.
     #[must_use]
     pub fn cover(&self, most: usize) -> Vec<usize> {
         let draws = self.draws_of_each();
@@ -58,7 +58,7 @@ impl Sweep {
         axes.chain(drawn.map(|drawn| KeyColumn { key: &drawn.key, unit: Some(&drawn.unit) }))
     }
 
-    /// The value at point `index` of the key in column `key`; none beyond the last ones.
+    /// The value at point `index` of the key in column `key`; `None` beyond the last ones.
     #[must_use]
     pub fn value(&self, index: usize, key: usize) -> Option<Value> {
         self.point(index).into_iter().nth(key).map(|setting| setting.value)

@@ -1,34 +1,34 @@
-//! How often a value is met among machines.
+//! Distribution of a value over machines.
 use core::f64::consts::{PI, SQRT_2};
 
-/// Standard deviations that nothing is drawn beyond: of the smallest share there is half of 2⁻⁵².
+/// Largest deviation of a draw in standard deviations: the smallest share, half of 2⁻⁵², lies within.
 const FURTHEST: f64 = 40.0;
 
-/// How often a value is met among machines.
+/// Distribution of a value over machines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
-    /// Every value between two is as likely as any other.
+    /// Uniform between two values.
     Uniform {
         /// The smallest.
         low: f64,
         /// The largest.
         high: f64,
     },
-    /// Every whole number from one to another is as likely as any other: seeds.
+    /// Uniform over the whole numbers from one to another: seeds.
     Whole {
         /// The smallest.
         low: f64,
         /// The largest.
         high: f64,
     },
-    /// Gauss's.
+    /// Normal (Gaussian).
     Normal {
-        /// Its middle.
+        /// Mean.
         mean: f64,
         /// Standard deviation.
         sigma: f64,
     },
-    /// Most likely in the middle, less and less towards two ends.
+    /// Triangular: most likely at its mode, linearly less towards both ends.
     Triangular {
         /// The smallest.
         low: f64,
@@ -40,7 +40,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// Why it is none, if so.
+    /// Reason why it is not a valid distribution; `None` if it is.
     #[must_use]
     pub fn objection(&self) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
@@ -63,7 +63,7 @@ impl Distribution {
         }
     }
 
-    /// The value that a share `share` of all is not above, 0 < share < 1.
+    /// The quantile of the share `share`, 0 < share < 1.
     #[must_use]
     pub fn quantile(&self, share: f64) -> f64 {
         match *self {
@@ -82,26 +82,26 @@ impl Distribution {
     }
 }
 
-/// The largest number up to which a distribution of whole numbers goes: 2⁵², above which halves, and so shares of one, are rounded away.
+/// Largest magnitude in a distribution of whole numbers: 2⁵², above which halves, and so shares of one, are rounded away.
 const LARGEST_WHOLE: f64 = 4_503_599_627_370_496.0;
 
 fn is_whole(value: f64) -> bool {
     value.abs() <= LARGEST_WHOLE && libm::floor(value).to_bits() == value.to_bits()
 }
 
-/// The quantile of Gauss's distribution with mean 0 and standard deviation 1: a rational approximation, good to 4.5e-4, and Halley's
-/// method on the complementary error function, which triples its digits twice.
+/// The quantile of the normal distribution with mean 0 and standard deviation 1: a rational approximation, accurate to 4.5e-4, refined
+/// by Halley's method on the complementary error function, which triples its digits twice.
 ///
 /// Source: Abramowitz & Stegun, *Handbook of Mathematical Functions*, 26.2.23.
 fn standard_quantile(share: f64) -> f64 {
-    // In the tail that is nearer, so that small shares keep their digits.
+    // In the nearer tail, so that small shares keep their digits.
     let tail = share.min(1.0 - share);
     let t = (-2.0 * libm::log(tail)).sqrt();
     let numerator = 2.515_517 + t * (0.802_853 + t * 0.010_328);
     let denominator = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
     let mut x = t - numerator / denominator;
     for _ in 0..2 {
-        // Share above x less that which is wanted, over the density.
+        // Share above x minus the wanted share, divided by the density.
         let off = (0.5 * libm::erfc(x / SQRT_2) - tail) * (2.0 * PI).sqrt() * libm::exp(x * x / 2.0);
         x += off / (1.0 - x * off / 2.0);
     }
@@ -112,7 +112,7 @@ fn standard_quantile(share: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Oracle: the share below the quantile is the share, by the error function.
+    /// Oracle: the share below the quantile, by the error function.
     #[test]
     fn a_quantile_of_gauss_has_its_share_below() {
         for exponent in 1..300 {
@@ -120,7 +120,7 @@ mod tests {
             for share in [tail, 0.5 * tail] {
                 let x = standard_quantile(share);
                 let found = 0.5 * libm::erfc(-x / SQRT_2);
-                // What x is rounded by counts x² as much in the tail.
+                // The rounding of x counts x² as much in the tail.
                 let rounding = 8.0 * f64::EPSILON * (1.0 + x * x);
                 assert!((found / share - 1.0).abs() < rounding, "{share}: {x} has {found}");
                 if exponent < 15 {
@@ -140,7 +140,7 @@ mod tests {
         for (share, value) in [(0.125, 3.0), (0.5, 4.0), (0.875, 5.0)] {
             assert!((triangle.quantile(share) - value).abs() < 1e-14, "{share}");
         }
-        // All of it on one side.
+        // The whole triangle on one side.
         let right = Distribution::Triangular { low: 0.0, mode: 0.0, high: 1.0 };
         assert!((right.quantile(0.75) - 0.5).abs() < 1e-15);
         let uniform = Distribution::Uniform { low: -1.0, high: 3.0 };
@@ -167,7 +167,7 @@ mod tests {
         assert!(objects(Distribution::Whole { low: 4.0, high: 3.0 }));
         assert!(objects(Distribution::Whole { low: 0.0, high: 1e16 }));
         assert!(!objects(Distribution::Whole { low: -3.0, high: 4_294_967_295.0 }));
-        // What is beyond all numbers, or would be drawn there.
+        // Values that overflow, or whose draws would.
         assert!(objects(Distribution::Triangular { low: -1e308, mode: 0.5, high: 1e308 }));
         assert!(objects(Distribution::Normal { mean: 0.0, sigma: 1e307 }));
         let wide = Distribution::Triangular { low: 0.0, mode: 0.5, high: 1e157 };

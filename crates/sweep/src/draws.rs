@@ -1,4 +1,4 @@
-//! Draws of what has a tolerance.
+//! Draws of keys with a tolerance.
 use crate::axis::Value;
 use crate::distribution::Distribution;
 use crate::error::SweepError;
@@ -16,29 +16,29 @@ choices! {
     }
 }
 
-/// A key that is drawn.
+/// A key with a distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// The key: `axis.load.mass`.
     pub key: String,
-    /// Unit of the values; empty of a pure number.
+    /// Unit of the values; empty for a pure number.
     pub unit: String,
-    /// How often which value is met.
+    /// Distribution of its values.
     pub distribution: Distribution,
 }
 
-/// Keys that are drawn, all of them anew in each draw, independent of each other.
+/// Keys that are drawn anew in each draw, independently of each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draws {
     count: u32,
     seed: u64,
     keys: Vec<Drawn>,
-    /// The part of its distribution that each draw of a key is from; empty where each draw is by itself.
+    /// Index of the part of its distribution for each draw of a key; empty for independent draws.
     parts: Vec<Vec<u32>>,
 }
 
 impl Draws {
-    /// `count` draws of `keys`. The same seed gives the same draws on every machine, and a key the same ones whatever else is drawn after it.
+    /// `count` draws of `keys`. The same seed yields the same draws on every machine; those of a key do not depend on the keys after it.
     ///
     /// # Errors
     /// [`SweepError::NothingDrawn`], [`SweepError::Distribution`].
@@ -63,7 +63,7 @@ impl Draws {
         Ok(Self { count, seed, keys, parts })
     }
 
-    /// How many there are.
+    /// Number of draws.
     #[must_use]
     pub const fn count(&self) -> u32 {
         self.count
@@ -93,7 +93,7 @@ impl Draws {
         self.keys[key].distribution.quantile(self.share(key, index))
     }
 
-    /// Where in the distribution of key `key` draw `index` is, between 0 and 1.
+    /// Share (between 0 and 1) of draw `index` in the distribution of key `key`.
     fn share(&self, key: usize, index: u32) -> f64 {
         let within = random::between(random::number(stream(self.seed, key, Purpose::Value), index.into()));
         match self.parts.get(key) {
@@ -103,12 +103,12 @@ impl Draws {
     }
 }
 
-/// So far within the `part`th of `count` equal parts. The last number of the last part would be rounded to 1, beyond which nothing is.
+/// Share at `within` (0 to 1) of the part with index `part` of `count` equal parts. The last number of the last part would round to 1.
 fn in_part(part: u32, within: f64, count: u32) -> f64 {
     ((f64::from(part) + within) / f64::from(count)).min(1.0 - f64::EPSILON / 2.0)
 }
 
-/// What a stream of random numbers is for.
+/// Purpose of a stream of random numbers.
 #[derive(Clone, Copy)]
 enum Purpose {
     Value,
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Of a hypercube each of the equally likely parts has one draw.
+    /// Each of the equally likely parts of a hypercube has one draw.
     #[test]
     fn a_latin_hypercube_has_one_draw_in_each_part() {
         let mut found = draws(Method::LatinHypercube, Distribution::Uniform { low: 0.0, high: 1.0 });
@@ -176,7 +176,7 @@ mod tests {
         }
     }
 
-    /// Keys do not follow each other: their correlation is that of independent draws, 1/√n.
+    /// Keys are uncorrelated: their correlation is that of independent draws, 1/√n.
     #[test]
     fn keys_are_drawn_independently() {
         for method in [Method::Random, Method::LatinHypercube] {

@@ -1,17 +1,17 @@
-//! Why something cannot be varied.
+//! Errors of sweeps.
 use thiserror::Error;
 
-/// Why something cannot be varied.
+/// Reason why a sweep is not valid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
-    /// A number that is none.
+    /// A number that is not finite.
     #[error("`{key}`: {what} is {value}, and must be finite")]
     NotFinite {
         /// The key that varies.
         key: String,
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
-        /// It.
+        /// Its value.
         value: f64,
     },
     /// A range on a logarithmic scale that has no logarithm.
@@ -21,17 +21,17 @@ pub enum SweepError {
     NoLogarithm {
         /// The key that varies.
         key: String,
-        /// Where the range begins.
+        /// Start of the range.
         from: f64,
-        /// Where it ends.
+        /// End of the range.
         to: f64,
     },
-    /// A range of no value, or of one that would have to be both ends.
+    /// A range with fewer than two values.
     #[error("`{key}`: a range needs at least 2 values, `count` is {count}; a single one stands in `values`")]
     TooFew {
         /// The key that varies.
         key: String,
-        /// Values that the range is to have.
+        /// Requested number of values.
         count: usize,
     },
     /// A key without values.
@@ -40,41 +40,41 @@ pub enum SweepError {
         /// The key that varies.
         key: String,
     },
-    /// A key that varies twice.
+    /// A key that appears twice.
     #[error("`{key}` varies twice; each key has one list, range or distribution")]
     Twice {
         /// The key that varies.
         key: String,
     },
-    /// Keys that vary side by side and have different numbers of values.
+    /// Keys that vary in parallel with different numbers of values.
     #[error(
         "`{key}` has {found} values and `{first}` {expected}: keys that vary side by side (`zip`) have the same number"
     )]
     UnequalLength {
         /// The first key.
         first: String,
-        /// Values that it has.
+        /// Its number of values.
         expected: usize,
         /// The one that differs.
         key: String,
-        /// Values that that has.
+        /// Its number of values.
         found: usize,
     },
-    /// A distribution that is none.
+    /// A distribution that is not valid.
     #[error("`{key}`: {reason}")]
     Distribution {
         /// The key that varies.
         key: String,
-        /// What is wrong with it.
+        /// Reason.
         reason: String,
     },
-    /// Nothing is drawn, or drawn no times.
+    /// Draws without a key, or with a count of zero.
     #[error("there is nothing to draw: {0}")]
     NothingDrawn(&'static str),
-    /// More points than can be told apart.
+    /// Too many points.
     #[error("the sweep has more than {most} points; take fewer values, or draws in place of a grid")]
     TooMany {
-        /// Points, at most.
+        /// Largest number of points.
         most: usize,
     },
 }

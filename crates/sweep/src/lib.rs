@@ -1,15 +1,15 @@
-//! What varies from run to run of a sweep: keys of a scenario over values, and draws of what has a tolerance.
+//! Keys of a scenario that vary from run to run of a sweep, over given values or as draws within tolerances.
 //!
 //! ```text
 //! point = combination of the axes × draw        index = combination · draws + draw
 //! ```
-//! A point is made from its index alone, whenever and wherever it is asked for, so that a sweep of any length takes no memory, can be
-//! gone on with, and is the same on every machine.
+//! A point follows from its index alone, at any time and on any machine, so that a sweep of any length takes no memory, can be
+//! continued, and is reproducible everywhere.
 //!
-//! And what the runs of a sweep say together:
+//! Statistics of all runs of a sweep:
 //!
 //! ```text
-//! Table (a row for each run) → Sample: quantiles · Proportion: share of good ones · Sensitivity: which key costs how much · front
+//! Table (a row for each run) → Sample: quantiles · Proportion: share of good runs · Sensitivity: effect of each key · front
 //! ```
 
 mod axis;

@@ -1,8 +1,8 @@
-//! What nothing else is better than in both of two respects.
+//! Pareto fronts of two criteria.
 
-/// The places of those `points` that no other one dominates, by the first number ascending. Of two numbers the smaller one is better; a
-/// point dominates another that it is not worse than in either and better than in one. So of equal points each is there; a point with
-/// NaN never is.
+/// Indices of the `points` that no other one dominates, ascending by the first number. The smaller of two numbers is better; a point
+/// dominates another if it is not worse in either and better in one. All of several equal points are included; points with NaN
+/// never are.
 #[must_use]
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
@@ -25,8 +25,8 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// The places of [`front`] without those that a remaining one beats when values are `equal` that are near to each other: no larger in either,
-/// and smaller in one. A dense front is thinned by it and keeps its ends as far as they are apart.
+/// The indices of [`front`] without those that a remaining point beats when nearby values count as `equal`: no larger in either number,
+/// and smaller in one. This thins out a dense front but keeps ends that are far apart.
 #[must_use]
 pub fn front_apart(points: &[(f64, f64)], equal: &[impl Fn(f64, f64) -> bool; 2]) -> Vec<usize> {
     let is_smaller = |one: f64, other: f64, k: usize| one < other && !equal[k](one, other);
@@ -35,7 +35,7 @@ pub fn front_apart(points: &[(f64, f64)], equal: &[impl Fn(f64, f64) -> bool; 2]
         let is_larger = is_smaller(u, x, 0) || is_smaller(v, y, 1);
         !is_larger && (is_smaller(x, u, 0) || is_smaller(y, v, 1))
     };
-    // From the second number upwards: what is as fast and calmer comes first, what is as calm and faster takes the place of others.
+    // From the second number upwards: a point as fast and calmer comes first, a point as calm and faster replaces others.
     let mut kept: Vec<usize> = Vec::new();
     for one in front(points).into_iter().rev() {
         if !kept.iter().any(|other| beats(other, &one)) {
@@ -71,7 +71,7 @@ mod tests {
         assert_eq!(front_apart(&points, &[near, near]), [1, 3, 4]);
         assert_eq!(front_apart(&[(1.0, 1.0), (1.0, 1.0)], &[near, near]), [0, 1], "none beats its equal");
         assert!(front_apart(&[], &[near, near]).is_empty());
-        // Of a dense front each is as fast as the next, which is calmer: it is thinned, and not emptied from one end to the other.
+        // In a dense front each is as fast as the next, which is calmer: it is thinned out, but not emptied from one end to the other.
         let dense: Vec<(f64, f64)> = (0..500).map(|k| 1.0 + 0.002 * f64::from(k)).map(|x| (x, 1.0 / (x * x))).collect();
         let apart = front_apart(&dense, &[near, near]);
         let steps: Vec<f64> = apart.windows(2).map(|pair| dense[pair[1]].0 / dense[pair[0]].0).collect();
@@ -79,7 +79,7 @@ mod tests {
         assert!(apart[0] < 10 && apart.last() == Some(&499), "{apart:?}");
     }
 
-    /// Numbers of which many are equal.
+    /// Numbers, many of them equal.
     fn number() -> impl Strategy<Value = f64> {
         prop_oneof![
             8 => (0..6_i32).prop_map(f64::from),
@@ -91,7 +91,7 @@ mod tests {
     }
 
     proptest! {
-        /// Oracle: the definition, each against each.
+        /// Oracle: the definition, each point against all others.
         #[test]
         fn it_is_what_each_against_each_leaves(points in prop::collection::vec((number(), number()), 0..40)) {
             let dominates = |(x, y): (f64, f64), (u, v): (f64, f64)| x <= u && y <= v && (x < u || y < v);

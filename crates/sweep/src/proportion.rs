@@ -1,11 +1,11 @@
-//! How large a share is that was counted, and how large it may be.
+//! Counted shares and their confidence bounds.
 //!
 //! Bounds are the exact ones of C. Clopper & E. Pearson, *The use of confidence or fiducial limits illustrated in the case of the
-//! binomial*, Biometrika 26 (1934): the share at which what was counted, or more of it, would be as rare as the confidence leaves. Whatever
+//! binomial*, Biometrika 26 (1934): the share at which the count, or a more extreme one, has a probability of 1 − confidence. Whatever
 //! the share is, they are wrong at most that often.
 use crate::binomial;
 
-/// What was counted: hits among trials that are independent of each other.
+/// Counts of hits and misses in independent trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Proportion {
     hits: u64,
@@ -13,31 +13,31 @@ pub struct Proportion {
 }
 
 impl Proportion {
-    /// So many hits, so many misses.
+    /// A number of hits and a number of misses.
     #[must_use]
     pub const fn new(hits: u64, misses: u64) -> Self {
         Self { hits, misses }
     }
 
-    /// How many were hits.
+    /// Number of hits.
     #[must_use]
     pub const fn hits(self) -> u64 {
         self.hits
     }
 
-    /// How many trials there were.
+    /// Number of trials.
     #[must_use]
     pub const fn trials(self) -> u64 {
         self.hits + self.misses
     }
 
-    /// The share of hits, 0 to 1; NaN of no trials.
+    /// The share of hits, 0 to 1; NaN without trials.
     #[must_use]
     pub fn share(self) -> f64 {
         self.hits as f64 / self.trials() as f64
     }
 
-    /// What the true share is at least, with probability `confidence` (one-sided): 0.99701 of 1000 of 1000 at 95 %; 0 of no hits.
+    /// Lower bound of the true share with probability `confidence` (one-sided): 0.99701 for 1000 of 1000 at 95 %; 0 without hits.
     #[must_use]
     pub fn at_least(self, confidence: f64) -> f64 {
         if self.hits == 0 {
@@ -46,7 +46,7 @@ impl Proportion {
         bisected(|p| binomial::at_least(self.hits, self.trials(), p) < 1.0 - confidence)
     }
 
-    /// What the true share is at most, with probability `confidence` (one-sided); 1 of no misses.
+    /// Upper bound of the true share with probability `confidence` (one-sided); 1 without misses.
     #[must_use]
     pub fn at_most(self, confidence: f64) -> f64 {
         if self.misses == 0 {
@@ -55,7 +55,7 @@ impl Proportion {
         bisected(|p| binomial::at_most(self.hits, self.trials(), p) > 1.0 - confidence)
     }
 
-    /// Between what the true share is with probability `confidence`, half of the rest on either side.
+    /// Bounds of the true share with probability `confidence`, half of the remainder on either side.
     #[must_use]
     pub fn interval(self, confidence: f64) -> [f64; 2] {
         let one_sided = 0.5 * (1.0 + confidence);
@@ -63,7 +63,7 @@ impl Proportion {
     }
 }
 
-/// Up to where between 0 and 1 the condition holds, to the last digit.
+/// The point between 0 and 1 up to which the condition holds, to the last digit.
 fn bisected(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     loop {
@@ -84,7 +84,7 @@ mod tests {
     }
 
     /// Published to four digits: R. Newcombe, *Two-sided confidence intervals for the single proportion*, Statistics in Medicine 17 (1998),
-    /// table I, method 5; and 10 of 100, which many tables have.
+    /// table I, method 5; and 10 of 100, from many tables.
     #[test]
     fn intervals_are_the_published_ones() {
         for (hits, trials, low, high) in [
@@ -101,7 +101,7 @@ mod tests {
         assert!((of(1000, 1000).at_least(0.95) - 0.99701).abs() < 0.5e-5);
     }
 
-    /// Oracle: the closed forms. All of n: the n-th root of α; none: 1 − that. What 1 − 0.95 is rounded by is 1e-15 of it.
+    /// Oracle: the closed forms. All of n: the n-th root of α; none: 1 minus that. The rounding of 1 − 0.95 is 1e-15 of it.
     #[test]
     fn all_and_none_have_closed_forms() {
         for n in [1_u64, 2, 10, 1000, 123_456, 10_000_000] {
@@ -119,8 +119,8 @@ mod tests {
         }
     }
 
-    /// Oracle: mpmath 1.4 with 50 digits, the tail as a sum and its root. A part in 1e13 is a thousand roundings; SciPy 1.17 has the upper
-    /// bound of 3 to a part in 1e10.
+    /// Oracle: mpmath 1.4 with 50 digits, the tail as a sum and its root. A part in 1e13 is a thousand roundings; SciPy 1.17 has the
+    /// upper bound of 3 to a part in 1e10.
     #[test]
     fn bounds_of_ten_million_trials_are_those_of_another_program() {
         for (hits, low, high) in [
@@ -134,12 +134,12 @@ mod tests {
         }
     }
 
-    /// The definition: at the bound what was counted is as rare as the confidence leaves.
+    /// Oracle: the definition, a count at the bound has a tail of 1 − confidence.
     #[test]
     fn a_bound_leaves_what_it_says() {
         for (hits, trials) in [(1, 2), (7, 9), (50, 100), (999, 1000), (3, 100_000)] {
             let (low, high) = (of(hits, trials).at_least(0.95), of(hits, trials).at_most(0.95));
-            // The tail changes by a part in 1e16 of the bound times how steep it is, which is below the number of trials.
+            // The tail changes by a part in 1e16 of the bound times its slope, which is below the number of trials.
             let tolerance = 4.0 * f64::EPSILON * trials as f64;
             assert!((binomial::at_least(hits, trials, low) - 0.05).abs() < tolerance);
             assert!((binomial::at_most(hits, trials, high) - 0.05).abs() < tolerance);

@@ -1,17 +1,17 @@
-//! What a sample tells of where it is from.
+//! Statistics of a sample: estimates for its population.
 //!
 //! ```text
 //! quantile of share p     between the values of rank ⌊h⌋ and ⌊h⌋ + 1 in order, h = (n + 1/3) p + 1/3       (1)
 //! P(x₍r₎ ≤ quantile ≤ x₍s₎) = P(r ≤ B < s),   B hits of n, each with probability p                        (2)
 //! ```
 //! (1) is type 8 of R. Hyndman & Y. Fan, *Sample quantiles in statistical packages*, The American Statistician 50 (1996), which they
-//! recommend: about as often too high as too low, whatever the distribution. (Type 7, which spreadsheets and NumPy have by default, is
-//! too near the middle for what is far out, where a tolerance is of interest: of 20 values the 95 % quantile lies below the largest by
-//! nearly a whole distance to the next.) NumPy has it as `method="median_unbiased"`.
+//! recommend: about as often too high as too low, whatever the distribution. (Type 7, the default of spreadsheets and NumPy, is
+//! too near the middle in the tails, where a tolerance is of interest: for 20 values the 95 % quantile lies below the largest by
+//! nearly the whole distance to the next.) NumPy calls it `method="median_unbiased"`.
 //! (2) needs no assumption about the distribution: W. Conover, *Practical Nonparametric Statistics*, 3rd ed. 1999, section 3.2.
 use crate::binomial;
 
-/// Finite numbers of one kind, at least one.
+/// Finite numbers of one quantity, at least one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// Ascending.
@@ -21,14 +21,14 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The numbers among `values`; what is not finite was not measured and is left out. `None` where nothing is left.
+    /// The finite numbers among `values`; others were not measured and are left out. `None` if no number is left.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         Self::sorted_of(values.into_iter().filter(|value| value.is_finite()).collect())
     }
 
-    /// The same of times, of which an infinite one, of what is never reached, is later than all others and not left out. Mean and deviation
-    /// are then not numbers.
+    /// The same for times: infinity, for a state that is never reached, is later than all others and not left out. Mean and deviation are
+    /// then not numbers.
     #[must_use]
     pub fn of_times(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let is_time = |value: &f64| value.is_finite() || *value == f64::INFINITY;
@@ -38,7 +38,7 @@ impl Sample {
     fn sorted_of(mut sorted: Vec<f64>) -> Option<Self> {
         sorted.sort_unstable_by(f64::total_cmp);
         let largest = sorted.first()?.abs().max(sorted.last()?.abs());
-        // In parts of the largest, so that no sum and no square is beyond all numbers, and about the mean in a second pass.
+        // Relative to the largest, so that no sum or square overflows, and about the mean in a second pass.
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let n = sorted.len() as f64;
         let mean = sorted.iter().map(|x| x / scale).sum::<f64>() / n;
@@ -47,13 +47,13 @@ impl Sample {
         Some(Self { sorted, mean: scale * mean, deviation })
     }
 
-    /// How many there are.
+    /// Number of values.
     #[must_use]
     pub const fn count(&self) -> usize {
         self.sorted.len()
     }
 
-    /// The numbers, ascending.
+    /// The values, ascending.
     #[must_use]
     pub fn sorted(&self) -> &[f64] {
         &self.sorted
@@ -65,26 +65,25 @@ impl Sample {
         self.mean
     }
 
-    /// Standard deviation of what they are from, with n − 1; NaN of a single number.
+    /// Standard deviation of the population, with n − 1; NaN for a single number.
     #[must_use]
     pub const fn deviation(&self) -> f64 {
         self.deviation
     }
 
-    /// Standard error of the mean, for draws that are independent of each other; NaN of a single number. Of a Latin hypercube the mean is
-    /// nearer than that.
+    /// Standard error of the mean, for independent draws; NaN for a single number. With a Latin hypercube the error of the mean is
+    /// smaller.
     #[must_use]
     pub fn standard_error(&self) -> f64 {
         self.deviation / (self.count() as f64).sqrt()
     }
 
-    /// What a share `share` of all is not above, 0 to 1: the definition (1). Beyond the outermost ranks it is the smallest or the largest
-    /// number.
+    /// Quantile of `share`, 0 to 1, by the definition (1). Beyond the outermost ranks it is the smallest or the largest number.
     #[must_use]
     pub fn quantile(&self, share: f64) -> f64 {
         let n = self.count();
         let h = (n as f64 + 1.0 / 3.0) * share + 1.0 / 3.0;
-        // As many ranks as are not above h, and one at least.
+        // Number of ranks that are not above h, at least one.
         let rank = partition(n, |below| (below + 1) as f64 <= h).max(1);
         let within = (h - rank as f64).clamp(0.0, 1.0);
         let (one, next) = (self.sorted[rank - 1], self.sorted[rank.min(n - 1)]);
@@ -94,21 +93,21 @@ impl Sample {
         (one * (1.0 - within) + next * within).clamp(one, next)
     }
 
-    /// Between which numbers the quantile of what they are from lies with probability `confidence` or more, half of the rest on either side:
-    /// (2). A side that the numbers are too few for is `None`: an upper bound of the 95 % quantile at 95 % takes 72 of them.
+    /// Confidence interval of a quantile of the population, with probability `confidence` or more, half of the remainder on either side:
+    /// (2). A side with too few numbers is `None`: an upper bound of the 95 % quantile at 95 % takes 72 of them.
     #[must_use]
     pub fn interval(&self, share: f64, confidence: f64) -> [Option<f64>; 2] {
         let (n, tail) = (self.count(), 0.5 * (1.0 - confidence));
         let count = n as u64;
-        // The largest rank that the quantile is below seldom enough; rank 0 is no number.
+        // The largest rank that the quantile is below with a small enough probability; rank 0 is not a number.
         let lower = partition(n, |rank| binomial::at_most(rank as u64, count, share) <= tail);
-        // The smallest rank that the quantile is above seldom enough.
+        // The smallest rank that the quantile is above with a small enough probability.
         let upper = partition(n, |rank| binomial::at_least(rank as u64 + 1, count, share) > tail);
         [lower.checked_sub(1).and_then(|place| self.sorted.get(place)).copied(), self.sorted.get(upper).copied()]
     }
 }
 
-/// How many of the numbers below `count` the condition holds for, which holds for the first ones.
+/// Number of values below `count` for which the condition holds; it holds for the first ones.
 fn partition(count: usize, holds: impl Fn(usize) -> bool) -> usize {
     let (mut low, mut high) = (0, count);
     while low < high {
@@ -149,7 +148,7 @@ mod tests {
         // A small scatter about a large mean: √(2/3 · 3/2) nm about 1 m. The numbers themselves are rounded to 1e-16.
         let far = Sample::of([1.0 - 1e-9, 1.0, 1.0 + 1e-9]).unwrap();
         assert!((far.deviation() - 1e-9).abs() < 3e-16, "{}", far.deviation());
-        // No square is beyond all numbers.
+        // No square overflows.
         let huge = Sample::of([-1e300, 1e300]).unwrap();
         assert!((huge.deviation() / 1e300 - 2_f64.sqrt()).abs() < 1e-15 && huge.mean() == 0.0);
         assert!(ranks(1).deviation().is_nan() && ranks(1).standard_error().is_nan());
@@ -162,9 +161,9 @@ mod tests {
         assert_eq!((Sample::of([f64::NAN]), Sample::of([])), (None, None));
     }
 
-    /// Published: of ten numbers the second and the ninth are about the median with 97.9 %, of twenty the sixth and the fifteenth with 95.9 %
-    /// (Conover, table A3); 59 are the fewest whose largest is above the 95 % quantile with 95 % (S. Wilks, *Determination of sample sizes
-    /// for setting tolerance limits*, Annals of Mathematical Statistics 12, 1941).
+    /// Published: of ten numbers the second and the ninth enclose the median with 97.9 %, of twenty the sixth and the fifteenth with 95.9 %
+    /// (Conover, table A3); 59 is the smallest number whose maximum is above the 95 % quantile with 95 % (S. Wilks, *Determination of
+    /// sample sizes for setting tolerance limits*, Annals of Mathematical Statistics 12, 1941).
     #[test]
     fn intervals_are_the_published_ones() {
         assert_eq!(ranks(10).interval(0.5, 0.95), [Some(2.0), Some(9.0)]);
@@ -177,7 +176,7 @@ mod tests {
     }
 
     proptest! {
-        /// Between the ends, and never falling.
+        /// Between the ends, and never decreasing.
         #[test]
         fn quantiles_ascend(values in prop::collection::vec(-1e300..1e300_f64, 1..60), one in 0.0..=1.0_f64, other in 0.0..=1.0_f64) {
             let sample = Sample::of(values.iter().copied()).unwrap();

@@ -1,8 +1,8 @@
-//! Random numbers that are made from their place alone.
+//! Random numbers that depend on their index alone.
 //!
 //! Source: Steele, Lea & Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014 (`SplitMix64`).
 
-/// What the state of the generator grows by.
+/// Increment of the generator's state.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Number `index` of the generator with this seed.
@@ -13,12 +13,12 @@ pub(crate) const fn number(seed: u64, index: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The seed of stream `stream` among those of `seed`.
+/// The seed of stream `stream` derived from `seed`.
 pub(crate) const fn stream(seed: u64, stream: u64) -> u64 {
     number(number(seed, 0) ^ stream, 0)
 }
 
-/// A number between 0 and 1, neither of which it is.
+/// A number between 0 and 1, exclusive.
 pub(crate) fn between(number: u64) -> f64 {
     ((number >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
 }
@@ -27,7 +27,7 @@ pub(crate) fn between(number: u64) -> f64 {
 pub(crate) fn order(seed: u64, count: u32) -> Vec<u32> {
     let mut order: Vec<u32> = (0..count).collect();
     for last in (1..order.len()).rev() {
-        // Of 2⁶⁴ numbers the first few are more frequent by one part in 2³².
+        // Bias: the first few of 2⁶⁴ numbers are more frequent by one part in 2³².
         let other = (u128::from(number(seed, last as u64)) * (last as u128 + 1)) >> 64;
         order.swap(last, usize::try_from(other).unwrap_or(last));
     }
@@ -38,7 +38,7 @@ pub(crate) fn order(seed: u64, count: u32) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// The first numbers that the authors' program gives for seed 0.
+    /// The first numbers of the authors' program for seed 0.
     #[test]
     fn the_numbers_are_those_of_the_generator() {
         let found = [0, 1, 2].map(|index| number(0, index));
@@ -51,7 +51,7 @@ mod tests {
         assert!((between(1 << 63) - 0.5).abs() < 1e-15);
     }
 
-    /// Each place sees each number about as often: 100 000 orders of 5, of which one expects 20 000 ± 4·127.
+    /// Each position has each number about equally often: 100 000 orders of 5, with an expectation of 20 000 ± 4·127.
     #[test]
     fn every_order_is_as_likely_as_any_other() {
         let mut seen = [[0_u32; 5]; 5];

@@ -1,4 +1,4 @@
-//! Which key costs how much.
+//! Effect of each key on a metric.
 //!
 //! ```text
 //! share of a key = Var(E(y | key)) / Var(y)                                                               (1)
@@ -6,64 +6,64 @@
 //! share ≈ (between − (K − 1)·within/(n − K)) / (between + within)                                         (3)
 //! ```
 //! (1) is the first-order index of I. Sobol', *Sensitivity estimates for nonlinear mathematical models*, Mathematical Modelling and
-//! Computational Experiment 1 (1993), which is the correlation ratio of K. Pearson. (2) estimates it from draws that were made anyway: A.
-//! Saltelli et al., *Global Sensitivity Analysis: The Primer*, 2008, section 1.2. The means of K bins scatter even where the key does
-//! nothing, by what (3) takes off: T. Kelley, *An unbiased correlation ratio measure*, PNAS 21 (1935). What the mean changes within a bin
-//! is lost, 1/K² of the share where it changes evenly.
+//! Computational Experiment 1 (1993), which is the correlation ratio of K. Pearson. (2) estimates it from any draws: A.
+//! Saltelli et al., *Global Sensitivity Analysis: The Primer*, 2008, section 1.2. The means of K bins scatter even for a key without
+//! effect, by the amount that (3) subtracts: T. Kelley, *An unbiased correlation ratio measure*, PNAS 21 (1935). A change of the mean
+//! within a bin is lost, 1/K² of the share for a uniform slope.
 use crate::axis::Value;
 use crate::draws::Draws;
 use crate::sweep::Arrangement;
 use crate::table::{Column, Table};
 use std::collections::BTreeSet;
 
-/// Draws that an end of a key has at least, and as a part of all: a tenth of them.
+/// Draws at an end of a key: their smallest number, and the divisor of all draws: a tenth.
 const FEWEST: usize = 5;
 const PART: usize = 10;
-/// Turns of the least squares at most, and changes that are none, in standard deviations.
+/// Largest number of least-squares iterations, and the change, in standard deviations, at which they stop.
 const MOST_TURNS: usize = 200;
 const NO_MORE: f64 = 1e-12;
-/// Draws below which bins tell nothing.
+/// Number of draws below which bins are not meaningful.
 const FEWEST_DRAWS: usize = 12;
 
-/// Which key costs how much of a metric.
+/// Effect of each key on a metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// The keys, that with the largest share first.
+    /// The keys, with the largest share first.
     pub keys: Vec<Influence>,
-    /// The share of the variance that no key explains alone, 0 to 1: keys that matter together, and chance.
+    /// The share of the variance that no single key explains, 0 to 1: interactions of keys, and chance.
     pub rest: f64,
-    /// The standard deviation that is explained, in the unit of the metric (SI).
+    /// The standard deviation to be explained, in the unit of the metric (SI).
     pub deviation: f64,
 }
 
-/// What a key does to a metric.
+/// Effect of a key on a metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Influence {
-    /// The key; of axes that go side by side, all of them: `a, b`; of several engines `engine`.
+    /// The key; for parallel axes all of them: `a, b`; for several engines `engine`.
     pub key: String,
-    /// Share of the variance that it explains alone (3), 0 to 1.
+    /// Share of the variance that it explains by itself (3), 0 to 1.
     pub share: f64,
-    /// Standard deviation that the share would have about 0 if the key did nothing; 0 of an axis, whose values all were run.
+    /// Standard deviation of the share about 0 if the key had no effect; 0 for an axis, since all its values were run.
     pub chance: f64,
-    /// The metric where the key is low. Of names: where the metric is smallest.
+    /// The metric at low values of the key. For names: at the smallest metric.
     pub low: End,
-    /// The metric where the key is high. Of names: where the metric is largest.
+    /// The metric at high values of the key. For names: at the largest metric.
     pub high: End,
-    /// Standard error of the difference of both ends, in the unit of the metric (SI); 0 of an axis.
+    /// Standard error of the difference between both ends, in the unit of the metric (SI); 0 for an axis.
     pub error: f64,
 }
 
 /// An end of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
-    /// What the key is there; of a drawn one the mean of the draws there, of which there are a tenth of all.
+    /// Value of the key; for a drawn key the mean of the draws at this end, a tenth of all.
     pub at: Value,
-    /// Mean of the metric there (SI).
+    /// Mean of the metric at this end (SI).
     pub mean: f64,
 }
 
 impl Influence {
-    /// How much more the metric is at the high end than at the low one (SI).
+    /// Metric at the high end minus that at the low end (SI).
     #[must_use]
     pub fn difference(&self) -> f64 {
         self.high.mean - self.low.mean
@@ -71,9 +71,9 @@ impl Influence {
 }
 
 impl Sensitivity {
-    /// What the drawn keys do to `column`: shares of its scatter within a group, about the mean of that, averaged over the groups. So a key that
-    /// lengthens the time with one value of an axis and shortens it with another has its share, while the difference of its ends, an
-    /// average too, may be small. `None` where nothing is drawn, or where no group scatters and was measured in 12 draws or more.
+    /// Effects of the drawn keys on `column`: shares of its scatter within a group, about the group's mean, averaged over the groups. A key
+    /// that lengthens the time with one value of an axis and shortens it with another thus has its share, while the difference of its ends,
+    /// also an average, may be small. `None` without draws, or if no group scatters and was measured in 12 draws or more.
     #[must_use]
     pub fn of_draws(table: &Table<'_>, column: &Column) -> Option<Self> {
         let draws = table.sweep.draws()?;
@@ -88,8 +88,8 @@ impl Sensitivity {
         Some(Self::sorted(keys, 1.0 - explained, squares / count))
     }
 
-    /// What axes and engines with more than one value do to `column`: shares of the variance of the means of the groups. Where all were
-    /// measured they and the rest are all of it. `None` where there is no such axis or the column is the same everywhere.
+    /// Effects on `column` of axes and engines with more than one value: shares of the variance of the group means. If all groups were
+    /// measured, the shares and the rest add up to 1. `None` without such an axis or if the column is constant.
     #[must_use]
     pub fn of_axes(table: &Table<'_>, column: &Column) -> Option<Self> {
         let groups: Vec<(usize, f64)> =
@@ -118,12 +118,12 @@ const fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Whether a variance about this `mean` is more than what the numbers are rounded by, and a number.
+/// True if a variance about this `mean` exceeds the rounding error, and is finite.
 fn is_scattered(variance: f64, mean: f64) -> bool {
     variance > square(8.0 * f64::EPSILON * mean) && variance.is_finite()
 }
 
-/// The mean of what was measured of `values`.
+/// The mean of the measured values of `values`.
 fn mean(values: &[f64]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for value in values.iter().filter(|value| value.is_finite()) {
@@ -153,7 +153,7 @@ impl<'c> Group<'c> {
     }
 }
 
-/// What key `key` of `draws` does to `groups`, whose squares about their means are `total`.
+/// Effect of key `key` of `draws` on `groups`; `total` is the sum of their squares about their means.
 fn influence(groups: &[Group<'_>], draws: &Draws, key: usize, total: f64) -> Influence {
     let mut order: Vec<(f64, usize)> = (0..draws.count()).map(|draw| draws.value(key, draw)).zip(0..).collect();
     order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
@@ -166,7 +166,7 @@ fn influence(groups: &[Group<'_>], draws: &Draws, key: usize, total: f64) -> Inf
         let pairs: Vec<(f64, f64)> = order.iter().filter_map(value).filter(|pair| pair.1.is_finite()).collect();
         let ratio = Ratio::of(&pairs);
         share += ratio.share * group.squares / total;
-        // The groups have the same draws: what is by chance in one of them may be in all.
+        // The groups have the same draws: a chance effect in one of them may be in all.
         chance += ratio.chance * group.squares / total;
         let size = (pairs.len() / PART).max(FEWEST);
         let [low, high] = [&pairs[..size], &pairs[pairs.len() - size..]].map(end_of);
@@ -179,7 +179,7 @@ fn influence(groups: &[Group<'_>], draws: &Draws, key: usize, total: f64) -> Inf
     Influence { key: drawn.key.clone(), share: share.clamp(0.0, 1.0), chance, low, high, error }
 }
 
-/// Means of the key and of the metric in some draws, and the variance of the second one.
+/// Means of the key and of the metric in some draws, and the variance of the metric's mean.
 struct Means {
     at: f64,
     mean: f64,
@@ -193,14 +193,14 @@ fn end_of(pairs: &[(f64, f64)]) -> Means {
     Means { at, mean, variance: squares / (n - 1.0) / n }
 }
 
-/// The correlation ratio (3) of what is ordered by the key.
+/// The correlation ratio (3) of values ordered by the key.
 struct Ratio {
     share: f64,
     chance: f64,
 }
 
 impl Ratio {
-    /// Of pairs in the order of their first numbers; as many bins as draws in each of them.
+    /// For pairs in the order of their first numbers; as many bins as draws per bin.
     fn of(pairs: &[(f64, f64)]) -> Self {
         let count = pairs.len();
         let bins = count.isqrt();
@@ -214,21 +214,21 @@ impl Ratio {
             between += size * square(mean - average);
             let squares = pairs.iter().map(|pair| square(pair.1 - mean)).sum::<f64>();
             within += squares;
-            // The fourth power of the scatter within the bin, without bias of normal numbers.
+            // The fourth power of the scatter within the bin, unbiased for normal numbers.
             fourth += square(squares) / ((size - 1.0) * (size + 1.0));
         }
         let (k, total) = (bins as f64, between + within);
         let share = (between - (k - 1.0) * within / (n - k)) / total;
-        // Of numbers whose mean is the same in each bin but not their scatter σ_b, `between` has the variance 2 Σ σ_b⁴.
+        // For numbers with the same mean in each bin but different scatter σ_b, `between` has the variance 2 Σ σ_b⁴.
         let chance = (2.0 * fourth * (1.0 - 1.0 / k) * (n - 1.0) / (n - k)).sqrt() / total;
         Self { share, chance }
     }
 }
 
-/// An axis, axes that go side by side, or the engines.
+/// An axis, parallel axes, or the engines.
 struct Factor {
     key: String,
-    /// Its values, and which of them each group has.
+    /// Its values, and the index of the value of each group.
     values: Vec<Value>,
     of_group: Vec<usize>,
 }
@@ -243,7 +243,7 @@ fn factors(table: &Table<'_>) -> Vec<Factor> {
         Factor { key: axes[axis].key.clone(), values: axes[axis].values.clone(), of_group }
     };
     let mut factors: Vec<Factor> = match table.sweep.arrangement() {
-        // What goes side by side cannot be told apart: they are one, with the values of the first.
+        // Parallel axes cannot be told apart: they count as one, with the values of the first.
         Arrangement::Zip if axes.len() > 1 => {
             let all: Vec<&str> = axes.iter().map(|axis| axis.key.as_str()).collect();
             vec![Factor { key: all.join(", "), ..of_axis(0) }]
@@ -260,12 +260,12 @@ fn factors(table: &Table<'_>) -> Vec<Factor> {
 }
 
 impl Factor {
-    /// What it does, by what each of its values adds to the `average`; nothing where it was measured at a single value.
+    /// Its effect, from the additions of its values to the `average`; `None` if it was measured at a single value.
     fn influence(&self, groups: &[(usize, f64)], effects: &[f64], average: f64, variance: f64) -> Option<Influence> {
         let squares: f64 = groups.iter().map(|(group, _)| square(effects[self.of_group[*group]])).sum();
         let measured: BTreeSet<usize> = groups.iter().map(|(group, _)| self.of_group[*group]).collect();
         let is_of_numbers = self.values.iter().all(|value| value.number().is_some());
-        // Numbers by themselves, names by what the metric is there.
+        // Numbers in their own order, names by the metric.
         let order = |value: &usize| match self.values[*value].number() {
             Some(number) if is_of_numbers => number,
             _ => effects[*value],
@@ -284,9 +284,9 @@ impl Factor {
     }
 }
 
-/// What each value of each of the `factors` adds to the mean of all `groups`, and the mean square of what is left. It is what the groups with a
-/// value have on average beyond all of them, where each has been measured; where some are missing, the other factors are not as often
-/// the same with each value, and what they add is taken off first: least squares by turns (*backfitting*, L. Breiman & J. Friedman,
+/// Additions of each value of the `factors` to the mean of all `groups`, and the mean square of the remainder. If each group was
+/// measured, an addition is the mean of the groups with that value minus the mean of all; if some are missing, the other factors are not
+/// balanced over its values, and their additions are subtracted first: iterated least squares (*backfitting*, L. Breiman & J. Friedman,
 /// Journal of the American Statistical Association 80, 1985).
 fn effects(groups: &[(usize, f64)], factors: &[Factor], average: f64, variance: f64) -> (Vec<Vec<f64>>, f64) {
     let mut effects: Vec<Vec<f64>> = factors.iter().map(|factor| vec![0.0; factor.values.len()]).collect();
@@ -320,8 +320,8 @@ mod tests {
     use super::*;
     use crate::random;
 
-    /// Of noise the corrected ratio is 0 on average and scatters as it says: over 400 seeds, within three standard errors of a mean, 1/√400, and
-    /// of a standard deviation, 1/√800, of it. Uncorrected the mean would be (K − 1)/(n − 1), which is four times the scatter.
+    /// The corrected ratio of noise is 0 on average and scatters as predicted: over 400 seeds, within three standard errors of a mean,
+    /// 1/√400, and of a standard deviation, 1/√800. The uncorrected mean would be (K − 1)/(n − 1), four times the scatter.
     #[test]
     fn noise_has_no_share() {
         for count in [50_u32, 1000] {

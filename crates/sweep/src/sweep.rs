@@ -5,7 +5,7 @@ use crate::error::SweepError;
 use servobench_config::choices;
 use std::collections::HashSet;
 
-/// Points that a sweep has at most.
+/// Largest number of points of a sweep.
 pub const MOST_POINTS: usize = 100_000_000;
 
 choices! {
@@ -18,7 +18,7 @@ choices! {
     }
 }
 
-/// A key and the value that it has in a run.
+/// A key with its value in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting<'a> {
     /// The key: `setpoint.jerk`.
@@ -28,34 +28,34 @@ pub struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    /// As it stands on the command line: `setpoint.jerk=50 m/s3`.
+    /// The setting as on the command line: `setpoint.jerk=50 m/s3`.
     #[must_use]
     pub fn written(&self) -> String {
         format!("{}={}", self.key, self.value.written())
     }
 }
 
-/// What varies from run to run.
+/// Keys that vary from run to run, with their values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     axes: Vec<Axis>,
     arrangement: Arrangement,
     draws: Option<Draws>,
     points: usize,
-    /// Keys that have the value of another one: that one, and the follower.
+    /// Keys that have the value of another one: the other key, and the follower.
     followers: Vec<(String, String)>,
-    /// Axes that are given, and not chosen.
+    /// Axes that are given rather than chosen.
     pub(crate) given: Vec<String>,
-    /// Axes that are of the machine, and so given where combinations are chosen from.
+    /// Axes that belong to the machine, and so are given when combinations are chosen.
     pub(crate) machine: Vec<String>,
 }
 
 impl Sweep {
-    /// The values of `axes`, and of each combination of them all of the `draws`: the same ones, so that combinations are compared on the same
-    /// machines.
+    /// The values of `axes`, and for each combination of them all of the `draws`: the same ones, so that combinations are compared on the
+    /// same machines.
     ///
     /// # Errors
-    /// [`SweepError::NoValues`], [`SweepError::Twice`], [`SweepError::UnequalLength`] name the key; [`SweepError::TooMany`].
+    /// [`SweepError::NoValues`], [`SweepError::Twice`], [`SweepError::UnequalLength`] with the key; [`SweepError::TooMany`].
     pub fn new(axes: Vec<Axis>, arrangement: Arrangement, draws: Option<Draws>) -> Result<Self, SweepError> {
         let mut taken = HashSet::new();
         let drawn = draws.iter().flat_map(Draws::keys).map(|drawn| &drawn.key);
@@ -72,10 +72,10 @@ impl Sweep {
         Ok(Self { axes, arrangement, draws, points, followers: Vec::new(), given: Vec::new(), machine: Vec::new() })
     }
 
-    /// With `followers`, which have the value of `key` in every run: the mode that is measured follows the frequency of the load.
+    /// Adds `followers`, which have the value of `key` in every run: the measured mode follows the frequency of the load.
     ///
     /// # Errors
-    /// [`SweepError::Twice`], when one of them varies already.
+    /// [`SweepError::Twice`], if one of them already varies.
     pub fn followed(mut self, key: &str, followers: &[String]) -> Result<Self, SweepError> {
         for follower in followers {
             let taken = self.keys().map(|(key, _)| key);
@@ -87,7 +87,7 @@ impl Sweep {
         Ok(self)
     }
 
-    /// The keys of point `index` and their values, followers behind all others.
+    /// The keys of point `index` and their values, followers after all others.
     #[must_use]
     pub fn settings(&self, index: usize) -> Vec<Setting<'_>> {
         let mut settings = self.point(index);
@@ -100,51 +100,51 @@ impl Sweep {
         settings
     }
 
-    /// How many points it has.
+    /// Number of points.
     #[must_use]
     pub const fn points(&self) -> usize {
         self.points
     }
 
-    /// The keys that take values one after the other.
+    /// The keys with listed values.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// How their values are combined.
+    /// Method by which their values are combined.
     #[must_use]
     pub const fn arrangement(&self) -> Arrangement {
         self.arrangement
     }
 
-    /// What is drawn in each combination of the axes, if anything is.
+    /// The draws in each combination of the axes, if any.
     #[must_use]
     pub const fn draws(&self) -> Option<&Draws> {
         self.draws.as_ref()
     }
 
-    /// How many draws each combination has: 1 where nothing is drawn.
+    /// Number of draws per combination: 1 without draws.
     #[must_use]
     pub fn draws_of_each(&self) -> usize {
         self.draws.as_ref().map_or(1, |draws| draws.count() as usize)
     }
 
-    /// How many combinations of the axes there are: 1 without axes.
+    /// Number of combinations of the axes: 1 without axes.
     #[must_use]
     pub fn combinations(&self) -> usize {
         self.points / self.draws_of_each()
     }
 
-    /// The keys that vary with the units of their values, axes first, in the order of the settings of a point. The unit is empty of pure
-    /// numbers and of what is none.
+    /// The keys that vary with the units of their values, axes first, in the order of the settings of a point. The unit is empty for pure
+    /// numbers and for texts.
     pub fn keys(&self) -> impl Iterator<Item = (&str, &str)> {
         let axes = self.axes.iter().map(|axis| (axis.key.as_str(), axis.values.first().map_or("", Value::unit)));
         let drawn = self.draws.iter().flat_map(Draws::keys);
         axes.chain(drawn.map(|drawn| (drawn.key.as_str(), drawn.unit.as_str())))
     }
 
-    /// What the keys are at point `index`; nothing beyond the last one.
+    /// Values of the keys at point `index`; empty beyond the last one.
     #[must_use]
     pub fn point(&self, index: usize) -> Vec<Setting<'_>> {
         if index >= self.points {
@@ -158,7 +158,7 @@ impl Sweep {
         settings
     }
 
-    /// What the axes are at combination `index`, without what is drawn; nothing beyond the last one.
+    /// Values of the axes at combination `index`, without draws; empty beyond the last one.
     #[must_use]
     pub fn combination(&self, index: usize) -> Vec<Setting<'_>> {
         let places = self.places(index);
@@ -169,7 +169,7 @@ impl Sweep {
             .collect()
     }
 
-    /// Which of its values each axis has at combination `index`, counted from 0; nothing beyond the last one.
+    /// Index, from 0, of the value of each axis at combination `index`; empty beyond the last one.
     #[must_use]
     pub fn places(&self, index: usize) -> Vec<usize> {
         if index >= self.combinations() {
@@ -256,7 +256,7 @@ mod tests {
         assert!(message.starts_with("`b` has 2 values and `a` 1"), "{message}");
     }
 
-    /// Every combination meets the same machines.
+    /// All combinations have the same machines.
     #[test]
     fn each_combination_has_the_same_draws() {
         let sweep = Sweep::new(vec![axis("a", &[1.0, 2.0])], Arrangement::Grid, Some(draws(7))).unwrap();

@@ -1,20 +1,20 @@
-//! What the runs of a sweep gave.
+//! Results of the runs of a sweep.
 use crate::sweep::{Setting, Sweep};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// What a sweep gave: a row for each run, engines slowest, then combinations of the axes, then draws.
+/// Results of a sweep: a row for each run, engines slowest, then combinations of the axes, then draws.
 ///
-/// The rows of an engine with a combination are a *group*: the draws of one machine, which follow each other.
+/// The rows of an engine with a combination are a *group*: the draws of one machine, which are consecutive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table<'a> {
-    /// What varied.
+    /// The sweep.
     pub sweep: &'a Sweep,
-    /// Names of the engines, in the order of the rows; none stands for a single one without a name.
+    /// Names of the engines, in the order of the rows; empty for a single one without a name.
     pub engines: &'a [String],
-    /// What was measured.
+    /// Metrics.
     pub columns: Vec<Column>,
-    /// How each run ended.
+    /// Outcome of each run.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -23,34 +23,34 @@ pub struct Table<'a> {
 pub struct Column {
     /// Name of the metric: `settling_time`.
     pub name: String,
-    /// Its unit (SI); empty of a pure number.
+    /// Its unit (SI); empty for a pure number.
     pub unit: String,
-    /// Its value in each row (SI); NaN where it was not measured.
+    /// Its value in each row (SI); NaN if it was not measured.
     pub values: Vec<f64>,
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// All limits are kept, or there are none.
+    /// All limits are met, or there are none.
     Good,
-    /// A limit is not kept.
+    /// A limit is not met.
     Failed,
-    /// A requirement is broken: the run did not do what was requested, and what it measured is not of the task.
+    /// A requirement is not met: the run did not do what was requested, and its metrics do not describe the task.
     Broken,
-    /// Nothing can be said: the run was invalid, ended in an error, or did not take place.
+    /// No verdict: the run was invalid, ended in an error, or did not take place.
     NoVerdict,
 }
 
-/// Metrics that are a time until something is reached.
+/// Metrics that are times to reach a state.
 const TIMES: [&str; 4] = ["program_time", "move_and_settling_time", "settling_time", "move_time"];
-/// Those of them that a run lacks in which it is never reached.
+/// Number of those, from the first, that are missing in a run that never reaches the state.
 const SETTLED: usize = 3;
 
 impl<'a> Table<'a> {
-    /// The table with numbers that count. Those of a run without a verdict do not. A run that broke a requirement never arrives, and what else
-    /// it measured does not count: an axis that stands still has no vibration. A time of settling that other runs have is never where it is
-    /// missing: what did not settle is later than everything.
+    /// The table restricted to numbers that count. Those of a run without a verdict do not. A run that broke a requirement never arrives,
+    /// and its other metrics do not count: an axis at standstill has no vibration. A missing settling time that other runs have counts as
+    /// infinite: later than all others.
     #[must_use]
     pub fn counted(&self) -> Cow<'_, Self> {
         let outcome = |row: usize| self.outcomes.get(row).copied().unwrap_or(Outcome::NoVerdict);
@@ -76,13 +76,13 @@ impl<'a> Table<'a> {
         Cow::Owned(Self { columns: columns.collect(), outcomes: self.outcomes.clone(), ..*self })
     }
 
-    /// How many groups there are: engines times combinations of the axes.
+    /// Number of groups: engines times combinations of the axes.
     #[must_use]
     pub fn groups(&self) -> usize {
         self.engines.len().max(1) * self.sweep.combinations()
     }
 
-    /// The rows of group `group`, as far as there are some: its draws.
+    /// The existing rows of group `group`: its draws.
     #[must_use]
     pub fn rows(&self, group: usize) -> Range<usize> {
         let draws = self.sweep.draws_of_each();
@@ -90,19 +90,19 @@ impl<'a> Table<'a> {
         (group * draws).min(end)..((group + 1) * draws).min(end)
     }
 
-    /// The engine of group `group`; empty where it has no name.
+    /// The engine of group `group`; empty if it has no name.
     #[must_use]
     pub fn engine(&self, group: usize) -> &'a str {
         self.engines.get(group / self.sweep.combinations()).map_or("", String::as_str)
     }
 
-    /// Which combination of the axes group `group` is, counted from 0.
+    /// Index, from 0, of the combination of the axes in group `group`.
     #[must_use]
     pub fn combination(&self, group: usize) -> usize {
         group % self.sweep.combinations()
     }
 
-    /// The engine of group `group` and what its axes are, without what is drawn.
+    /// The engine of group `group` and the values of its axes, without draws.
     #[must_use]
     pub fn settings(&self, group: usize) -> (&'a str, Vec<Setting<'a>>) {
         let sweep: &'a Sweep = self.sweep;
@@ -115,14 +115,14 @@ impl<'a> Table<'a> {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// What `column` has in the rows of group `group`.
+    /// Values of `column` in the rows of group `group`.
     #[must_use]
     pub fn values<'c>(&self, column: &'c Column, group: usize) -> &'c [f64] {
         let (rows, end) = (self.rows(group), column.values.len());
         &column.values[rows.start.min(end)..rows.end.min(end)]
     }
 
-    /// How many rows of group `group` ended as `outcome`.
+    /// Number of rows of group `group` with the outcome `outcome`.
     #[must_use]
     pub fn count_of(&self, outcome: Outcome, group: usize) -> usize {
         self.outcomes[self.rows(group)].iter().filter(|one| **one == outcome).count()
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(table.values(column, 7), [28.0, 29.0, 30.0, 31.0]);
         assert_eq!((table.count_of(Outcome::Failed, 7), table.count_of(Outcome::Good, 7)), (1, 3));
         assert!(table.column("speed").is_none());
-        // The point of each row is the one that its settings are of.
+        // The settings of each row are those of its point.
         for row in table.rows(7) {
             assert_eq!(sweep.point(row % sweep.points())[..2], settings);
         }

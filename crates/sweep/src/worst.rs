@@ -1,15 +1,15 @@
-//! What is chosen, at the worst of what is given: the frequency of a load is not for the engineer to choose.
+//! Chosen keys at the worst of the given ones: an engineer does not choose the frequency of a load.
 use crate::axis::Axis;
 use crate::quantile::Sample;
 use crate::sweep::{Arrangement, Sweep};
 use crate::table::{Column, Outcome, Table};
 
-/// The share of the draws that a value is not above, where there are draws.
+/// Share of the quantile used as the worst value, with draws.
 const MOST: f64 = 0.95;
 
 impl Sweep {
-    /// The same where the axis `key` is given: a property of the machine, over which what is chosen is compared at its worst. A key that is
-    /// no axis of a grid changes nothing: draws are given anyway.
+    /// Marks the axis `key` as given: a property of the machine, over whose values choices are compared at their worst. Only an axis of a
+    /// grid has an effect: draws are given anyway.
     #[must_use]
     pub fn given(mut self, key: &str) -> Self {
         if self.arrangement() == Arrangement::Grid && self.axes().iter().any(|axis| axis.key == key) {
@@ -24,7 +24,7 @@ impl Sweep {
         &self.given
     }
 
-    /// The same where the axis `key` is of the machine: it is shown as it is, and given where the best combinations are chosen from.
+    /// Marks the axis `key` as belonging to the machine: it is shown as an axis, but given when the best combinations are chosen.
     #[must_use]
     pub fn of_the_machine(mut self, key: &str) -> Self {
         if self.axes().iter().any(|axis| axis.key == key) && !self.given.iter().any(|given| given == key) {
@@ -39,7 +39,7 @@ impl Sweep {
         &self.machine
     }
 
-    /// What is chosen alone: the axes that are not given, without draws; `None` where nothing is given, or all of it.
+    /// The sweep of the chosen axes, without given axes and draws; `None` if no axis is given, or all are.
     #[must_use]
     pub fn chosen(&self) -> Option<Self> {
         if self.given.is_empty() {
@@ -50,34 +50,34 @@ impl Sweep {
         Some(chosen)
     }
 
-    /// The chosen axes alone where those of the machine are given, too; `None` where nothing is left, or where both go side by side.
+    /// The sweep of the chosen axes with those of the machine also given; `None` if no axis is left, or for parallel axes.
     #[must_use]
     pub fn chosen_for_a_machine(&self) -> Option<Self> {
         self.without(&[&self.given[..], &self.machine[..]].concat())
     }
 
-    /// Without these axes and without draws.
+    /// The sweep without these axes and without draws.
     fn without(&self, keys: &[String]) -> Option<Self> {
         let axes: Vec<_> = self.axes().iter().filter(|axis| !keys.contains(&axis.key)).cloned().collect();
         let parts = self.arrangement() == Arrangement::Zip && !keys.is_empty();
         if axes.is_empty() || parts {
             return None;
         }
-        // What is left of a grid is one.
+        // The remainder of a grid is a grid.
         Self::new(axes, self.arrangement(), None).ok()
     }
 }
 
 impl<'a> Table<'a> {
-    /// A row for each engine and combination of `chosen`, which is [`Sweep::chosen`] of this table's sweep: of each metric the largest
-    /// value over what is given, or of draws the largest of their 95 % quantiles. A row is good when all its runs are, of draws when 95 % of
-    /// each group are. A value is missing where one of those that it is the largest of is, and never is larger than every time.
+    /// A row for each engine and combination of `chosen`, which is [`Sweep::chosen`] of this table's sweep: the largest value of each
+    /// metric over the given axes, or with draws the largest of their 95 % quantiles. A row is good if all its runs are, with draws if 95 %
+    /// of each group are. A value is missing if one of those compared is missing; infinity exceeds every time.
     #[must_use]
     pub fn at_worst(&self, chosen: &'a Sweep) -> Self {
         self.worst_of(chosen, self.engines)
     }
 
-    /// The same with a row for each combination of `chosen`, at its worst over the engines, too.
+    /// The same with a row for each combination of `chosen`, also at its worst over the engines.
     #[must_use]
     pub fn at_worst_on_all_engines(&self, chosen: &'a Sweep) -> Self {
         self.worst_of(chosen, &[])
@@ -103,7 +103,7 @@ impl<'a> Table<'a> {
         Table { sweep: chosen, engines, columns: columns.collect(), outcomes: outcomes.collect() }
     }
 
-    /// Which combination of `chosen` group `group` is of.
+    /// Index of the combination of `chosen` in group `group`.
     fn choice(&self, chosen: &Sweep, group: usize) -> usize {
         let places = self.sweep.places(self.combination(group));
         let is_chosen = |axis: &Axis| chosen.axes().iter().any(|other| other.key == axis.key);
@@ -138,7 +138,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The value of a run, or of draws their 95 % quantile; not a number where one is missing.
+/// The value of a run, or the 95 % quantile of draws; NaN if one is missing.
 fn largest(values: &[f64]) -> f64 {
     match values {
         [value] => *value,
@@ -147,7 +147,7 @@ fn largest(values: &[f64]) -> f64 {
     }
 }
 
-/// The larger of two numbers; none where one is none.
+/// The larger of two numbers; NaN if one is NaN.
 fn larger(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
@@ -162,14 +162,14 @@ mod tests {
         Axis { key: key.into(), values }
     }
 
-    /// Given is the axis in the middle: the rows of a choice do not follow each other.
+    /// The axis in the middle is given: the rows of a choice are not consecutive.
     #[test]
     fn a_choice_is_as_good_as_its_worst_machine() {
         let axes = vec![axis("a", &[1.0, 2.0]), axis("given", &[1.0, 2.0, 3.0]), axis("b", &[1.0, 2.0])];
         let sweep = Sweep::new(axes, Arrangement::Grid, None).unwrap().given("given");
         let chosen = sweep.chosen().unwrap();
         assert_eq!(chosen.axes().iter().map(|axis| axis.key.as_str()).collect::<Vec<_>>(), ["a", "b"]);
-        // Rows: a, given, b; of both engines.
+        // Rows: a, given, b; for both engines.
         let mut values: Vec<f64> = (0..24).map(f64::from).collect();
         values[2] = 100.0;
         values[23] = f64::NAN;

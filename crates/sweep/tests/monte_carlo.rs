@@ -1,9 +1,9 @@
-//! A linear case whose distribution is known: mean, deviation, quantiles and their intervals, from draws as a sweep makes them.
+//! A linear case with a known distribution: mean, deviation, quantiles and their intervals, from the draws of a sweep.
 use servobench_sweep::{Arrangement, Axis, Distribution, Drawn, Draws, Method, Proportion, Sample, Sweep, Value};
 
 const COUNT: u32 = 10_000;
 
-/// What varies: a normal mass, a uniform stiffness, and an axis that shifts everything.
+/// The varied keys: a normal mass, a uniform stiffness, and an axis that shifts everything.
 fn sweep(seed: u64, method: Method) -> Sweep {
     let of = |key: &str, distribution| Drawn { key: key.into(), unit: String::new(), distribution };
     let keys = vec![
@@ -14,7 +14,7 @@ fn sweep(seed: u64, method: Method) -> Sweep {
     Sweep::new(vec![axis], Arrangement::Grid, Some(Draws::new(COUNT, seed, method, keys).unwrap())).unwrap()
 }
 
-/// offset + 3·mass + 2·stiffness, of the draws of combination `combination`.
+/// offset + 3·mass + 2·stiffness, for the draws of combination `combination`.
 fn values(sweep: &Sweep, combination: usize) -> Sample {
     let points = combination * COUNT as usize..(combination + 1) * COUNT as usize;
     let number = |index: usize| -> [f64; 3] {
@@ -43,7 +43,7 @@ fn density(x: f64) -> f64 {
     (below_normal((x + 2.0) / 0.6) - below_normal((x - 2.0) / 0.6)) / 4.0
 }
 
-/// Where `below` is `share`.
+/// Inverse of `below`.
 fn quantile(share: f64) -> f64 {
     let (mut low, mut high) = (-10.0, 10.0);
     for _ in 0..100 {
@@ -55,7 +55,7 @@ fn quantile(share: f64) -> f64 {
 
 const SHARES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 
-/// The bar: mean and quantiles within three standard errors, which are σ/√n of the mean and √(p(1 − p)/n)/density of a quantile. Of a
+/// Acceptance: mean and quantiles within three standard errors, σ/√n for the mean and √(p(1 − p)/n)/density for a quantile. With a
 /// Latin hypercube they are smaller.
 #[test]
 fn mean_and_quantiles_are_those_of_the_distribution() {
@@ -68,7 +68,7 @@ fn mean_and_quantiles_are_those_of_the_distribution() {
             assert_eq!(found.count(), COUNT as usize);
             let error = deviation / n.sqrt();
             assert!((found.mean() - middle).abs() < 3.0 * error, "{method:?}: {} ± {error}", found.mean());
-            // That of a deviation is below σ/√(2n), since the uniform part has shorter tails than a normal one.
+            // The error of a deviation is below σ/√(2n), since the uniform part has shorter tails than a normal one.
             assert!(
                 (found.deviation() - deviation).abs() < 3.0 * error / 2_f64.sqrt(),
                 "{method:?}: {}",
@@ -88,8 +88,8 @@ fn mean_and_quantiles_are_those_of_the_distribution() {
     }
 }
 
-/// How often an interval has the true quantile, and a bound the true share, in 400 repetitions: at least as often as it says, but for three
-/// standard errors of that count, √(0.95·0.05/400) = 1.1 %. Not always either: an interval that is too wide says nothing.
+/// Coverage of the true quantile by an interval, and of the true share by a bound, in 400 repetitions: at least as promised, minus three
+/// standard errors of that count, √(0.95·0.05/400) = 1.1 %. Not always either: too wide an interval is of no use.
 #[test]
 fn intervals_have_the_truth_as_often_as_they_say() {
     const REPETITIONS: u64 = 400;

@@ -1,10 +1,10 @@
-//! Shares of functions whose shares are known.
+//! Shares of functions with known shares.
 use servobench_sweep::{
     Arrangement, Axis, Column, Distribution, Drawn, Draws, Method, Outcome, Sample, Sensitivity, Sweep, Table, Value,
 };
 use std::f64::consts::PI;
 
-/// The table of `function` of the settings of each point, in the order of the keys; names are their places.
+/// The table of `function` of the settings of each point, in the order of the keys; values that are not numbers count as 0.
 fn with_table(sweep: &Sweep, engines: &[&str], function: impl Fn(usize, &[f64]) -> f64, look: impl FnOnce(&Table<'_>)) {
     let engines: Vec<String> = engines.iter().map(|name| (*name).to_owned()).collect();
     let row = |row: usize| {
@@ -40,7 +40,7 @@ const NORMAL: Distribution = Distribution::Normal { mean: 0.0, sigma: 1.0 };
 
 /// Published: T. Ishigami & T. Homma, *An importance quantification technique in uncertainty analysis for computer models*, 1990; the
 /// indices for a = 7 and b = 0.1 in Saltelli et al. 2008: 0.3139, 0.4424, 0. The tolerance is three standard errors of the mean of 40
-/// seeds, measured by their scatter, and what the means change within a bin: (width of a bin)²/12 times the mean squared slope over the
+/// seeds, measured by their scatter, plus the change of the mean within a bin: (width of a bin)²/12 times the mean squared slope over the
 /// variance, which is 13.845.
 #[test]
 fn the_function_of_ishigami_has_its_published_shares() {
@@ -59,12 +59,12 @@ fn the_function_of_ishigami_has_its_published_shares() {
         let slope = (1.0 + 0.1 * PI.powi(4) / 5.0).powi(2) / 2.0;
         for (key, published, within) in [("x1", 0.3139, within(slope)), ("x2", 0.4424, within(24.5))] {
             let sample = Sample::of(found.iter().map(|one| share(one, key))).unwrap();
-            // Half a unit of the last published digit besides.
+            // Plus half a unit of the last published digit.
             let tolerance = 3.0 * sample.standard_error() + within + 0.5e-4;
             assert!((sample.mean() - published).abs() < tolerance, "{method:?} {key}: {} ± {tolerance}", sample.mean());
             assert!(tolerance < 0.01, "{method:?} {key}: the standard error tells nothing: {tolerance}");
         }
-        // A share that is 0 is there by chance: of 40 half-normal numbers the largest is below four standard deviations but once in 400 times.
+        // A share of 0 appears by chance: the largest of 40 half-normal numbers exceeds four standard deviations only once in 400 times.
         for one in &found {
             let key = one.keys.iter().find(|key| key.key == "x3").unwrap();
             assert!(key.share < 4.0 * key.chance && key.chance < 0.004, "{method:?}: {key:?}");
@@ -74,7 +74,7 @@ fn the_function_of_ishigami_has_its_published_shares() {
     }
 }
 
-/// How much of the variance of a normal number the means of `bins` equally likely parts have: a part from z to w has the mean
+/// Share of the variance of a normal number in the means of `bins` equally likely parts: a part from z to w has the mean
 /// K (φ(z) − φ(w)).
 fn of_bins(bins: u32) -> f64 {
     let k = f64::from(bins);
@@ -86,8 +86,8 @@ fn of_bins(bins: u32) -> f64 {
     (0..bins).map(|bin| (k * (density(bin) - density(bin + 1))).powi(2) / k).sum()
 }
 
-/// Of 3 a + 2 b + c with normal numbers the shares are 9, 4 and 1 of 14; the highest tenth of a normal number has the mean
-/// φ(1.2816)/0.1 = 1.7550. Tolerances: three standard errors, measured by 40 seeds; of the ends those that are said.
+/// For 3 a + 2 b + c with normal numbers the shares are 9, 4 and 1 of 14; the highest tenth of a normal number has the mean
+/// φ(1.2816)/0.1 = 1.7550. Tolerances: three standard errors, measured over 40 seeds; for the ends those reported.
 #[test]
 fn a_linear_function_has_the_squares_of_its_slopes() {
     for (method, count) in [(Method::Random, 1024), (Method::LatinHypercube, 1024), (Method::LatinHypercube, 100)] {
@@ -102,9 +102,9 @@ fn a_linear_function_has_the_squares_of_its_slopes() {
             let expected = slope * slope / 14.0 * of_bins(count.isqrt());
             let sample = Sample::of(found.iter().map(|one| share(one, key))).unwrap();
             let (mean, error) = (sample.mean(), sample.standard_error());
-            // Clamping moves a small share of few draws up, by what of a normal number with its scatter is below 0.
+            // Clamping raises the small share of a few draws, by the part below 0 of a normal number with its scatter.
             let clamped = if count == 100 && key == "c" { 0.4 * sample.deviation() } else { 0.0 };
-            // The ends' parts of the variance are those of the sample, which err by 1/n.
+            // The ends' parts of the variance are those of the sample, with an error of 1/n.
             let tolerance = 3.0 * error + clamped + 2.0 / f64::from(count);
             assert!((mean - expected).abs() < tolerance, "{method:?} {count} {key}: {mean} ± {error}, not {expected}");
             let of_key = |one: &Sensitivity| one.keys.iter().find(|other| other.key == key).unwrap().clone();
@@ -112,19 +112,19 @@ fn a_linear_function_has_the_squares_of_its_slopes() {
             let ends = found.iter().map(of_key);
             let beyond =
                 ends.filter(|end| (end.difference() - 2.0 * tenth * slope).abs() > 3.0 * end.error + 0.03 * slope);
-            // One in 370, were they normal; at ten draws they are nearer Student's.
+            // One in 370 for normal numbers; ten draws are closer to Student's distribution.
             assert!(beyond.count() <= 3, "{method:?} {count} {key}");
         }
     }
 }
 
-/// The low and the high end are named by what the key is there.
+/// The low and the high end are identified by the value of the key.
 #[test]
 fn ends_are_said_in_the_unit_of_the_key() {
     let draws = drawn(1000, 1, Method::LatinHypercube, Distribution::Uniform { low: 4.0, high: 6.0 }, &["mass"]);
     let found = of_draws(&Sweep::new(vec![], Arrangement::Grid, Some(draws)).unwrap(), |x| 10.0 * x[0]);
     let key = &found.keys[0];
-    // A tenth of 4 to 6 kg at either end: in the mean 4.1 and 5.9 kg, to a thousandth of the range.
+    // A tenth of 4 to 6 kg at either end: 4.1 and 5.9 kg on average, to a thousandth of the range.
     for (end, at) in [(&key.low, 4.1), (&key.high, 5.9)] {
         assert!((end.at.number().unwrap() - at).abs() < 2e-3 && end.at.unit() == "kg", "{end:?}");
         assert!((end.mean - 10.0 * at).abs() < 2e-2, "{end:?}");
@@ -133,24 +133,24 @@ fn ends_are_said_in_the_unit_of_the_key() {
     assert!((found.deviation - 10.0 * 2.0 / 12_f64.sqrt()).abs() < 0.01, "{found:?}");
 }
 
-/// What the axes do is taken out of the scatter, and a key has its share although it does the opposite with another value of an axis.
+/// Effects of axes are removed from the scatter, and a key keeps its share even if another value of an axis inverts its effect.
 #[test]
 fn axes_and_draws_are_apart() {
     let draws = || Some(drawn(1024, 1, Method::LatinHypercube, NORMAL, &["a", "b"]));
     let sweep = Sweep::new(vec![axis("k", &[-1.0, 1.0])], Arrangement::Grid, draws()).unwrap();
     let found = of_draws(&sweep, |x| 1000.0 * x[0] + x[1] + x[2]);
     let alone = of_draws(&Sweep::new(vec![], Arrangement::Grid, draws()).unwrap(), |x| x[0] + x[1]);
-    // The same draws in each combination: the same shares, to the digits that 1000 costs.
+    // The same draws in each combination: the same shares, up to the digits lost with an offset of 1000.
     for key in ["a", "b"] {
         assert!((share(&found, key) - share(&alone, key)).abs() < 1e-9 && share(&found, key) > 0.4, "{found:?}");
     }
     let together = of_draws(&sweep, |x| x[0] * x[1] + 0.5 * x[2]);
-    // In either group variance 1 of a and 0.25 of b; bins of normal numbers lose a hundredth.
+    // In either group variance 1 from a and 0.25 from b; bins of normal numbers lose a hundredth.
     assert!((share(&together, "b") - 0.2).abs() < 0.03 && (share(&together, "a") - 0.8).abs() < 0.03, "{together:?}");
     let of_a = together.keys.iter().find(|key| key.key == "a").unwrap();
     assert!(of_a.difference().abs() < 2.0 * of_a.error, "up and down: {together:?}");
     assert!(together.rest < 0.03, "{together:?}");
-    // What two keys do only together is no key's.
+    // The joint effect of two keys belongs to neither.
     let product = of_draws(&sweep, |x| x[1] * x[2]);
     assert!(product.rest > 0.9 && product.keys.iter().all(|key| key.share < 5.0 * key.chance), "{product:?}");
     with_table(
@@ -165,7 +165,7 @@ fn axes_and_draws_are_apart() {
     );
 }
 
-/// By hand: the values of a grid are all there is, so that the shares are those of sums. i² of 0, 1, 2 has the variance 26/9, 3 j of 0
+/// By hand: the values of a grid are complete, so that the shares are those of sums. i² for 0, 1, 2 has the variance 26/9, 3 j for 0
 /// and 1 has 9/4; an engine that adds 1 has 1/4.
 #[test]
 fn shares_of_axes_are_those_by_hand() {
@@ -187,7 +187,7 @@ fn shares_of_axes_are_those_by_hand() {
                 );
             }
             assert!(found.rest < 1e-12);
-            // Ends are by the number, not by the order in which it was run.
+            // Ends are ordered by the number, not by the order of the runs.
             assert_eq!(found.keys[0].low.at, Value::Number(0.0, String::new()));
         },
     );
@@ -203,7 +203,7 @@ fn shares_of_axes_are_those_by_hand() {
     with_table(&sweep, &[], |_, _| 7.0, |table| assert!(Sensitivity::of_axes(table, &table.columns[0]).is_none()));
 }
 
-/// A slow value of one axis is not measured with the high value of the other: that is no merit of the other one. Oracle: the function.
+/// High values of both axes are not measured together, which must not favour either of them. Oracle: the function.
 #[test]
 fn combinations_that_are_missing_do_not_confound_the_axes() {
     let axes = vec![axis("i", &[0.0, 1.0, 2.0, 3.0]), axis("j", &[0.0, 1.0, 2.0])];
@@ -216,7 +216,7 @@ fn combinations_that_are_missing_do_not_confound_the_axes() {
         |table| {
             let found = Sensitivity::of_axes(table, &table.columns[0]).unwrap();
             let difference = |key: &str| found.keys.iter().find(|one| one.key == key).unwrap().difference();
-            // Turns end at 1e-12 of the deviation, which is 100, and each leaves a part of what was left.
+            // Iterations end at 1e-12 of the deviation, which is 100, and each leaves a part of the remainder.
             assert!((difference("i") - 300.0).abs() < 1e-8 && (difference("j") - 2.0).abs() < 1e-8, "{found:?}");
             assert!(found.rest < 1e-12 && found.keys[0].key == "i" && found.keys[1].share < 1e-3, "{found:?}");
         },
@@ -242,7 +242,7 @@ fn keys_that_go_side_by_side_are_one_and_names_have_ends_too() {
     );
 }
 
-/// Where a metric was not measured it says nothing, and nothing else is moved.
+/// An unmeasured metric has no effect, and nothing else is shifted.
 #[test]
 fn what_was_not_measured_is_left_out() {
     let draws = drawn(2000, 1, Method::Random, NORMAL, &["a", "b"]);
