@@ -1,4 +1,4 @@
-//! From a question to an answer that was verified.
+//! The advice for a question: search and verification.
 use crate::explore::{Effort, best, sown};
 use crate::machines::Machines;
 use crate::merit::Merit;
@@ -10,26 +10,26 @@ use servobench_motion::Limits;
 use servobench_sweep::SweepError;
 use thiserror::Error;
 
-/// What is asked.
+/// The question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// Kinds of set-points to choose from.
     pub families: Vec<Family>,
-    /// The largest limits that a set-point may have; infinite where none is given.
+    /// Upper bounds of the limits of a set-point; infinite without a bound.
     pub ceiling: Limits,
     /// Distance of the longest move (m or rad).
     pub distance: f64,
-    /// The machines on which it has to do.
+    /// Machines on which the limits must be met.
     pub machines: Machines,
-    /// Natural frequency of the mode that rings (Hz), which says how fine lobes are.
+    /// Natural frequency of the oscillating mode (Hz), which determines the width of the lobes.
     pub frequency: f64,
-    /// How many limits a run is judged by.
+    /// Number of limits that a run has to meet.
     pub limits: usize,
-    /// The limit whose price is asked for, by its index.
+    /// Index of the limit whose price is requested.
     pub priced: Option<usize>,
-    /// Share of the machines that is promised.
+    /// Promised share of the machines.
     pub share: f64,
-    /// Draws that verify it.
+    /// Number of draws for the verification.
     pub draws: u32,
     /// Seed of the draws.
     pub seed: u64,
@@ -38,85 +38,85 @@ pub struct Question {
 /// The answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// The fastest set-point that was found.
+    /// The fastest set-point found.
     pub point: SetPoint,
     /// Duration of its moves (s).
     pub duration: f64,
-    /// The worst that it gave on any machine of search and verification.
+    /// Its worst figures on all machines of search and verification.
     pub worst: Worst,
-    /// How it was verified.
+    /// Result of its verification.
     pub verification: Verification,
-    /// The best of each other family, with its worst time (s), the fastest first: on the machines of the search.
+    /// The best of each other family with its worst time (s), the fastest first, on the machines of the search.
     pub others: Vec<(SetPoint, f64)>,
-    /// What another limit would cost or save.
+    /// Cost or saving with other values of a limit.
     pub prices: Vec<Price>,
-    /// Runs that were made.
+    /// Number of runs.
     pub runs: usize,
-    /// Set-points that were planned.
+    /// Number of set-points planned.
     pub planned: usize,
 }
 
-/// What a limit costs.
+/// Price of a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Price {
-    /// The limit, in parts of what it is.
+    /// The limit as a multiple of its value.
     pub factor: f64,
-    /// The worst time (s) with that limit: that of the advice, and what the fastest set-point differs from it on the machines of the
-    /// search; `None`: there is none.
+    /// The worst time (s) with that limit: that of the advice plus the difference between the fastest set-points on the machines of the
+    /// search; `None` if no set-point was found.
     pub time: Option<f64>,
 }
 
-/// Why there is no advice.
+/// Reason why there is no advice.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AdviseError {
     /// No move can be planned.
     #[error("no move can be planned within the limits of the set-point")]
     NoPlan,
-    /// No set-point keeps the limits.
+    /// No set-point meets the limits.
     #[error(
         "none of the {planned} set-points that were planned keeps all limits on all machines: raise `[limits]`, make the box smaller, or let \
          the run be longer if moves do not come to their end in it"
     )]
     NoneKeeps {
-        /// Set-points that were planned.
+        /// Number of set-points planned.
         planned: usize,
     },
-    /// What was found failed on machines that the search had not seen, again and again.
+    /// The set-points found failed repeatedly on machines that the search had not seen.
     #[error(
         "no set-point was found that keeps all limits on {wanted:.1} % of the machines: after {rounds} rounds the best one keeps them on \
          {found:.1} % at least; promise a smaller share, or make the box smaller"
     )]
     NotVerified {
-        /// Share that is wanted (%).
+        /// Promised share (%).
         wanted: f64,
-        /// What was shown (%).
+        /// Share shown (%).
         found: f64,
-        /// Rounds of search and verification.
+        /// Number of rounds of search and verification.
         rounds: u32,
     },
-    /// Fewer draws than the promise needs, were they all clean.
+    /// Too few draws for the promise, even if none fails.
     #[error(
         "{draws} draws show {shown:.1} % of the machines at most: a promise of {wanted} % needs {needed}; draw as many, or promise less"
     )]
     TooFewDraws {
         /// Draws.
         draws: u32,
-        /// Share that as many clean draws show (%).
+        /// Share that this number of draws shows if none fails (%).
         shown: f64,
-        /// Share that is wanted (%).
+        /// Promised share (%).
         wanted: f64,
-        /// Draws that it needs.
+        /// Number of draws needed.
         needed: u32,
     },
-    /// A promise that no number of draws shows.
+    /// A promise that no number of draws can show.
     #[error("a promise of {wanted} % of the machines needs more than {most} draws; promise less")]
     TooMuch {
-        /// Share that is wanted (%).
+        /// Promised share (%).
         wanted: f64,
-        /// The most draws.
+        /// Largest number of draws.
         most: u32,
     },
-    /// A box that is too wide to be verified.
+    /// Tolerances too wide to be verified.
     #[error(
         "`{key}` moves the mode through {needed} machines that would have to be run, at most {most} are: make its range smaller, or advise \
          for parts of it"
@@ -124,28 +124,28 @@ pub enum AdviseError {
     TooWide {
         /// The range.
         key: String,
-        /// Machines along it.
+        /// Number of machines along it.
         needed: f64,
-        /// The most that are run.
+        /// Largest number of machines.
         most: f64,
     },
-    /// The box cannot be drawn from.
+    /// The tolerances do not permit draws.
     #[error(transparent)]
     Draws(#[from] SweepError),
 }
 
-/// The search begins again where machines that have joined make the best so many times slower.
+/// Slowdown of the best set-point by added machines from which on a new search begins.
 const SLOWER: f64 = 1.01;
-/// Rounds of search and verification.
+/// Largest number of rounds of search and verification.
 const ROUNDS: u32 = 16;
-/// From this round on draws may fail, as many as the promised share allows.
+/// Round from which on draws may fail, as many as the promised share allows.
 const PATIENT: u32 = 8;
-/// Other kinds are told that take so many times the best time at most.
+/// Largest time, relative to the best, of other families that are reported.
 const WORTH: f64 = 1.06;
-/// So many set-points of a kind are tried on machines that have joined.
+/// Number of set-points of a family that are tried on added machines.
 const TRIES: usize = 4;
 
-/// The fastest set-point that keeps all limits on the machines of the box.
+/// The fastest set-point that meets all limits on the machines within the given tolerances.
 ///
 /// # Errors
 /// [`AdviseError`]
@@ -159,7 +159,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         let mut found =
             if round == 0 { Vec::new() } else { best(question, &mut search, &known, &allowed, Effort::AGAIN) };
         if found.first().is_none_or(|found| found.worst.time > SLOWER * before) {
-            // Machines that have joined leave another set-point the best.
+            // With the added machines, another set-point may be the best.
             let from = [known, sifted.clone()].concat();
             found = best(question, &mut search, &from, &allowed, Effort::of_first(question.families.len()));
         }
@@ -167,7 +167,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         let Some(best) = found.first().cloned() else {
             return Err(AdviseError::NoneKeeps { planned });
         };
-        // Draws that have helped to find it prove nothing.
+        // Draws used in the search prove nothing.
         let seed = question.seed.wrapping_add(u64::from(round));
         let Question { machines, frequency, draws, share, .. } = question;
         let draws = (*draws).max(needed(*share, looks)?);
@@ -180,13 +180,13 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
         }
         let tighter = priced(question, &mut search, &TIGHTER);
         if fastest(&tighter).is_some_and(|found| found.worst.time < best.worst.time - SAME) {
-            // What keeps a tighter limit keeps this one, too: the search begins again with it, which it knows now.
+            // A set-point that meets a tighter limit also meets this one: the search repeats, with that set-point known.
             continue;
         }
         let (verification, failed) = on_draws(&mut search, &best.planned, &grid, &allowed, plan)?;
         looks += 1;
         shown = verification.share;
-        // A draw on which it fails joins the search, as long as there are rounds for that.
+        // A draw on which it fails joins the search while rounds remain.
         if shown < question.share || (!failed.is_empty() && round < PATIENT) {
             search.add_some(&failed);
             continue;
@@ -208,7 +208,7 @@ pub fn advise(question: &Question, bench: &mut dyn Bench) -> Result<Advice, Advi
     Err(AdviseError::NotVerified { wanted: 100.0 * question.share, found: 100.0 * shown, rounds: ROUNDS })
 }
 
-/// Refuses a promise that the draws of a question do not show, were they all clean.
+/// Refuses a promise that the draws of a question cannot show, even if none fails.
 ///
 /// # Errors
 /// [`AdviseError::TooFewDraws`], [`AdviseError::TooMuch`]
@@ -222,12 +222,12 @@ pub fn refuse_impossible(question: &Question) -> Result<(), AdviseError> {
     Ok(())
 }
 
-/// The best that is known of each family but that of `best`, if it takes little more time: on the machines of the search.
+/// The best known set-point of each family other than that of `best`, if it is only a little slower, on the machines of the search.
 fn others(question: &Question, search: &mut Search<'_>, allowed: &Allowance, best: &Found) -> Vec<(SetPoint, f64)> {
     let most = WORTH * best.worst.time;
     let mut others: Vec<(SetPoint, f64)> = Vec::new();
     for family in (0..question.families.len()).filter(|family| *family != best.planned.point.family) {
-        // Machines may have joined since it was run.
+        // Machines may have been added since it was run.
         for _ in 0..TRIES {
             let Some(fastest) = search.fastest_known(allowed, Some(family)) else { break };
             match search.on_all(&[fastest], allowed, most, Merit::time_kept).pop() {
@@ -235,7 +235,7 @@ fn others(question: &Question, search: &mut Search<'_>, allowed: &Allowance, bes
                     others.push((found.planned.point, found.worst.time));
                     break;
                 }
-                // It takes too long, and so do all others.
+                // This one is too slow, and so are all others.
                 None if search.known_merit(&fastest, allowed).keeps() => break,
                 None => {}
             }
@@ -245,7 +245,7 @@ fn others(question: &Question, search: &mut Search<'_>, allowed: &Allowance, bes
     others
 }
 
-/// The worse of both in each respect.
+/// The worse value of both in each figure.
 fn worse(one: &Worst, other: &Worst) -> Worst {
     let usage = one.usage.iter().zip(&other.usage).map(|(one, other)| if one.0 >= other.0 { one } else { other });
     Worst { time: one.time.max(other.time), usage: usage.cloned().collect() }

@@ -7,43 +7,43 @@ use crate::search::{Allowance, Found, Planned, Search};
 use crate::seeds::seeds;
 use crate::set_point::{Room, SetPoint};
 
-/// Seeds are run whose move is shorter than so many times the best that keeps its limits.
+/// Largest duration, relative to the best within the limits, at which the moves of seeds are run.
 const WITHIN: f64 = 1.12;
-/// Seeds that tell which machine is the hardest.
+/// Number of seeds that determine the hardest machine.
 const PROBES: usize = 12;
-/// Machines of the search are so many lobes of the shortest move from each other, at most.
+/// Largest distance between machines of the search, in lobes of the shortest move.
 const OF_A_LOBE: f64 = 0.15;
-/// Two set-points whose boxes differ by less than this part are the same start.
+/// Relative difference of averages below which two set-points are the same start.
 const APART: f64 = 0.04;
-/// A family whose shortest move takes so many times the best time is not refined; one that is so near to its shortest has no more to give.
+/// A family is not refined if its shortest time exceeds the best by this factor; it is exhausted within this factor of its shortest time.
 const HOPELESS: f64 = 1.03;
 const REACHED: f64 = 1.001;
-/// A first refinement is given up that promises so many times the best time.
+/// Ratio to the best time above which a first refinement is abandoned.
 const NEAR: f64 = 1.04;
-/// The largest and the smallest step of a first refinement, of the last one, and of that for a price.
+/// Largest and smallest step of a first refinement, of the last one, and of one for a price.
 const ROUGH: Steps = (0.12, 0.015);
 const FINE: Steps = (0.03, 0.0008);
 const FOR_A_PRICE: Steps = (0.03, 0.004);
-/// Hops begin again from a set-point that is faster by this factor, so many times at most, and lead to moves of so many times the best time.
+/// Hops: speed-up from which on they restart, their largest number, and the largest time, relative to the best, of their moves.
 const FASTER: f64 = 0.998;
 const HOPS: usize = 4;
 const LONGER: f64 = 1.1;
 
-/// Extent of a search.
+/// Effort of a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Effort {
-    /// Most set-points that are run on all machines, and most of these that are refined: in all, and of each family.
+    /// Largest numbers of set-points that are run on all machines, and of those that are refined: in total, and per family.
     run: [usize; 2],
     refined: [usize; 2],
-    /// Number that is refined to the end, and the steps of that.
+    /// Number of set-points that are refined to the end, and the steps.
     to_the_end: usize,
     fine: Steps,
-    /// True where it hops from the best to other lobes.
+    /// True if it hops from the best to other lobes.
     has_hops: bool,
 }
 
 impl Effort {
-    /// To an advice among so many families.
+    /// For the first advice among this number of families.
     pub(crate) fn of_first(families: usize) -> Self {
         let of_each = |all: usize| all / families.max(1);
         Self {
@@ -57,13 +57,13 @@ impl Effort {
 
     /// After machines have joined the search.
     pub(crate) const AGAIN: Self = Self { run: [16, 8], refined: [5, 3], to_the_end: 1, fine: FINE, has_hops: false };
-    /// To a price.
+    /// For a price.
     pub(crate) const PRICE: Self =
         Self { run: [12, 4], refined: [2, 2], to_the_end: 1, fine: FOR_A_PRICE, has_hops: false };
 }
 
-/// The seeds of all families that were run on the machine that is the hardest, and how many seeds there are. Machines between the corners join the
-/// search: zeros and maxima of residual vibration lie there.
+/// The seeds of all families run on the hardest machine, and the total number of seeds. Machines between the corners join the search: zeros
+/// and maxima of residual vibration lie there.
 ///
 /// # Errors
 /// [`AdviseError::NoPlan`], [`AdviseError::TooWide`]
@@ -77,7 +77,7 @@ pub(crate) fn sown(
     for (index, family) in question.families.iter().enumerate() {
         let of_family = seeds(index, family, &room, question.frequency);
         let Some(first) = of_family.first().and_then(|first| search.planned(&[*first]).pop()) else { continue };
-        // A shaper takes as long behind any profile.
+        // A shaper adds the same time to any profile.
         let shaper = first.duration - room.length(&first.point);
         points.extend(of_family.into_iter().map(|point| (room.length(&point) + shaper, point)));
     }
@@ -96,7 +96,7 @@ pub(crate) fn sown(
     Ok((run, points.len()))
 }
 
-/// The best that refinement finds from set-points of `from` and that keep all limits, the fastest first.
+/// The best set-points within all limits that refinement finds from those in `from`, the fastest first.
 pub(crate) fn best(
     question: &Question,
     search: &mut Search<'_>,
@@ -129,7 +129,7 @@ pub(crate) fn best(
         is_done[family] = found.merit.time_kept() <= REACHED * shortest;
         all.push(found);
     }
-    // What is over a limit by a little is as good as it promises to be.
+    // A set-point slightly over a limit is ranked by its promise.
     all.sort_by(|one, other| one.merit.promise().total_cmp(&other.merit.promise()));
     let near = all.len().min(effort.to_the_end);
     for found in &mut all[..near] {
@@ -143,7 +143,7 @@ pub(crate) fn best(
         let (time, family) = (best.merit.time, best.planned.point.family);
         let better = hops(question, &room, &best.planned.point).into_iter().find_map(|point| {
             let planned = search.planned(&[point]);
-            // Another family has to promise more.
+            // Another family must promise more.
             let most = if point.family == family { LONGER * time } else { time };
             let start = planned.into_iter().filter(|one| one.duration < most).collect::<Vec<_>>();
             let start = search.on_all(&start, allowed, f64::INFINITY, |_| 0.0).pop()?;
@@ -156,8 +156,8 @@ pub(crate) fn best(
     all
 }
 
-/// The first of `from`, each with a box that differs from those of all before it, at most so many in all and of each family: those that no other is
-/// both faster than and less over its limits, those that these alone are, and so on.
+/// The first of `from`, each with averages that differ from all before it, up to the largest numbers in total and per family: the Pareto
+/// front of time and excess over the limits first, then the front of the remaining ones, and so on.
 fn first(
     question: &Question,
     search: &Search<'_>,
@@ -181,7 +181,7 @@ fn first(
         if front.is_empty() {
             break;
         }
-        // From what keeps its limits to what is fast.
+        // From those within their limits to the fast ones.
         for (_, one) in front.into_iter().rev() {
             let is_new = first.iter().all(|other| !room.are_near(&one.point, &other.point, APART));
             let count = &mut of_family[one.point.family];

@@ -1,13 +1,13 @@
-//! Other lobes: set-points that no refinement leads to.
+//! Other lobes: set-points that refinement does not reach.
 use crate::best::Question;
 use crate::set_point::{Room, SetPoint};
 
-/// Parts of the period of the mode by which a box becomes longer or shorter: zeros of a box are a period from each other.
+/// Shares of the mode's period by which an average is changed: the zeros of an average are one period apart.
 const HALF: f64 = 0.5;
 const SIXTH: f64 = 1.0 / 6.0;
 
-/// `point` with one box longer or shorter, with half a period moved from one box to another, and with the same boxes in other families; nothing where
-/// no mode is known.
+/// `point` with one average longer or shorter, with half a period moved from one average to another, and with the same averages in other
+/// families; empty without a known mode.
 pub(crate) fn hops(question: &Question, room: &Room<'_>, point: &SetPoint) -> Vec<SetPoint> {
     let period = 1.0 / question.frequency;
     if !period.is_finite() {

@@ -1,18 +1,18 @@
-//! Which set-point is the fastest that keeps its limits on every machine of a box.
+//! The fastest set-point that meets its limits on every machine within given tolerances.
 //!
-//! A profile is a distance through moving averages, its boxes: d through T₀, T₁, T₂, T₃ has v = d/T₀, a = v/T₁, j = a/T₂, s = j/T₃ and takes as long
-//! as all of them together. The search is for the boxes, in each family (order, shaper).
+//! A profile is a step of distance through moving averages: d through T₀, T₁, T₂, T₃ has v = d/T₀, a = v/T₁, j = a/T₂, s = j/T₃ and the sum
+//! of their lengths as its duration. The search varies these lengths in each family (order, shaper).
 //!
 //! ```text
-//! seeds    box lengths from those that the ceiling allows upwards, the shortest moves first, on the hardest machine, until they take longer than
-//!          one that keeps its limits on all machines
-//! first    of these what no other is both faster than and less over its limits, on all machines
-//! refine   step by step to where a linear model of all uses of all limits has the best boxes, from any point
+//! seeds    lengths of averages from those at the ceiling upwards, the shortest moves first, on the hardest machine, until they take longer
+//!          than one within its limits on all machines
+//! first    the Pareto front of these in time and excess over the limits, on all machines
+//! refine   step by step to the optimum of a linear model of all uses of all limits, from any point
 //! hops     from the best to other lobes of the mode and to other families, and refinement from there
 //! verify   corners, a grid in frequency finer than a tenth of a lobe, draws: the machines on which it fails join the search
 //! ```
 //!
-//! What a run is, and how it is judged, is for [`Bench`] to say: nothing here knows a scenario.
+//! [`Bench`] defines a run and its evaluation: this crate does not depend on scenarios.
 
 mod best;
 mod explore;

@@ -1,7 +1,7 @@
-//! A box of machines: what a property of the machine may be.
+//! Machines within tolerances: ranges of properties of the machine.
 use crate::best::AdviseError;
 
-/// What a property of the machine is, from the lowest to the highest value (in whatever unit it has).
+/// Range of a property of the machine, from the lowest to the highest value (in its unit).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Range {
     /// Its key: `axis.load.frequency`.
@@ -10,32 +10,32 @@ pub struct Range {
     pub ends: [f64; 2],
     /// The unit of both.
     pub unit: String,
-    /// Whether, and how, the frequency of the mode goes with it.
+    /// Dependence of the mode's frequency on it.
     pub stretch: Stretch,
 }
 
-/// How a natural frequency goes with a property.
+/// Dependence of a natural frequency on a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stretch {
-    /// It is the frequency.
+    /// The property is the frequency.
     Frequency,
-    /// The frequency goes with its square root: a stiffness, or the inverse of a mass.
+    /// The frequency is proportional to its square root: a stiffness, or the inverse of a mass.
     Root,
-    /// Not at all: a damping.
+    /// Independent: a damping.
     None,
 }
 
-/// The machines of a box. A machine is a value for each of the ranges, in their order.
+/// The machines within tolerances. A machine is a value for each of the ranges, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machines {
     ranges: Vec<Range>,
 }
 
-/// Points of a grid along one range, at most.
+/// Largest number of grid points along one range.
 const MOST_ALONG: f64 = 2_000.0;
 
 impl Machines {
-    /// Those of these ranges.
+    /// Machines with these ranges.
     #[must_use]
     pub const fn new(ranges: Vec<Range>) -> Self {
         Self { ranges }
@@ -63,11 +63,11 @@ impl Machines {
         })
     }
 
-    /// Machines along each range that moves a mode of `frequency` (Hz), between all corners of the others, whose modes are `spacing` (Hz) or
-    /// less from each other. Ends are corners, and left out.
+    /// Machines along each range that shifts a mode of `frequency` (Hz), between all corners of the others, with modes at most `spacing`
+    /// (Hz) apart. Ends are corners, and omitted.
     ///
     /// # Errors
-    /// [`AdviseError::TooWide`] names the range that would need more than 2 000 of them.
+    /// [`AdviseError::TooWide`] with the range that would need more than 2 000 machines.
     pub fn along(&self, frequency: f64, spacing: f64) -> Result<Vec<Vec<f64>>, AdviseError> {
         let mut all = Vec::new();
         for (k, range) in self.ranges.iter().enumerate() {

@@ -1,36 +1,36 @@
-//! Merit of a set-point, whether it keeps its limits or not.
+//! Merit of a set-point, within its limits or not.
 use crate::search::{Allowance, Reading};
 
-/// Use of a limit that could not be measured, and of a requirement that failed, as multiples of the limit: a search moves away from both and
-/// still tells which of two is nearer.
+/// Use of an unmeasured limit, and of a failed requirement, as multiples of the limit: a search moves away from both and can still compare
+/// two set-points.
 const UNKNOWN: f64 = 2.0;
 const UNSOUND: f64 = 3.0;
-/// A load that does not settle counts as if it took so many times its move.
+/// Time of a load that does not settle, as a multiple of the duration of its move.
 const UNSETTLED: f64 = 2.0;
-/// Power of the overshoot in the merit: a usage falls at least with the square root of time, so that less time never pays for more overshoot.
+/// Power of the excess in the merit: a usage falls at least with the square root of time, so that less time never outweighs more excess.
 const PENALTY: f64 = 2.0;
-/// Power with which the time is estimated to grow until a limit is kept. Residual vibration, which is over by the most, takes the least: half of
-/// a period more is enough for ten times less. What falls smoothly with time is found by refinement from anywhere.
+/// Power of the excess in the estimated time at which a limit is met. Residual vibration, which exceeds by the most, needs the least: half
+/// a period more reduces it tenfold. Figures that fall smoothly with time are found by refinement from anywhere.
 const STRETCH: f64 = 0.12;
 
 /// Merit of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Merit {
-    /// Move and settling (s).
+    /// Move and settling time (s).
     pub(crate) time: f64,
-    /// The largest use of a limit; at most 1 where all are kept.
+    /// The largest use of a limit; at most 1 if all are met.
     pub(crate) over: f64,
 }
 
 impl Merit {
-    /// Before any run.
+    /// Merit before any run.
     pub(crate) const NONE: Self = Self { time: 0.0, over: 0.0 };
 
-    /// Of the `reading` of a move of `duration` (s).
+    /// Merit for the `reading` of a move of `duration` (s).
     pub(crate) fn of(reading: &Reading, allowed: &Allowance, duration: f64) -> Self {
         let parts = reading.usage.iter().zip(allowed).map(|(usage, most)| usage / most);
         let unknown = parts.clone().filter(|part| part.is_nan()).count();
-        // More than a limit of nothing has no measure.
+        // An excess over a limit of zero has no measure.
         let part = |part: f64| if part.is_infinite() { UNSOUND } else { part };
         let mut over = parts.filter(|part| !part.is_nan()).map(part).fold(1.0, f64::max);
         if unknown > 0 && unknown == reading.usage.len() {
@@ -45,7 +45,7 @@ impl Merit {
         Self { time: if reading.time.is_finite() { reading.time } else { UNSETTLED * duration }, over }
     }
 
-    /// The worse of both in each respect.
+    /// The worse value of both in each figure.
     pub(crate) fn worse(self, other: Self) -> Self {
         Self { time: self.time.max(other.time), over: self.over.max(other.over) }
     }
@@ -54,17 +54,17 @@ impl Merit {
         self.over <= 1.0
     }
 
-    /// The time (s) of what keeps its limits; infinite of what does not.
+    /// The time (s) within the limits; infinite beyond them.
     pub(crate) fn time_kept(self) -> f64 {
         if self.keeps() { self.time } else { f64::INFINITY }
     }
 
-    /// The time (s) with an exact penalty for what is over the limits: the smallest is where they are kept.
+    /// The time (s) with an exact penalty for an excess over the limits: its minimum is within them.
     pub(crate) fn penalised(self) -> f64 {
         self.time * self.over.powf(PENALTY)
     }
 
-    /// The time (s) that a move like this one is estimated to take where it keeps the limits.
+    /// Estimated time (s) of a similar move within the limits.
     pub(crate) fn promise(self) -> f64 {
         self.time * self.over.powf(STRETCH)
     }
@@ -90,7 +90,7 @@ mod tests {
         );
     }
 
-    /// Failures can still be compared; runs that broke off cannot.
+    /// Failures can still be compared; aborted runs cannot.
     #[test]
     fn failures_have_an_order() {
         let unsettled = reading(f64::NAN, &[f64::NAN, 1.2], true);

@@ -7,11 +7,11 @@ use crate::search::{Found, Search};
 pub(crate) const TIGHTER: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 pub(crate) const WIDER: [f64; 2] = [1.1, 2.0];
 
-/// The fastest with other values of the priced limit, each with its factor.
+/// The fastest with other values of the priced limit, with the factors.
 pub(crate) type Priced = Vec<(f64, Option<Found>)>;
 
-/// The fastest with each of these factors of the limit whose price is wanted, from the nearest to the limit on: each begins from what the ones
-/// before it have found, too.
+/// The fastest with each of these factors of the priced limit, in order of their distance from the limit: each search also starts from the
+/// results of the previous ones.
 pub(crate) fn priced(question: &Question, search: &mut Search<'_>, factors: &[f64]) -> Priced {
     let Some(priced) = question.priced else { return Vec::new() };
     let mut order: Vec<f64> = factors.to_vec();
@@ -27,14 +27,14 @@ pub(crate) fn priced(question: &Question, search: &mut Search<'_>, factors: &[f6
     all
 }
 
-/// The fastest of all.
+/// The fastest overall.
 pub(crate) fn fastest(priced: &Priced) -> Option<&Found> {
     let found = priced.iter().filter_map(|(_, found)| found.as_ref());
     found.min_by(|one, other| one.worst.time.total_cmp(&other.worst.time))
 }
 
-/// Prices of tighter and wider limits beside an advice that takes `own` (s) on the machines of the search and `worst` on those of
-/// the verification, too. What keeps a tighter limit keeps a wider one, too.
+/// Prices of tighter and wider limits for an advice with the worst time `own` (s) on the machines of the search and `worst` including those
+/// of the verification. A set-point that meets a tighter limit also meets a wider one.
 pub(crate) fn prices(tighter: &Priced, wider: &Priced, own: f64, worst: f64) -> Vec<Price> {
     let mut fastest = f64::INFINITY;
     let mut prices = Vec::new();

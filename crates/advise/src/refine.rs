@@ -1,38 +1,38 @@
-//! The best set-point near another one: step by step to where a linear model has it.
+//! The best set-point near another one: step by step to the optimum of a linear model.
 use crate::merit::Merit;
 use crate::search::{Allowance, Found, Planned, Reading, Search};
 use crate::set_point::{Room, SetPoint};
 
-/// The largest step and the smallest, as parts of a box.
+/// Largest and smallest step, relative to the length of an average.
 pub(crate) type Steps = (f64, f64);
 
-/// Models, at most.
+/// Largest number of models.
 const MOST: usize = 40;
-/// After so many models a set-point that promises no less than the bound is given up.
+/// Number of models after which a set-point is abandoned unless it promises less than the bound.
 const PATIENCE: usize = 2;
-/// The smallest step of what does not keep its limits yet.
+/// Smallest step while the limits are not met.
 const FINEST: f64 = 0.0003;
-/// A short box moves as if it were longer by this part of the longest.
+/// Share of the longest average that is added to the scale of short ones.
 const FLOOR: f64 = 0.1;
-/// Factors of a step that has led to nothing better, and of one that has.
+/// Factors of the step after a failure, and after a success.
 const SHORTER: f64 = 0.4;
 const LONGER: f64 = 1.5;
-/// A model is made anew for steps so many times smaller.
+/// Ratio of steps for which a model remains valid.
 const REACH: f64 = 6.0;
-/// The difference by which a slope is found, as part of the step, and the smallest, which five digits still show.
+/// Difference for the slopes, relative to the step, and its minimum, which five digits still resolve.
 const DIFFERENCE: (f64, f64) = (0.25, 0.0004);
-/// Machines with at least this part of the largest use are in the model from the start.
+/// Ratio to the largest use from which on machines are in the model from the start.
 const BINDING: f64 = 0.7;
-/// The part by which boxes are made longer until the limits are kept, twice as much each time, and how often at most.
+/// Relative extension of the averages until the limits are met, doubled each time, and the largest number of extensions.
 const STRETCHES: (f64, i32) = (0.002, 11);
-/// Part of a limit that the model allows, so that its own error does not carry the step beyond.
+/// Share of a limit that the model allows, so that its error does not lead beyond the limit.
 const WITHIN: f64 = 0.999;
-/// The best of the model is looked for on a grid of so many positions along each box, which is made finer by half so many times.
+/// Number of grid positions along each average in the search of the model, and number of times that the grid is halved.
 const POSITIONS: usize = 5;
 const HALVINGS: i32 = 8;
 
-/// The best near `start`, which need not keep its limits. Limits that bind on several machines make kinks, along which no single box can be made
-/// shorter: the model sees all of them. A machine on which a step fails joins the model.
+/// The best near `start`, which may exceed its limits. Limits that bind on several machines form kinks, along which no single average can
+/// be shortened: the model sees all of them. A machine on which a step fails joins the model.
 pub(crate) fn refined(
     search: &mut Search<'_>,
     room: &Room<'_>,
@@ -70,7 +70,7 @@ pub(crate) fn refined(
             let failed = uses.filter(|(machine, over)| *over > 1.0 && !machines.contains(machine)).map(|one| one.0);
             let failed: Vec<usize> = failed.collect();
             if failed.is_empty() {
-                // What jumps, as a time to settle does, no model sees.
+                // The model does not see jumps, as of a settling time.
                 let shorter = if best.merit.keeps() { model.shorter(room, step) } else { Vec::new() };
                 let shorter = search.planned(&shorter);
                 if let Some(better) = shorter.iter().find_map(|one| search.better(one, allowed, &best)) {
@@ -97,7 +97,7 @@ pub(crate) fn refined(
     best
 }
 
-/// `found` with all boxes as much longer as it takes to keep the limits; `None` where that does not help.
+/// `found` with all averages extended until the limits are met; `None` if that does not suffice.
 fn lengthened(
     search: &mut Search<'_>,
     room: &Room<'_>,
@@ -114,7 +114,7 @@ fn lengthened(
     })
 }
 
-/// A figure of a run that goes linearly with the lengths of the boxes.
+/// A figure of a run, linear in the lengths of the averages.
 struct Linear {
     value: f64,
     slopes: [f64; 4],
@@ -126,7 +126,7 @@ impl Linear {
     }
 }
 
-/// All uses of all limits, and all times to settle, near a set-point.
+/// All uses of all limits, and all settling times, near a set-point.
 struct Model<'f> {
     order: u32,
     found: &'f Found,
@@ -141,12 +141,12 @@ impl<'f> Model<'f> {
         Self { order, found, own, uses: Vec::new(), settling: Vec::new() }
     }
 
-    /// Distance that a box moves in a step of one (s).
+    /// Change of an average (s) for a step of one.
     fn scale(&self, k: usize) -> f64 {
         self.own[k] + FLOOR * self.own[0]
     }
 
-    /// From now on these machines count, too.
+    /// Adds machines to the model.
     fn add(&mut self, search: &mut Search<'_>, room: &Room<'_>, allowed: &Allowance, machines: &[usize], step: f64) {
         let Planned { point, .. } = self.found.planned;
         let part = (DIFFERENCE.0 * step).max(DIFFERENCE.1);
@@ -162,7 +162,7 @@ impl<'f> Model<'f> {
             for (k, point) in points.iter().enumerate() {
                 let Some(planned) = search.planned(&[*point]).pop() else { continue };
                 let figures = figures(search.reading(&planned, *machine), allowed, planned.duration);
-                // A longer box makes those longer that have to hold it.
+                // A longer average lengthens those that contain it.
                 let moved: Vec<f64> =
                     point.boxes(room.distance).iter().zip(self.own).map(|(one, own)| one - own).collect();
                 for ((slopes, figure), base) in slopes.iter_mut().zip(figures).zip(&base) {
@@ -176,7 +176,7 @@ impl<'f> Model<'f> {
         }
     }
 
-    /// Merit of `boxes` by the model (s).
+    /// Merit of `boxes` according to the model (s).
     fn penalised(&self, boxes: &[f64; 4]) -> f64 {
         let moved: [f64; 4] = std::array::from_fn(|k| boxes[k] - self.own[k]);
         let settling = self.settling.iter().map(|one| one.at(&moved)).fold(0.0, f64::max);
@@ -184,7 +184,7 @@ impl<'f> Model<'f> {
         Merit { time: self.found.planned.duration + moved.iter().sum::<f64>() + settling, over }.penalised()
     }
 
-    /// Set-points with one box a step shorter.
+    /// Set-points with one average a step shorter.
     fn shorter(&self, room: &Room<'_>, step: f64) -> Vec<SetPoint> {
         let with = |k: usize| {
             let mut boxes = self.own;
@@ -194,7 +194,7 @@ impl<'f> Model<'f> {
         (0..self.order as usize).map(with).collect()
     }
 
-    /// The best of the model within a step.
+    /// The optimum of the model within a step.
     fn best(&self, room: &Room<'_>, step: f64) -> SetPoint {
         let count = self.order as usize;
         let (mut centre, mut least) = (self.own, self.penalised(&self.own));
@@ -224,7 +224,7 @@ impl<'f> Model<'f> {
     }
 }
 
-/// The time to settle, and the parts of what is allowed that a run uses of each limit.
+/// The settling time, and the use of each limit as a share of the allowed value.
 fn figures(reading: &Reading, allowed: &Allowance, duration: f64) -> Vec<f64> {
     let uses = reading.usage.iter().zip(allowed).map(|(usage, most)| usage / most);
     std::iter::once(reading.time - duration).chain(uses).collect()

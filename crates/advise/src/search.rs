@@ -3,43 +3,43 @@ use crate::merit::Merit;
 use crate::set_point::SetPoint;
 use std::collections::{HashMap, HashSet};
 
-/// What a run gave.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Move and settling (s); not a number where the load does not settle.
+    /// Move and settling time (s); NaN if the load does not settle.
     pub time: f64,
-    /// Share of each limit that is used; not a number where it could not be measured.
+    /// Used share of each limit; NaN if it could not be measured.
     pub usage: Vec<f64>,
-    /// Whether nothing else failed: a requirement, a run that broke off.
+    /// True if nothing else failed: no requirement, no aborted run.
     pub is_sound: bool,
 }
 
-/// Makes runs.
+/// Execution of runs.
 pub trait Bench {
-    /// Duration of the moves of each set-point (s); nothing of one that cannot be planned.
+    /// Duration of the moves of each set-point (s); `None` if it cannot be planned.
     fn durations(&mut self, points: &[SetPoint]) -> Vec<Option<f64>>;
 
-    /// A run of each set-point on the machine beside it.
+    /// Runs each set-point on its machine.
     fn run(&mut self, runs: &[(SetPoint, &[f64])]) -> Vec<Reading>;
 }
 
-/// The worst that a set-point gave on several machines.
+/// The worst figures of a set-point on several machines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Worst {
     /// Longest move with settling (s).
     pub time: f64,
-    /// Of each limit the largest share that is used, and the machine with it.
+    /// The largest used share of each limit, and the machine of that.
     pub usage: Vec<(f64, Vec<f64>)>,
 }
 
-/// A set-point, and how long its moves take (s).
+/// A set-point with the duration of its moves (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Planned {
     pub(crate) point: SetPoint,
     pub(crate) duration: f64,
 }
 
-/// A set-point that was run on all machines.
+/// A set-point with results on all machines.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Found {
     pub(crate) planned: Planned,
@@ -50,30 +50,30 @@ pub(crate) struct Found {
 /// Share of each limit that a run may use: 1 is the limit itself.
 pub(crate) type Allowance = Vec<f64>;
 
-/// Machines that join the search at a time.
+/// Number of machines that join the search at once.
 const JOINING: usize = 4;
 
-/// Set-points that are looked at together.
+/// Number of set-points evaluated together.
 const CHUNK: usize = 16;
 
-/// So many set-points are run before some are left out.
+/// Number of set-points run before some are skipped.
 const DENSE: usize = 800;
 
-/// By how much two times differ at least where one is the better (s).
+/// Smallest difference of times that counts as better (s).
 pub(crate) const SAME: f64 = 1e-9;
 
-/// Bits by which a set-point is told from others.
+/// Bits that identify a set-point.
 type Key = (usize, [u64; 4]);
 
-/// What is known of all runs until now.
+/// Results of all runs so far.
 pub(crate) struct Search<'b> {
     bench: &'b mut dyn Bench,
     machines: Vec<Vec<f64>>,
     readings: HashMap<(Key, usize), Reading>,
-    /// How many set-points each machine has ended.
+    /// Number of set-points that each machine has excluded.
     ended: Vec<usize>,
     runs: usize,
-    /// Set-points that were run on all machines that there were, each once.
+    /// Set-points run on all machines present at that time, each once.
     known: Vec<Planned>,
     keys: HashSet<Key>,
 }
@@ -84,7 +84,7 @@ impl<'b> Search<'b> {
         Self { bench, machines, readings: HashMap::new(), ended, runs: 0, known: Vec::new(), keys: HashSet::new() }
     }
 
-    /// How many runs were made.
+    /// Number of runs.
     pub(crate) const fn runs(&self) -> usize {
         self.runs
     }
@@ -94,13 +94,13 @@ impl<'b> Search<'b> {
         &self.machines[index]
     }
 
-    /// From now on a set-point has to do on these machines, too.
+    /// Adds machines on which set-points must also meet the limits.
     pub(crate) fn add(&mut self, machines: impl Iterator<Item = Vec<f64>>) {
         self.machines.extend(machines);
         self.ended.resize(self.machines.len(), 0);
     }
 
-    /// From now on a set-point has to do on a few of these machines too, as far from each other in their order as they are.
+    /// Adds a few of these machines, evenly spread in their order.
     pub(crate) fn add_some(&mut self, machines: &[Vec<f64>]) {
         let count = machines.len().min(JOINING);
         for k in 0..count {
@@ -119,7 +119,7 @@ impl<'b> Search<'b> {
         all
     }
 
-    /// The machine on which `probes` promise least.
+    /// The machine with the longest promised times of `probes`.
     pub(crate) fn hardest(&mut self, probes: &[SetPoint], allowed: &Allowance) -> usize {
         let probes = self.planned(probes);
         let promises = |search: &mut Self, machine| {
@@ -131,8 +131,8 @@ impl<'b> Search<'b> {
         (0..sums.len()).fold(0, |most, k| if sums[k] > sums[most] { k } else { most })
     }
 
-    /// Runs `points`, each with an estimate of its duration (s) and the shortest first, on `machine`, until they take longer than `within` times
-    /// the best that keeps its limits on all machines: those that were run. The longer none does, the more are left out.
+    /// Runs `points`, each with an estimate of its duration (s), the shortest first, on `machine`, until they take longer than `within`
+    /// times the best within its limits on all machines; returns those run. The longer none is found, the more points are skipped.
     pub(crate) fn sifted(
         &mut self,
         points: &[(f64, SetPoint)],
@@ -160,19 +160,19 @@ impl<'b> Search<'b> {
         all
     }
 
-    /// Merit of a set-point on the machines on which it was run.
+    /// Merit of a set-point on the machines on which it has run.
     pub(crate) fn known_merit(&self, one: &Planned, allowed: &Allowance) -> Merit {
         let of = |machine| self.readings.get(&(one.point.key(), machine));
         let readings = (0..self.machines.len()).filter_map(of);
         readings.fold(Merit::NONE, |merit, reading| merit.worse(Merit::of(reading, allowed, one.duration)))
     }
 
-    /// Set-points that were run on all machines that there were.
+    /// Set-points run on all machines present at that time.
     pub(crate) fn known(&self) -> &[Planned] {
         &self.known
     }
 
-    /// The fastest of these, of a family if one is named, that keeps its limits by what is known of it; no run is made.
+    /// The fastest known set-point, of a given family if any, that meets its limits in the runs so far; makes no run.
     pub(crate) fn fastest_known(&self, allowed: &Allowance, family: Option<usize>) -> Option<Planned> {
         let is_of_it = |one: &&Planned| family.is_none_or(|family| one.point.family == family);
         let times = self.known.iter().filter(is_of_it).map(|one| (self.known_merit(one, allowed).time_kept(), *one));
@@ -184,7 +184,7 @@ impl<'b> Search<'b> {
         Merit::of(&self.readings[&(one.point.key(), machine)], allowed, one.duration)
     }
 
-    /// Those of `planned` on all machines whose merit stays below `bound` (s, as `of` has it).
+    /// Those of `planned` whose merit by `of` (s) stays below `bound` on all machines.
     pub(crate) fn on_all(
         &mut self,
         planned: &[Planned],
@@ -211,11 +211,11 @@ impl<'b> Search<'b> {
         alive.into_iter().map(|(planned, merit)| Found { planned, worst: self.worst(&planned.point), merit }).collect()
     }
 
-    /// `planned` on all machines, if it is better than `than`: faster, where that keeps its limits; otherwise faster or nearer to them.
+    /// `planned` on all machines, if it is better than `than`: faster if that meets its limits; otherwise faster or closer to them.
     pub(crate) fn better(&mut self, planned: &Planned, allowed: &Allowance, than: &Found) -> Option<Found> {
         let of = if than.merit.keeps() { Merit::time_kept } else { Merit::penalised };
         let bound = of(than.merit) - SAME;
-        // Settling only adds to a move.
+        // Settling only lengthens a move.
         let may_be: &[Planned] = if planned.duration < bound { std::slice::from_ref(planned) } else { &[] };
         self.on_all(may_be, allowed, bound, of).into_iter().next()
     }
@@ -226,7 +226,7 @@ impl<'b> Search<'b> {
         &self.readings[&(planned.point.key(), machine)]
     }
 
-    /// Largest share of what is allowed that `planned` uses on each machine on which it was run.
+    /// Largest used share of the allowed values of `planned` for each machine on which it has run.
     pub(crate) fn uses(&self, planned: &Planned, allowed: &Allowance) -> Vec<(usize, f64)> {
         let over = |machine: usize| {
             let reading = self.readings.get(&(planned.point.key(), machine))?;
@@ -235,7 +235,7 @@ impl<'b> Search<'b> {
         (0..self.machines.len()).filter_map(over).collect()
     }
 
-    /// The machines, those that end most set-points first.
+    /// The machines, those that exclude most set-points first.
     fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.machines.len()).collect();
         order.sort_by_key(|machine| (std::cmp::Reverse(self.ended[*machine]), *machine));
@@ -254,7 +254,7 @@ impl<'b> Search<'b> {
         }
     }
 
-    /// The worst of what is known of `point`.
+    /// The worst known figures of `point`.
     fn worst(&self, point: &SetPoint) -> Worst {
         let machines = self.machines.iter().enumerate();
         let known =
@@ -262,7 +262,7 @@ impl<'b> Search<'b> {
         worst_of(known)
     }
 
-    /// Runs of one set-point on other machines than those of the search, which are not kept.
+    /// Runs of one set-point on machines outside of the search; the results are not stored.
     pub(crate) fn on(&mut self, point: SetPoint, machines: &[Vec<f64>]) -> Vec<Reading> {
         self.runs += machines.len();
         let runs: Vec<(SetPoint, &[f64])> = machines.iter().map(|machine| (point, machine.as_slice())).collect();
@@ -270,9 +270,9 @@ impl<'b> Search<'b> {
     }
 }
 
-/// Whether a run is within what is allowed.
+/// True if a run is within the allowed values.
 pub(crate) fn keeps(reading: &Reading, allowed: &Allowance) -> bool {
-    // What could not be measured is not kept.
+    // An unmeasured limit is not met.
     reading.is_sound && reading.time.is_finite() && reading.usage.iter().zip(allowed).all(|(usage, most)| usage <= most)
 }
 

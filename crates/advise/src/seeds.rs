@@ -1,24 +1,24 @@
-//! Box lengths that a search begins with.
+//! Initial lengths of averages for a search.
 use crate::set_point::{Family, Room, SetPoint};
 
 /// The longest cruise as a multiple of the shortest.
 const LONGEST: f64 = 4.0;
-/// Ratios of neighbouring lengths of each box.
+/// Ratios of neighbouring lengths of each average.
 const RATIOS: [f64; 4] = [1.2, 1.4, 1.7, 2.0];
-/// Parts of the period of the mode, and how many of them, that inner boxes are as long as: a box of a whole period leaves nothing of it.
+/// Lengths of inner averages in parts of the mode's period, and the number of parts: an average over a whole period cancels the mode.
 const OF_A_PERIOD: f64 = 0.25;
 const PARTS: u32 = 8;
-/// The shortest of the inner boxes, as part of the one outside it: shorter ones are found by refinement.
+/// Smallest length of an inner average, relative to the one outside it: refinement finds shorter ones.
 const SHORTEST: f64 = 0.04;
 
-/// Lengths from `low` to `high`, each `ratio` times the one before, both ends and parts of the period of the mode between them.
+/// Lengths from `low` to `high`, each `ratio` times the one before, with both ends and with the parts of the mode's period between them.
 fn lengths([low, high]: [f64; 2], ratio: f64, frequency: f64) -> Vec<f64> {
     let levels = std::iter::successors(Some(low), |length| Some(length * ratio)).take_while(|length| *length < high);
     let parts = (1..=PARTS).map(|count| OF_A_PERIOD * f64::from(count) / frequency);
     levels.chain(parts.filter(|length| (low..high).contains(length))).chain([high.max(low)]).collect()
 }
 
-/// The set-points of a family that a search begins with, the shortest first; `frequency` (Hz) is that of the mode, 0 where there is none.
+/// The initial set-points of a family, the shortest first; `frequency` (Hz) is that of the mode, 0 without a mode.
 pub(crate) fn seeds(index: usize, family: &Family, room: &Room<'_>, frequency: f64) -> Vec<SetPoint> {
     let order = family.order;
     let shortest = room.fitted(order, [0.0; 4])[0];
@@ -28,7 +28,7 @@ pub(crate) fn seeds(index: usize, family: &Family, room: &Room<'_>, frequency: f
         .collect();
     for (k, ratio) in RATIOS.into_iter().enumerate().take(order as usize).skip(1) {
         let longer = |boxes: [f64; 4]| {
-            // The ceiling asks for a length at least, and a box holds all those inside it.
+            // The ceiling requires a minimum length, and an average is at least as long as all those inside it.
             let least = room.fitted(order, boxes)[k].max(SHORTEST * boxes[k - 1]);
             lengths([least, boxes[k - 1]], ratio, frequency).into_iter().map(move |length| {
                 let mut boxes = boxes;

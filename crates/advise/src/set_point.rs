@@ -1,4 +1,4 @@
-//! Set-points that may be chosen.
+//! Candidate set-points.
 use crate::best::Question;
 use servobench_motion::Limits;
 
@@ -7,15 +7,15 @@ use servobench_motion::Limits;
 pub struct Family {
     /// Order of the profile, 2 to 4.
     pub order: u32,
-    /// The input shaper behind it: `zvd`.
+    /// The input shaper after it: `zvd`.
     pub shaper: Option<String>,
     /// Further keys as on the command line: `setpoint.shaper.kind=zvd`, `drive.position.bandwidth=20 Hz`.
     pub settings: Vec<String>,
-    /// What it is called: `order 3, zvd`.
+    /// Its name: `order 3, zvd`.
     pub name: String,
 }
 
-/// A set-point: its family, and its limits.
+/// A set-point: its family and its limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetPoint {
     /// Index of its family.
@@ -33,9 +33,9 @@ fn rounded(value: f64) -> f64 {
 }
 
 impl SetPoint {
-    /// By the lengths (s) of the boxes that a move over `distance` is the convolution of, the longest first: d through boxes T₀, T₁, T₂, T₃ has
-    /// v = d/T₀, a = v/T₁, j = a/T₂, s = j/T₃. The first `order` count. Limits are rounded to five significant digits, so that what was run is
-    /// what is told.
+    /// The set-point for the lengths (s) of the moving averages whose convolution is a move over `distance`, the longest first: d through
+    /// T₀, T₁, T₂, T₃ has v = d/T₀, a = v/T₁, j = a/T₂, s = j/T₃. The first `order` count. Limits are rounded to five significant digits,
+    /// so that the reported values are those of the runs.
     #[must_use]
     pub fn by_boxes(family: usize, order: u32, distance: f64, [cruise, ramp, rise, rise_of_jerk]: [f64; 4]) -> Self {
         let velocity = distance / cruise;
@@ -45,7 +45,7 @@ impl SetPoint {
         Self { family, limits: [velocity, acceleration, jerk, snap].map(rounded) }
     }
 
-    /// The lengths (s) of the boxes of a move over `distance`; 0 above the order.
+    /// The lengths (s) of the moving averages of a move over `distance`; 0 above the order.
     #[must_use]
     pub fn boxes(&self, distance: f64) -> [f64; 4] {
         let [velocity, acceleration, jerk, snap] = self.limits;
@@ -53,28 +53,28 @@ impl SetPoint {
         [distance / velocity, velocity / acceleration, above(acceleration, jerk), above(jerk, snap)]
     }
 
-    /// Bits by which it is told from others.
+    /// Bits that identify it.
     pub(crate) fn key(&self) -> (usize, [u64; 4]) {
         (self.family, self.limits.map(f64::to_bits))
     }
 }
 
-/// The moves of a question.
+/// Distance and ceiling of the moves of a question.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room<'a> {
-    /// Distance of the longest one (m or rad).
+    /// Distance of the longest move (m or rad).
     pub(crate) distance: f64,
     /// The largest limits.
     pub(crate) ceiling: &'a Limits,
 }
 
-/// The shortest box, as part of the longest: what is shorter changes nothing.
+/// Smallest length of an average, relative to the longest: a shorter one has no effect.
 const SHORTEST: f64 = 1e-3;
 
-/// Halvings by which a length is found that holds boxes which grow as it falls: to a millionth.
+/// Bisections for the length of an average that contains others, which grow as it shrinks: to a millionth.
 const HALVINGS: u32 = 20;
 
-/// `boxes` as long as they have to be, so that `reached` (d, v, a or j) divided by them stays below `most`, and each holds all after it.
+/// Extends `boxes` as required: `reached` (d, v, a or j) divided by them must stay below `most`, and each must contain all after it.
 fn fit(fitted: &mut [f64], boxes: &[f64], most: &[f64], reached: f64, shortest: f64) {
     let (Some(length), Some(most_of_it)) = (boxes.first(), most.first()) else { return };
     let mut inside = |length: f64| {
@@ -87,7 +87,7 @@ fn fit(fitted: &mut [f64], boxes: &[f64], most: &[f64], reached: f64, shortest: 
         fitted[0] = low;
         return;
     }
-    // A longer box needs shorter ones inside it.
+    // A longer average needs shorter ones inside it.
     if inside(high) < high {
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(low, high);
@@ -103,13 +103,13 @@ impl<'q> Room<'q> {
         Self { distance: question.distance, ceiling: &question.ceiling }
     }
 
-    /// The shortest that all boxes together may be (s).
+    /// Shortest duration of all averages together (s).
     pub(crate) fn shortest(&self, order: u32) -> f64 {
         self.fitted(order, [0.0; 4]).iter().sum()
     }
 
-    /// `boxes`, of which the first `order` count, as long as they have to be: that the ceiling is kept, and that all limits are reached (T₀ ≥ T₁ +
-    /// T₂ + T₃, T₁ ≥ T₂ + T₃, T₂ ≥ T₃).
+    /// `boxes`, of which the first `order` count, extended as required: to respect the ceiling, and to reach all limits (T₀ ≥ T₁ + T₂ + T₃,
+    /// T₁ ≥ T₂ + T₃, T₂ ≥ T₃).
     pub(crate) fn fitted(&self, order: u32, boxes: [f64; 4]) -> [f64; 4] {
         let Limits { velocity, acceleration, jerk, snap } = *self.ceiling;
         let most = [velocity, acceleration, jerk, snap];
@@ -120,24 +120,24 @@ impl<'q> Room<'q> {
         fitted
     }
 
-    /// The set-point with these boxes, as long as they have to be.
+    /// The set-point with these averages, extended as required.
     pub(crate) fn point(&self, index: usize, order: u32, boxes: [f64; 4]) -> SetPoint {
         let Limits { velocity, acceleration, jerk, snap } = *self.ceiling;
         let most = [velocity, acceleration, jerk, snap];
         let SetPoint { family, limits } = SetPoint::by_boxes(index, order, self.distance, self.fitted(order, boxes));
-        // Rounding may carry a limit beyond the ceiling; what is infinite belongs to a higher order.
+        // Rounding may carry a limit beyond the ceiling; infinite limits belong to a higher order.
         SetPoint {
             family,
             limits: std::array::from_fn(|k| if limits[k].is_finite() { limits[k].min(most[k]) } else { limits[k] }),
         }
     }
 
-    /// The length of all boxes of a set-point together (s): that of its profile.
+    /// Total length of the averages of a set-point (s): the duration of its profile.
     pub(crate) fn length(&self, point: &SetPoint) -> f64 {
         point.boxes(self.distance).iter().sum()
     }
 
-    /// True where both are of one kind and no box of one differs from that of the other by more than `part` of it.
+    /// True if both are of one family and no average differs between them by more than the share `part`.
     pub(crate) fn are_near(&self, one: &SetPoint, other: &SetPoint, part: f64) -> bool {
         let boxes = one.boxes(self.distance).into_iter().zip(other.boxes(self.distance));
         one.family == other.family && boxes.into_iter().all(|(one, other)| (one - other).abs() <= part * one.max(other))
@@ -164,7 +164,7 @@ mod tests {
         assert!(second.limits[2].is_infinite() && is_same(&second.boxes(0.25), &[0.5, 0.125, 0.0, 0.0]));
     }
 
-    /// A short way: limits that no move would reach are lowered to those that it does. And none is above its ceiling.
+    /// A short distance: limits that no move would reach are lowered to reachable ones. None is above its ceiling.
     #[test]
     fn boxes_are_as_long_as_their_limits_need() {
         let free = Limits { velocity: 9.0, acceleration: 900.0, jerk: f64::INFINITY, snap: f64::INFINITY };

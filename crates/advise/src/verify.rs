@@ -1,30 +1,30 @@
-//! What was found, on machines that the search has not seen.
+//! Verification of a set-point on machines that the search has not seen.
 use crate::best::AdviseError;
 use crate::machines::{Machines, Stretch};
 use crate::search::{Allowance, Planned, Reading, Search, Worst, keeps, worst_of};
 use crate::set_point::SetPoint;
 use servobench_sweep::{Distribution, Drawn, Draws, Method, Proportion, SweepError};
 
-/// A part of a lobe between two machines of the grid: finer than a tenth. Between them a maximum is higher by (π·0.03/2)²/2 = 0.11 % at most.
+/// Distance between machines of the grid in lobes: finer than a tenth. Between them a maximum is higher by at most (π·0.03/2)²/2 = 0.11 %.
 const LOBE: f64 = 0.03;
 
-/// What a set-point gave on machines that the search has not seen.
+/// Results of a set-point on machines that the search has not seen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verification {
-    /// Corners and machines between them along which a mode moves.
+    /// Number of corners, and of machines between them along which a mode moves.
     pub grid: usize,
-    /// Distance of these in frequency (Hz), at most; `None` where no mode moves.
+    /// Largest distance between these in frequency (Hz); `None` if no mode moves.
     pub spacing: Option<f64>,
-    /// Draws that keep all limits, and those that do not.
+    /// Counts of draws within all limits, and of others.
     pub draws: Proportion,
-    /// Share of the machines that keep all limits at least, with 95 % confidence in the whole search: if draws were looked at before and
-    /// led to another set-point, each look has half of the doubt that the one before had.
+    /// Lower bound of the share of machines within all limits, with 95 % confidence for the whole search: if earlier draws were evaluated
+    /// and led to another set-point, each evaluation has half of the error probability of the previous one.
     pub share: f64,
-    /// The worst of all of them.
+    /// The worst figures on all of them.
     pub worst: Worst,
 }
 
-/// How a set-point is verified.
+/// Parameters of a verification.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan<'a> {
     pub(crate) machines: &'a Machines,
@@ -32,27 +32,27 @@ pub(crate) struct Plan<'a> {
     pub(crate) frequency: f64,
     pub(crate) draws: u32,
     pub(crate) seed: u64,
-    /// How often draws were looked at before.
+    /// Number of earlier evaluations of draws.
     pub(crate) looks: i32,
 }
 
-/// What a promised share may be wrong with, whatever the search has looked at.
+/// Probability that a promised share is wrong, over all evaluations of the search.
 const DOUBT: f64 = 0.05;
 
-/// The most draws that one look may have.
+/// Largest number of draws in one evaluation.
 const MOST: u32 = 1_000_000;
 
-/// Confidence of a look at draws after `looks` others.
+/// Confidence of an evaluation of draws after `looks` others.
 fn confidence(looks: i32) -> f64 {
     1.0 - DOUBT * 0.5_f64.powi(looks + 1)
 }
 
-/// Share of the machines that `draws` show, were they all clean, after `looks` others.
+/// Share of the machines that `draws` show if none fails, after `looks` others.
 pub(crate) fn shown_by(draws: u32, looks: i32) -> f64 {
     Proportion::new(u64::from(draws), 0).at_least(confidence(looks))
 }
 
-/// Draws, all clean, that show `share` of the machines after `looks` others: n with shareⁿ ≤ 1 − confidence.
+/// Number of draws, none failing, that show `share` of the machines after `looks` others: n with shareⁿ ≤ 1 − confidence.
 ///
 /// # Errors
 /// [`AdviseError::TooMuch`] above 1 000 000.
@@ -63,11 +63,11 @@ pub(crate) fn needed(share: f64, looks: i32) -> Result<u32, AdviseError> {
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to a million")]
     let draws = draws.max(1.0) as u32;
-    // The bound is found by bisection, which rounds.
+    // The bound comes from bisection, which rounds.
     Ok((draws..=MOST).find(|draws| shown_by(*draws, looks) >= share).unwrap_or(MOST))
 }
 
-/// A set-point on machines, and what it gave there.
+/// Machines on which a set-point ran, with the results.
 #[derive(Debug)]
 pub(crate) struct Tried {
     machines: Vec<Vec<f64>>,
@@ -91,7 +91,7 @@ impl Tried {
     }
 }
 
-/// `planned` on corners, in the middle, and between them along everything that moves the mode.
+/// `planned` on corners, in the middle, and between the corners along every range that shifts the mode.
 pub(crate) fn on_grid(search: &mut Search<'_>, planned: &Planned, plan: Plan<'_>) -> Result<Tried, AdviseError> {
     let mut grid = plan.machines.corners();
     grid.push(plan.machines.middle());
@@ -99,7 +99,7 @@ pub(crate) fn on_grid(search: &mut Search<'_>, planned: &Planned, plan: Plan<'_>
     Ok(Tried::on(grid, planned.point, search))
 }
 
-/// `planned`, which is within `allowed` on the grid, on draws: what both show, and the draws on which it is not.
+/// `planned`, which is within `allowed` on the grid, on draws: the combined result, and the draws on which it fails.
 pub(crate) fn on_draws(
     search: &mut Search<'_>,
     planned: &Planned,
@@ -121,7 +121,7 @@ pub(crate) fn on_draws(
     Ok((verification, failed))
 }
 
-/// Machines drawn at random, every one of the box as likely as any other.
+/// Machines drawn at random, uniformly within the tolerances.
 fn drawn(plan: Plan<'_>) -> Result<Vec<Vec<f64>>, SweepError> {
     let keys = plan.machines.ranges().iter().map(|range| {
         let [low, high] = range.ends;

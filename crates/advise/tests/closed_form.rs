@@ -1,5 +1,5 @@
-//! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile rings with X·∏|sin(ωT/2)/(ωT/2)|, T the
-//! boxes of the profile. Oracle: all of many set-points, tried on all machines.
+//! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile oscillates with X·∏|sin(ωT/2)/(ωT/2)|,
+//! with T the moving averages of the profile. Oracle: all of many set-points, tried on all machines.
 use servobench_advise::{AdviseError, Bench, Family, Machines, Question, Range, Reading, SetPoint, Stretch, advise};
 use servobench_motion::Limits;
 use servobench_testkit::Random;
@@ -9,7 +9,7 @@ const DISTANCE: f64 = 0.25;
 /// Largest vibration (m).
 const VIBRATION: f64 = 60e-6;
 
-/// The boxes of the profile, the longest first; none of a profile that does not reach its limits.
+/// The moving averages of the profile, the longest first; `None` for a profile that does not reach its limits.
 fn boxes(point: &SetPoint) -> Option<Vec<f64>> {
     let [velocity, acceleration, jerk, snap] = point.limits;
     let all = [DISTANCE / velocity, velocity / acceleration, acceleration / jerk, jerk / snap];
@@ -69,12 +69,12 @@ fn question() -> Question {
     }
 }
 
-/// The worst of a set-point over machines as near to each other as 0.02 Hz: its time, if it keeps all limits on them.
+/// The worst time of a set-point over machines 0.02 Hz apart, if it meets all limits on them.
 fn time_of(point: &SetPoint) -> Option<f64> {
     let boxes = boxes(point)?;
     let keeps = (0..=250).all(|k| {
         let reading = Axis::reading(point, &[15.0 + 0.02 * f64::from(k), 11.0]);
-        // Between the machines of the verification a maximum is higher by 0.11 % at most: (π·0.03/2)²/2 of a lobe.
+        // Between the machines of the verification a maximum is higher by at most 0.11 %: (π·0.03/2)²/2 of a lobe.
         reading.usage.iter().all(|usage| *usage <= 1.0011)
     });
     keeps.then(|| boxes.iter().sum())
@@ -110,7 +110,7 @@ fn nothing_of_twenty_thousand_set_points_is_better_by_half_a_percent() {
     assert!(advice.worst.time <= fastest * 1.005, "{} against {fastest}", advice.worst.time);
 }
 
-/// Draws of its own: the promise holds.
+/// Separate draws: the promise holds.
 #[test]
 fn fresh_draws_keep_the_promise() {
     let advice = advise(&question(), &mut Axis { runs: 0 }).unwrap();

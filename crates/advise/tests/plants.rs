@@ -31,11 +31,11 @@ fn axis(random: &mut Random) -> Axis {
     }
 }
 
-/// Ceilings as parts of the highest.
+/// Ceilings relative to the highest.
 const CEILINGS: [f64; 4] = [1.0, 0.85, 0.6, 0.4];
-/// By how much nothing else may be faster.
+/// Factor of time by which nothing else may be faster.
 const FASTER: f64 = 0.995;
-/// One in so many axes may hide its best lobe from the search.
+/// One in this many axes may hide its best lobe from the search.
 const HIDDEN: usize = 20;
 
 /// Many axes with `SERVOBENCH_SWEEP=20`.
@@ -58,7 +58,7 @@ fn a_lower_ceiling_is_not_faster() {
     assert!(found.len() <= axes / HIDDEN, "{found:?}");
 }
 
-/// 8 000 set-points in box lengths from the shortest to four times that with `SERVOBENCH_SWEEP=8`.
+/// 8 000 set-points with lengths of averages from the shortest to four times that with `SERVOBENCH_SWEEP=8`.
 #[test]
 fn random_set_points_are_not_better() {
     let mut random = Random::seeded(7);

@@ -1,10 +1,10 @@
-//! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile rings with X·∏|sin(ωT/2)/(ωT/2)|, T the
-//! boxes of the profile; with a zero-vibration shaper for f₀ behind it with |cos(πf/2f₀)| times as much.
+//! An axis whose runs have a closed form: an undamped mode behind a base that follows the profile oscillates with X·∏|sin(ωT/2)/(ωT/2)|,
+//! with T the moving averages of the profile; a zero-vibration shaper for f₀ after it multiplies that by |cos(πf/2f₀)|.
 use servobench_advise::{Bench, Family, Machines, Question, Range, Reading, SetPoint, Stretch};
 use servobench_motion::Limits;
 use std::f64::consts::{PI, TAU};
 
-/// What the axis is, and what it has to keep.
+/// Parameters and limits of the axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
     pub(crate) distance: f64,
@@ -12,7 +12,7 @@ pub(crate) struct Axis {
     /// Lowest and highest frequency of the mode (Hz), and payload (kg).
     pub(crate) frequencies: [f64; 2],
     pub(crate) payloads: [f64; 2],
-    /// Largest vibration (m), force (N) and following error (m); that is the velocity over the gain (1/s).
+    /// Largest vibration (m), force (N) and following error (m); the latter is the velocity divided by the gain (1/s).
     pub(crate) vibration: f64,
     pub(crate) force: f64,
     pub(crate) following: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Axis {
     pub(crate) runs: usize,
 }
 
-/// A kind of set-point: its order, and whether a shaper is behind it.
+/// A kind of set-point: its order, with or without a shaper.
 pub(crate) fn family(order: u32, is_shaped: bool) -> Family {
     let shaper = is_shaped.then(|| "zv".to_owned());
     Family { order, shaper, settings: vec![], name: format!("order {order}{}", if is_shaped { ", zv" } else { "" }) }
@@ -32,7 +32,7 @@ impl Axis {
         f64::midpoint(self.frequencies[0], self.frequencies[1])
     }
 
-    /// The boxes of the profile, the longest first; none of a profile that does not reach its limits.
+    /// The moving averages of the profile, the longest first; `None` for a profile that does not reach its limits.
     fn boxes(&self, point: &SetPoint) -> Option<Vec<f64>> {
         let boxes: Vec<f64> = point.boxes(self.distance).into_iter().filter(|length| *length > 0.0).collect();
         let later = |k: usize| boxes[k + 1..].iter().sum::<f64>();
@@ -70,14 +70,14 @@ impl Axis {
         Reading { time: self.duration(point).unwrap(), usage, is_sound: *payload < 1_000.0 }
     }
 
-    /// The time of a set-point, if it keeps all limits on machines as near to each other as a hundredth of the box.
+    /// The time of a set-point, if it meets all limits on machines a hundredth of the frequency range apart.
     pub(crate) fn time_of(&self, point: &SetPoint) -> Option<f64> {
         let [low, high] = self.frequencies;
         let time = self.duration(point)?;
         let keeps = (0..=100).all(|k| {
             let frequency = low + 0.01 * f64::from(k) * (high - low);
             let reading = self.reading(point, &[frequency, self.payloads[1]]);
-            // Between the machines of the verification a maximum is higher by 0.11 % at most: (π·0.03/2)²/2 of a lobe.
+            // Between the machines of the verification a maximum is higher by at most 0.11 %: (π·0.03/2)²/2 of a lobe.
             reading.usage.iter().all(|usage| *usage <= 1.0011)
         });
         keeps.then_some(time)
