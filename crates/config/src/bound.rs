@@ -1,23 +1,23 @@
-//! What a physical quantity must be beyond its dimension.
+//! Bounds of physical quantities.
 use crate::physical::Kind;
 use crate::quantities::RATIO;
 use core::fmt;
 
-/// What a physical quantity must be beyond its dimension (SI).
+/// Bound of a physical quantity (SI).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bound {
     /// Above zero.
     Positive,
     /// Zero or more.
     NotNegative,
-    /// Anything.
+    /// Any value.
     Any,
-    /// Between these values; both are allowed.
+    /// Between these values, both included.
     Within(f64, f64),
 }
 
 impl Bound {
-    /// Whether `value` is within it.
+    /// True if `value` is within the bound.
     #[must_use]
     pub fn holds(self, value: f64) -> bool {
         match self {
@@ -29,7 +29,7 @@ impl Bound {
     }
 }
 
-/// As the end of "must be …".
+/// Completes the sentence "must be …".
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -41,14 +41,14 @@ impl fmt::Display for Bound {
     }
 }
 
-/// What a physical parameter demands.
+/// Requirements on a physical parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// What it measures.
+    /// Quantity that it measures.
     pub kind: Kind,
     /// Its bound.
     pub bound: Bound,
-    /// A value as users write it.
+    /// A value as written by users.
     pub example: &'static str,
 }
 
@@ -71,7 +71,7 @@ pub const fn any(kind: Kind, example: &'static str) -> Measure {
 }
 
 impl Measure {
-    /// Whether it is a pure number, which needs no unit.
+    /// True for a pure number, which needs no unit.
     #[must_use]
     pub fn is_ratio(&self) -> bool {
         self.kind == Kind::Plain(&RATIO)

@@ -3,10 +3,10 @@ use servobench_base::Coordinate;
 
 /// A type with a few named values: an enumeration of alternatives among which users choose by name.
 pub trait Choice: Copy + 'static {
-    /// Every value: its name, itself, its meaning.
+    /// Every value: name, value, meaning.
     const ALL: &'static [(&'static str, Self, &'static str)];
 
-    /// The value of this name.
+    /// The value with this name.
     #[must_use]
     fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, ..)| *known == name).map(|(_, value, _)| *value)
@@ -29,12 +29,12 @@ impl Choice for Coordinate {
     ];
 }
 
-/// Declares an enumeration whose values users choose by name; the doc comment of a value is its meaning. One may be the default:
+/// Declares an enumeration whose values users choose by name; the doc comment of a value is its meaning. A default is optional:
 /// `enum Kind default Pi`.
 ///
 /// ```
 /// servobench_config::choices! {
-///     /// What a velocity loop is.
+///     /// Kind of a velocity loop.
 ///     pub enum Kind {
 ///         /// proportional
 ///         P = "p",
@@ -48,17 +48,17 @@ impl Choice for Coordinate {
 /// assert_eq!(Kind::ALL[1].2, "proportional and integral");
 /// ```
 ///
-/// Alternatives may have parameters; those that are chosen by name are a second type then, `kind` of the first:
+/// Alternatives may have parameters; the names then belong to a second type, the `kind` of the first:
 ///
 /// ```
 /// servobench_config::choices! {
-///     /// How velocities are found.
+///     /// Method of finding velocities.
 ///     pub enum Velocities named VelocitiesKind {
 ///         /// the mean of the neighbours
 ///         Average = "average",
 ///         /// the same, smoothed
 ///         Smooth {
-///             /// How often.
+///             /// Number of passes.
 ///             passes: u32,
 ///         } = "smooth",
 ///     }
@@ -115,7 +115,7 @@ macro_rules! choices {
         }
 
         impl $type {
-            /// Which alternative it is, without its parameters.
+            /// The alternative without its parameters.
             #[must_use]
             $visibility const fn kind(&self) -> $kind {
                 match self {

@@ -1,12 +1,12 @@
 //! Dimensions as exponents.
 //!
-//! Beside the SI base there are some that the SI counts as 1, because mistaking them is what goes wrong in practice:
-//! the angle (rad, deg, rev), the cycle (Hz: `1 kHz` of bandwidth is 2π·1000 rad/s, `1/s` is no frequency), and whether
-//! an alternating current or voltage is given by its amplitude or effective value (`Apk`, `Arms`; plain `A` is neither). And
-//! whether kelvin are a difference or counted from the zero of a scale (`K`, `degC`).
+//! Beside the SI base there are some dimensions that the SI counts as 1, because confusing them is the usual mistake in practice:
+//! the angle (rad, deg, rev), the cycle (Hz: `1 kHz` of bandwidth is 2π·1000 rad/s, `1/s` is not a frequency), the amplitude of an
+//! alternating current or voltage as opposed to its effective value (`Apk`, `Arms`; plain `A` is neither), and the zero of a
+//! temperature scale as opposed to a difference in kelvin (`K`, `degC`).
 use core::fmt;
 
-/// Exponents of metre, kilogram, second, ampere, radian, cycle, amplitude, kelvin and zero of the scale of temperature, in this order.
+/// Exponents of metre, kilogram, second, ampere, radian, cycle, amplitude, kelvin and zero of the temperature scale, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension([i32; 9]);
 
@@ -25,13 +25,13 @@ impl Dimension {
     pub const AMPERE: Self = Self([0, 0, 0, 1, 0, 0, 0, 0, 0]);
     /// Radian.
     pub const RADIAN: Self = Self([0, 0, 0, 0, 1, 0, 0, 0, 0]);
-    /// A cycle of something that repeats.
+    /// A cycle of a periodic quantity.
     pub const CYCLE: Self = Self([0, 0, 0, 0, 0, 1, 0, 0, 0]);
-    /// That a voltage or current is given by its amplitude.
+    /// Mark of a voltage or current given by its amplitude.
     pub const AMPLITUDE: Self = Self([0, 0, 0, 0, 0, 0, 1, 0, 0]);
     /// Kelvin.
     pub const KELVIN: Self = Self([0, 0, 0, 0, 0, 0, 0, 1, 0]);
-    /// Degrees Celsius: kelvin above the zero of that scale, which are no difference of temperatures.
+    /// Degrees Celsius: kelvin above the zero of that scale, not a temperature difference.
     pub const CELSIUS: Self = Self([0, 0, 0, 0, 0, 0, 0, 1, 1]);
     /// Cycles per second.
     pub const HERTZ: Self = Self::CYCLE.times(Self::SECOND, -1);
@@ -61,7 +61,7 @@ impl Dimension {
         [kg, m, s, a]
     }
 
-    /// The dimension without any statement about amplitudes.
+    /// The dimension without the mark of amplitudes.
     #[must_use]
     pub const fn without_amplitude(self) -> Self {
         let mut exponents = self.0;
@@ -70,7 +70,7 @@ impl Dimension {
     }
 }
 
-/// `kg·m²/s³`, the SI units that make up the dimension.
+/// The SI units of the dimension: `kg·m²/s³`.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = |sign: i32| self.0.iter().filter(|exponent| exponent.signum() == sign).count();
@@ -94,10 +94,10 @@ impl fmt::Display for Dimension {
 }
 
 impl Dimension {
-    /// The units whose exponents have this sign.
+    /// Product of the units whose exponents have this sign.
     fn product(self, sign: i32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut is_first = true;
-        // Kilogram before metre, as everybody writes it.
+        // Kilogram before metre, as is usual.
         for i in [1, 0, 2, 3, 4, 5, 6, 7, 8] {
             if self.0[i].signum() == sign {
                 f.write_str(if is_first { "" } else { "·" })?;
@@ -110,7 +110,7 @@ impl Dimension {
     }
 }
 
-/// A power; nothing for 1.
+/// A power as superscript; empty for 1.
 fn superscript(power: u32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     const DIGITS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
     if power == 1 {

@@ -1,7 +1,7 @@
-//! How parameters are described, so that each is declared once, by the crate that owns what it sets.
+//! Descriptions of parameters: each is declared once, by the crate that owns the setting.
 //!
-//! A description holds the name, what it measures, its bound, an example and its meaning. Whoever reads files, checks them, writes
-//! their schema or documents them does so by these descriptions. `no_std`, no heap: firmware declares its parameters here too.
+//! A description holds the name, the quantity, its bound, an example and the meaning. Reading files, checks, schemas and
+//! documentation are based on these descriptions. `no_std`, no heap: firmware also declares its parameters here.
 #![cfg_attr(not(test), no_std)]
 
 mod bound;

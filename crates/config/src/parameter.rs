@@ -1,17 +1,17 @@
-//! Parameters that are physical quantities, as the crate that owns them declares them.
+//! Parameters that are physical quantities, declared by the crates that own them.
 use crate::bound::{Bound, Measure};
 use crate::physical::Kind;
 use core::fmt;
 use servobench_base::{ParamError, finite, non_negative, positive};
 
-/// A parameter that is a physical quantity: its name, what it means and what it must be. Errors name a parameter by this.
+/// A parameter that is a physical quantity: name, meaning and requirements. Errors name a parameter by this.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
-    /// Its name in words, its own among the parameters of its crate.
+    /// Its name in words, unique among the parameters of its crate.
     pub name: &'static str,
-    /// What it means: a clause that begins a sentence, to which a file's reference adds its default.
+    /// Its meaning: a clause that begins a sentence, to which a file's reference adds its default.
     pub meaning: &'static str,
-    /// What it measures, its bound and an example.
+    /// Its quantity, bound and an example.
     pub measure: Measure,
 }
 
@@ -19,23 +19,23 @@ pub struct Parameter {
 pub type ParameterError = ParamError<&'static Parameter>;
 
 impl Parameter {
-    /// `value` (SI), when it is within the bound.
+    /// Returns `value` (SI) if it is within the bound.
     ///
     /// # Errors
-    /// [`ParameterError`] otherwise, also for what is not finite.
+    /// [`ParameterError`] otherwise, also for a value that is not finite.
     pub const fn check(&'static self, value: f64) -> Result<f64, ParameterError> {
         self.measure.bound.check(self, value)
     }
 
-    /// The same with an error that has the parameter's name only.
+    /// Like [`check`](Self::check), with an error that contains only the name of the parameter.
     ///
     /// # Errors
-    /// [`ParamError`] otherwise, also for what is not finite.
+    /// [`ParamError`] otherwise, also for a value that is not finite.
     pub const fn check_in_words(&self, value: f64) -> Result<f64, ParamError> {
         self.measure.bound.check(self.name, value)
     }
 
-    /// The same of the motor, in its own coordinate, with an example of its own.
+    /// The same parameter in the coordinate of the motor, with a separate example.
     #[must_use]
     pub const fn of_motor(&self, example: &'static str) -> Self {
         let kind = match self.measure.kind {
@@ -53,10 +53,10 @@ impl fmt::Display for Parameter {
 }
 
 impl Bound {
-    /// `value` (SI) of the parameter `name`, when it is within the bound.
+    /// Returns `value` (SI) of the parameter `name` if it is within the bound.
     ///
     /// # Errors
-    /// [`ParamError`] otherwise, also for what is not finite.
+    /// [`ParamError`] otherwise, also for a value that is not finite.
     pub const fn check<N: Copy>(self, name: N, value: f64) -> Result<f64, ParamError<N>> {
         match self {
             Self::Positive => positive(name, value),
@@ -73,8 +73,8 @@ impl Bound {
     }
 }
 
-/// Declares parameters beside what they belong to, each a `&'static` [`Parameter`]; the doc comment of one is its meaning, without a
-/// full stop.
+/// Declares parameters, each a `&'static` [`Parameter`], beside the settings they describe; the doc comment of one is its meaning,
+/// without a full stop.
 ///
 /// ```
 /// use servobench_config::{Kind::Plain, positive, quantities::RESISTANCE};
@@ -112,7 +112,7 @@ macro_rules! parameters {
                 };
             )+
 
-            /// Every one of them.
+            /// Every parameter.
             pub const ALL: &'static [&'static $crate::Parameter] = &[$(Self::$parameter),+];
         }
     };

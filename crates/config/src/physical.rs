@@ -1,26 +1,26 @@
-//! What parameters measure: the dimensions that each accepts, and how messages call them.
+//! Quantities of parameters: the dimensions that each accepts, and their names in messages.
 use crate::dimension::Dimension;
 use servobench_base::Coordinate;
 
-/// A physical quantity as parameters accept it.
+/// A physical quantity that parameters accept.
 #[derive(Debug, PartialEq)]
 pub struct Physical {
-    /// With its article: "a stiffness".
+    /// Name with its article: "a stiffness".
     pub name: &'static str,
-    /// Unit that a proposal uses.
+    /// Unit used in proposals.
     pub unit: &'static str,
-    /// Accepted dimensions, and what one SI unit of each is in the unit that the parameter means.
+    /// Accepted dimensions, each with the value of its SI unit in the unit of the parameter.
     pub accepts: &'static [(Dimension, f64)],
 }
 
-/// What a parameter measures.
+/// Quantity of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
-    /// One thing, whatever the axis.
+    /// The same quantity for every axis.
     Plain(&'static Physical),
-    /// In the axis coordinate: linear or rotary as the axis is.
+    /// In the axis coordinate: linear or rotary like the axis.
     Axis(&'static Counterparts),
-    /// In the motor coordinate: linear or rotary as the motor is.
+    /// In the motor coordinate: linear or rotary like the motor.
     Motor(&'static Counterparts),
 }
 
@@ -34,7 +34,7 @@ pub struct Counterparts {
 }
 
 impl Kind {
-    /// What the parameter measures on this axis; both when that is not known.
+    /// The quantity of the parameter on this axis; both if the coordinate is unknown.
     pub fn candidates(
         self,
         axis: Option<Coordinate>,

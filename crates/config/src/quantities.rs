@@ -1,4 +1,4 @@
-//! The physical quantities that parameters measure.
+//! The physical quantities of parameters.
 use crate::dimension::Dimension as D;
 use crate::physical::{Counterparts, Physical};
 use core::f64::consts::{SQRT_2, TAU};
@@ -15,7 +15,7 @@ const WATT: D = D::NEWTON_METRE.times(SECOND, -1);
 const PER_SECOND: D = D::ONE.times(SECOND, -1);
 const VOLT_PEAK: D = D::VOLT.times(D::AMPLITUDE, 1);
 const AMPERE_PEAK: D = D::AMPERE.times(D::AMPLITUDE, 1);
-/// Where engineers leave out "/rad" it is understood.
+/// Accepted without "/rad" too, as engineers often omit it.
 const STIFFNESS_R: &[(D, f64)] = &[(D::NEWTON_METRE.times(D::RADIAN, -1), 1.0), (D::NEWTON_METRE, 1.0)];
 const VISCOUS_R: &[(D, f64)] =
     &[(D::NEWTON_METRE.times(SECOND, 1).times(D::RADIAN, -1), 1.0), (D::NEWTON_METRE.times(SECOND, 1), 1.0)];
@@ -47,13 +47,13 @@ pub static LEAD: Physical =
     physical("a lead (length per revolution)", "mm", &[(D::METRE, 1.0), (D::METRE.times(D::RADIAN, -1), TAU)]);
 /// Volts.
 pub static VOLTAGE: Physical = physical("a voltage", "V", &[(D::VOLT, 1.0)]);
-/// Of a phase: its amplitude.
+/// Amplitude of a phase voltage.
 pub static VOLTAGE_AMPLITUDE: Physical = physical("a voltage", "V", &[(D::VOLT, 1.0), (VOLT_PEAK, 1.0)]);
-/// Its amplitude.
+/// Amplitude of a current.
 pub static CURRENT: Physical = physical("a current (Arms or Apk)", "Arms", &[(AMPERE_PEAK, 1.0)]);
-/// Its effective value.
+/// Effective value of a current.
 pub static CURRENT_RMS: Physical = physical("a current (Arms or Apk)", "Arms", &[(AMPERE_PEAK, 1.0 / SQRT_2)]);
-/// At an instant.
+/// Instantaneous current of a phase.
 pub static CURRENT_OF_A_PHASE: Physical = physical("a current (A)", "A", &[(D::AMPERE, 1.0), (AMPERE_PEAK, 1.0)]);
 /// Effective value of a noise.
 pub static CURRENT_NOISE: Physical =
@@ -106,10 +106,10 @@ pub static TEMPERATURE: Physical = physical("a temperature (degC)", "degC", &[(D
 pub static THERMAL_RESISTANCE: Physical = physical("a thermal resistance", "K/W", &[(D::KELVIN.times(WATT, -1), 1.0)]);
 /// Joules per kelvin.
 pub static HEAT_CAPACITY: Physical = physical("a heat capacity", "J/K", &[(D::NEWTON_METRE.times(D::KELVIN, -1), 1.0)]);
-/// A part per kelvin.
+/// A relative change per kelvin.
 pub static PER_KELVIN: Physical =
     physical("a temperature coefficient (1/K)", "1/K", &[(D::ONE.times(D::KELVIN, -1), 1.0)]);
-/// Angle of something that repeats.
+/// Angle of a periodic quantity.
 pub static PHASE: Physical = physical("an angle", "deg", &[(D::RADIAN, 1.0)]);
 /// Velocity.
 pub static VELOCITY: Counterparts = Counterparts {
@@ -167,7 +167,7 @@ pub static SOURCE_GAIN: Counterparts = Counterparts {
     rotary: physical("a torque per voltage", "Nm/V", &[(D::NEWTON_METRE.times(D::VOLT, -1), 1.0)]),
 };
 
-/// Everything that has a name here, to name what a user wrote.
+/// All quantities with a name, to name that of a user's value.
 pub static NAMED: [&Physical; 41] = [
     &POSITION.linear,
     &POSITION.rotary,
