@@ -1,6 +1,6 @@
-//! Whether something moves along a line or turns.
+//! Linear and rotary coordinates.
 
-/// Whether a coordinate is a length or an angle, and with it what an effort is.
+/// Kind of a coordinate, a length or an angle, which also determines the unit of an effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coordinate {
     /// m, N, kg.

@@ -1,7 +1,7 @@
-//! How a move ends.
+//! The end of a move.
 
 use servobench_base::Stateful;
-/// How a move ends, which says whether the axis is to arrive at its target.
+/// The end of a move, which determines if the axis should arrive at its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Ending {

@@ -10,8 +10,8 @@ use crate::state::Stateful;
 
 use crate::sine::sincos;
 
-/// Electrical angle of the rotor (rad): pole pairs × mechanical angle. A type of its own, because mixing the two
-/// is the classic error that dimensions cannot catch.
+/// Electrical angle of the rotor (rad): pole pairs × mechanical angle. A separate type, because mixing the two is the classic error
+/// that dimensions cannot catch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ElectricalAngle(pub f64);
 
@@ -22,7 +22,7 @@ impl ElectricalAngle {
         Self(pole_pairs * theta_m)
     }
 
-    /// Ahead by `angle` (rad, electrical).
+    /// The angle advanced by `angle` (rad, electrical).
     #[must_use]
     pub fn ahead(self, angle: f64) -> Self {
         Self(self.0 + angle)
@@ -46,7 +46,7 @@ pub struct Rotation {
     pub cos: f64,
 }
 
-/// An electrical angle with its rotation, for others who need that of the very same angle: a sine costs more than a look.
+/// An electrical angle with its rotation, for reuse at exactly the same angle: a sine costs more than a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct KnownRotation {
     angle: ElectricalAngle,
@@ -54,21 +54,21 @@ pub struct KnownRotation {
 }
 
 impl KnownRotation {
-    /// That of `angle`.
+    /// The angle `angle` with its rotation.
     #[inline(always)]
     #[must_use]
     pub fn of(angle: ElectricalAngle) -> Self {
         Self { angle, rotation: angle.rotation() }
     }
 
-    /// It.
+    /// The rotation.
     #[inline]
     #[must_use]
     pub const fn rotation(self) -> Rotation {
         self.rotation
     }
 
-    /// The rotation at `angle`, whatever that is.
+    /// The rotation at any `angle`, reused if the angle is equal.
     #[inline]
     #[must_use]
     pub fn at(self, angle: ElectricalAngle) -> Rotation {
@@ -83,7 +83,7 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// Further by `angle` (rad, electrical); cheapest for angles below π/4, which need no range reduction.
+    /// The rotation advanced by `angle` (rad, electrical); cheapest for angles below π/4, which need no range reduction.
     #[inline(always)]
     #[must_use]
     pub fn ahead(self, angle: f64) -> Self {
@@ -111,7 +111,7 @@ pub struct AlphaBeta {
 }
 
 impl Dq {
-    /// To the stator frame, the rotor being at `rotor`.
+    /// Transforms to the stator frame, with the rotor at `rotor`.
     #[inline]
     #[must_use]
     pub fn to_alpha_beta(self, rotor: Rotation) -> AlphaBeta {
@@ -128,7 +128,7 @@ impl Dq {
 }
 
 impl AlphaBeta {
-    /// To the rotor frame, the rotor being at `rotor`.
+    /// Transforms to the rotor frame, with the rotor at `rotor`.
     #[inline]
     #[must_use]
     pub fn to_dq(self, rotor: Rotation) -> Dq {
@@ -150,7 +150,7 @@ mod tests {
         assert!((dq.d - 2.0).abs() < 1e-15 * 4.0 && (dq.q + 3.0).abs() < 1e-15 * 4.0, "{dq:?}");
     }
 
-    /// To the bit, −0 and what is no number included.
+    /// To the bit, including −0 and NaN.
     #[test]
     fn a_known_rotation_is_that_of_its_angle_alone() {
         for known in [0.0, -0.0, 0.3, 1e5, f64::NAN].map(ElectricalAngle) {
@@ -169,7 +169,7 @@ mod tests {
         for (first, second) in [(0.3, 0.1), (-2.0, 3.0), (100.0, -0.7)] {
             let (turned, at) =
                 (ElectricalAngle(first).rotation().ahead(second), ElectricalAngle(first + second).rotation());
-            // A handful of roundings of numbers of at most one, and one of the sum of the angles.
+            // A few roundings of numbers up to one, and one of the sum of the angles.
             assert!((turned.sin - at.sin).abs() < 2e-14 && (turned.cos - at.cos).abs() < 2e-14, "{turned:?} {at:?}");
         }
     }

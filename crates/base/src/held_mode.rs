@@ -1,8 +1,8 @@
-//! A mode in which a load follows a motor that is held to its position.
+//! A mode of a load behind a motor that is held in position.
 
 use crate::state::Stateful;
-/// A mode in which a load follows a motor that is held to its position: it is at Σ `weight`·z of all modes, with
-/// z″ + `decay`·z′ + ω²·(z − y − `lead`·y′) = 0 where the motor is at y (axis coordinate).
+/// A mode of a load behind a motor that is held in position: the load is at Σ `weight`·z over all modes, with
+/// z″ + `decay`·z′ + ω²·(z − y − `lead`·y′) = 0 for the motor position y (axis coordinate).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct HeldMode {
     /// Share of the motor's position; those of all modes add up to 1.
@@ -11,6 +11,6 @@ pub struct HeldMode {
     pub omega: f64,
     /// 2·ζ·ω (1/s).
     pub decay: f64,
-    /// Damping of the coupling behind the motor by its stiffness (s).
+    /// Damping of the coupling to the motor divided by its stiffness (s).
     pub lead: f64,
 }

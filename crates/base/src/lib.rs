@@ -1,11 +1,11 @@
-//! What every other crate speaks: time as integers, frames, set-points, parameter errors.
+//! Common types of all crates: time as integers, frames, set-points, parameter errors.
 //!
-//! `no_std`; depends on nothing of servobench. Plain `f64` in SI, the unit in the doc of every item.
+//! `no_std`; depends on no runtime crate of servobench. Plain `f64` in SI, with the unit in the documentation of every item.
 #![cfg_attr(not(test), no_std)]
 
 #[cfg(feature = "std")]
 extern crate std;
-// So that the derived code names this crate as every other crate does.
+// The derived code can then name this crate as in every other crate.
 extern crate self as servobench_base;
 
 mod coordinate;

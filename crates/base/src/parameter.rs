@@ -1,4 +1,4 @@
-//! Parameters are checked where they enter; the error names the field, the value and the bound.
+//! Checks of parameters where they enter; the error names the field, the value and the bound.
 use servobench_base::Stateful;
 use thiserror::Error;
 
@@ -6,15 +6,15 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 #[error("`{name}` must be {bound}, got {value}")]
 pub struct ParamError<N = &'static str> {
-    /// Which parameter: a name, or the identifier of its owner.
+    /// The parameter: a name, or the identifier of its owner.
     pub name: N,
     /// Rejected value (SI).
     pub value: f64,
-    /// What the value must be, in words: "finite and positive".
+    /// The bound in words: "finite and positive".
     pub bound: &'static str,
 }
 
-/// Returns `value` when it is finite and above zero.
+/// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
@@ -26,7 +26,7 @@ pub const fn positive<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>
     }
 }
 
-/// Returns `value` when it is finite and not below zero.
+/// Returns `value` if it is finite and not below zero.
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
@@ -38,7 +38,7 @@ pub const fn non_negative<N: Copy>(name: N, value: f64) -> Result<f64, ParamErro
     }
 }
 
-/// Returns `value` when it is finite.
+/// Returns `value` if it is finite.
 ///
 /// # Errors
 /// [`ParamError`] otherwise.
@@ -46,7 +46,7 @@ pub const fn finite<N: Copy>(name: N, value: f64) -> Result<f64, ParamError<N>> 
     if value.is_finite() { Ok(value) } else { Err(ParamError { name, value, bound: "finite" }) }
 }
 
-/// Returns `value` when it is above zero; infinity means that there is no limit.
+/// Returns `value` if it is above zero; infinity stands for no limit.
 ///
 /// # Errors
 /// [`ParamError`] otherwise.

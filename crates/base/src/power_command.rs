@@ -1,8 +1,8 @@
-//! What a drive tells its power stage.
+//! Commands of a drive to its power stage.
 use crate::frames::AlphaBeta;
 use crate::state::Stateful;
 
-/// What goes from the drive to the power stage, held from one tick to the next.
+/// Command of the drive to the power stage, held from one tick to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum PowerCommand {
     /// Stator voltage (V, peak).

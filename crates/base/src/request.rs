@@ -1,8 +1,8 @@
-//! The request of the task: what moves, tables and function blocks want of an axis at an instant.
+//! The request of the task to an axis at an instant, from moves, tables and function blocks.
 use crate::setpoint::Setpoint;
 use crate::state::Stateful;
 
-/// Request of the task to the axis at an instant, never what a drive, the loop of a master or an interpolation makes of it.
+/// Request of the task to the axis at an instant, not its version after a drive, a master's loop or an interpolation.
 ///
 /// Positions are in the coordinate of the machine and count on over the turns of a modulo axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
@@ -10,19 +10,19 @@ pub enum Request {
     /// Nothing: the drive is not enabled, homes or has a fault.
     #[default]
     Nothing,
-    /// To stand still, wherever that is: before the first motion, and after a stop.
+    /// To stand still at any position: before the first motion, and after a stop.
     Stand,
     /// To rest at a position (m or rad).
     Rest(f64),
     /// To follow a set-point.
     Follow(Setpoint),
-    /// To move at a velocity (m/s or rad/s), wherever that leads.
+    /// To move at a velocity (m/s or rad/s), without a target position.
     Velocity(f64),
-    /// To give an effort (N·m or N, motor coordinate).
+    /// To exert an effort (N·m or N, motor coordinate).
     Effort(f64),
 }
 
-/// The kinds of [`Request`], as recordings name them.
+/// The kinds of [`Request`], with their names in recordings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum RequestKind {
     /// [`Request::Nothing`].

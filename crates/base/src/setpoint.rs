@@ -24,14 +24,14 @@ impl Setpoint {
         Self { x, v: 0.0, a: 0.0, j: 0.0, s: 0.0 }
     }
 
-    /// All of it `factor` times as large.
+    /// All components multiplied by `factor`.
     #[must_use]
     pub const fn scaled(self, factor: f64) -> Self {
         let Self { x, v, a, j, s } = self;
         Self { x: factor * x, v: factor * v, a: factor * a, j: factor * j, s: factor * s }
     }
 
-    /// The same place passed at `pace` times the speed: the k-th derivative is `pace`^k times as large.
+    /// The same position passed at `pace` times the speed: the k-th derivative is `pace`^k times as large.
     #[must_use]
     pub const fn at_pace(self, pace: f64) -> Self {
         let Self { x, v, a, j, s } = self;
@@ -39,7 +39,7 @@ impl Setpoint {
         Self { x, v: pace * v, a: two * a, j: three * j, s: two * two * s }
     }
 
-    /// The set-point `t` seconds later while the snap stays what it is: exact, not an approximation.
+    /// The set-point `t` seconds later with constant snap: exact, not an approximation.
     #[inline(always)]
     #[must_use]
     pub fn after(self, t: f64) -> Self {

@@ -1,19 +1,19 @@
-//! How much something that was said matters.
+//! Severity of a message.
 
-/// How much something that was said matters.
+/// Severity of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Severity {
-    /// It informs.
+    /// Information.
     Info,
-    /// Something may be wrong.
+    /// A possible mistake.
     Warning,
-    /// Something is wrong.
+    /// A mistake.
     Error,
 }
 
 impl Severity {
-    /// The word for it: `info`, `warning`, `error`.
+    /// Its name: `info`, `warning`, `error`.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {

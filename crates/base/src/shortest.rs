@@ -1,7 +1,7 @@
-//! Numbers as texts that read back.
+//! Numbers as texts that parse to the same number.
 use core::fmt;
 
-/// A number as the shortest text that is read as this very number, with an exponent where it would be long: `0.30000000000000004`, `5e20`.
+/// A number as the shortest text that parses to it exactly, with an exponent where it would be long: `0.30000000000000004`, `5e20`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shortest(pub f64);
 

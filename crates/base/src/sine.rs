@@ -1,7 +1,7 @@
-//! Sine and cosine of the angles that a motor goes through, inlined into the loop.
+//! Sine and cosine for the angles of a motor, inlined into the loop.
 //!
-//! A library's function is a call, before which a processor with wide registers has to empty them. Up to a million radians these are the
-//! same operations as `libm`'s, one for one, so that the bits are the same; whatever else there is, is left to it.
+//! A library function is a call, before which a processor with wide registers has to empty them. Up to a million radians these are the
+//! same operations as in `libm`, one for one, for identical bits; all other arguments are passed to `libm`.
 //!
 //! Source: fdlibm (Sun Microsystems, 1993), `k_sin.c`, `k_cos.c`, `e_rem_pio2.c`: the coefficients of the polynomials, π/2 in two parts,
 //! the bounds of the cases.
@@ -9,11 +9,11 @@
 
 use core::f64::consts::FRAC_2_PI;
 
-/// High word of π/4: up to there nothing is taken off.
+/// High word of π/4: up to there no reduction is needed.
 const EIGHTH: u32 = 0x3fe9_21fb;
-/// High word of 2⁻²⁷·√2: below it the sine is the angle.
+/// High word of 2⁻²⁷·√2: below it the sine equals the angle.
 const TINY: u32 = 0x3e46_a09e;
-/// High words between which as many quarters of a turn are taken off as there are: 9π/4 and 2²⁰·π/2.
+/// High words of 9π/4 and 2²⁰·π/2, between which any number of quarter turns is subtracted.
 const MANY: core::ops::Range<u32> = 0x401c_463c..0x4139_21fb;
 
 /// Sine and cosine of `x` (rad).
@@ -46,7 +46,7 @@ const C4: f64 = -2.755_731_435_139_066_330_35e-7;
 const C5: f64 = 2.087_572_321_298_174_827_90e-9;
 const C6: f64 = -1.135_964_755_778_819_482_65e-11;
 
-/// `x³`, and the polynomial behind its coefficient.
+/// `x³`, and the polynomial for the coefficients after the first.
 #[inline(always)]
 fn sine_terms(x: f64) -> (f64, f64) {
     let z = x * x;
@@ -63,16 +63,16 @@ fn cosine(x: f64, tail: f64) -> f64 {
     one + (((1.0 - one) - half) + (z * terms - x * tail))
 }
 
-/// Quarters of a turn, and the angle beyond them in two parts; `None` where three parts of π/2 do not tell it.
+/// Number of quarter turns, and the remaining angle in two parts; `None` where three parts of π/2 do not suffice.
 #[inline(always)]
 fn reduced(x: f64, high: u32) -> Option<(i32, f64, f64)> {
-    /// Numbers from there on have no fraction: a sum with it is rounded to a whole number.
+    /// Adding this number rounds to a whole number: numbers from here on have no fraction.
     const WHOLE: f64 = 1.5 / f64::EPSILON;
     const QUARTER: f64 = 1.570_796_326_734_125_614_17;
     const QUARTER_TAIL: f64 = 6.077_100_506_506_192_249_32e-11;
     const SECOND: f64 = 6.077_100_506_303_965_976_60e-11;
     const SECOND_TAIL: f64 = 2.022_266_248_795_950_631_54e-21;
-    /// Bits that may cancel before the second part is taken from the tail, and before a third one would be needed.
+    /// Bits that may cancel before the second part is subtracted from the tail, and before a third one would be needed.
     const LOST: [u32; 2] = [16, 49];
     let count = x * FRAC_2_PI + WHOLE - WHOLE;
     let exponent = |y: f64| (y.to_bits() >> 52) as u32 & 0x7ff;
@@ -81,7 +81,7 @@ fn reduced(x: f64, high: u32) -> Option<(i32, f64, f64)> {
     let mut first = rest - tail;
     let mut is_told = MANY.contains(&high);
     if cancels(first, LOST[0]) {
-        // At whole turns, where axes like to stop.
+        // At whole turns, where axes often stop.
         let before = rest;
         let second = count * SECOND;
         rest = before - second;
@@ -94,7 +94,7 @@ fn reduced(x: f64, high: u32) -> Option<(i32, f64, f64)> {
     is_told.then_some((quarters, first, (rest - first) - tail))
 }
 
-/// Sine and cosine so many quarters of a turn further.
+/// Sine and cosine advanced by `quarters` quarter turns.
 #[inline(always)]
 fn turned(quarters: i32, sine: f64, cosine: f64) -> (f64, f64) {
     let (sine, cosine) = if quarters & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
@@ -112,7 +112,7 @@ mod tests {
         sine.to_bits() == of_sine.to_bits() && cosine.to_bits() == of_cosine.to_bits()
     }
 
-    /// Numbers of a generator (Steele & Vigna, `SplitMix64`): all of one size, then of every size.
+    /// Numbers of a generator (Steele & Vigna, `SplitMix64`): of one magnitude, then of every magnitude.
     #[test]
     fn the_bits_are_those_of_the_library() {
         let mut state = 19_u64;
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// At multiples of an eighth of a turn and a few numbers on either side of them, and where one case ends and another begins.
+    /// At multiples of an eighth of a turn and a few numbers on either side, and at the boundaries between cases.
     #[test]
     fn the_bits_are_those_of_the_library_where_cases_meet() {
         let eighths = (-80..=80).chain([1_000, 65_536, 1 << 20, (1 << 22) + 2]).map(|k| f64::from(k) * FRAC_PI_4);

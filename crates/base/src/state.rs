@@ -1,17 +1,17 @@
-//! States as numbers: everything that a part of the loop carries from tick to tick, saved, restored and named.
+//! States as numbers: all values that a part of the loop carries from tick to tick, saved, restored and named.
 //!
-//! A state is declared once. `#[derive(Stateful)]` saves every field of it, so that a new field cannot be forgotten, and a field that is
-//! not to be saved says why:
+//! A state is declared once. `#[derive(Stateful)]` saves every field, so that a new field cannot be forgotten; any other treatment of a
+//! field is marked:
 //!
-//! | mark | of a field |
+//! | mark | field |
 //! |---|---|
 //! | `#[state(constant)]` | a parameter: equal in all states of a run |
-//! | `#[state(derived)]` | computed from the rest of the state; saved, but moving it alone means nothing |
-//! | `#[state(recomputed)]` | not saved: computed from the rest after it was restored, or in each tick before it is read |
-//! | `#[state(fixed)]` | an option or a list with parameters in it, whose form they decide |
+//! | `#[state(derived)]` | computed from the rest of the state; saved, but changing it alone has no meaning |
+//! | `#[state(recomputed)]` | not saved: computed from the rest after a restore, or in each tick before it is read |
+//! | `#[state(fixed)]` | an option or a list that contains parameters, which determine its form |
 //!
-//! A type without parameters in it is a [`Value`], which an option or a list can make anew. A type that has fields with parameters in them, and
-//! an enum with parameters in it, is itself marked `#[state(fixed)]`.
+//! A type without parameters is a [`Value`], which an option or a list can create anew. A type whose fields contain parameters, or an
+//! enum that contains parameters, is itself marked `#[state(fixed)]`.
 //!
 //! ```
 //! use servobench_base::state::{Stateful, restore, words};
@@ -32,7 +32,7 @@
 //! assert_eq!(other, integrator);
 //! ```
 //!
-//! Restoring is in place: parameters, tables and plans stay where they are.
+//! Restoring is in place: parameters, tables and plans are not moved.
 #[cfg(feature = "std")]
 mod form;
 #[cfg(feature = "std")]
@@ -44,28 +44,28 @@ pub use form::{Form, Number};
 pub use servobench_state_derive::Stateful;
 use thiserror::Error;
 
-/// All that a part of the loop carries from tick to tick.
+/// All values that a part of the loop carries from tick to tick.
 pub trait Stateful {
-    /// Writes every number of it, in an order that its parameters decide.
+    /// Writes all numbers, in an order that depends only on the parameters.
     fn save(&self, to: &mut dyn Writer);
 
-    /// Takes the numbers that [`save`](Self::save) of a state with the same parameters has written.
+    /// Reads the numbers written by [`save`](Self::save) of a state with the same parameters.
     ///
     /// # Errors
-    /// [`Damaged`]; then a part of the state may be restored, and it must not be used but to restore another.
+    /// [`Damaged`]; the state may then be partly restored, and must not be used except to restore another.
     fn restore(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged>;
 }
 
-/// A state without parameters: its numbers are all of it.
+/// A state without parameters: its numbers define it completely.
 pub trait Value: Stateful + Sized {
-    /// The state that [`save`](Stateful::save) has written.
+    /// The state written by [`save`](Stateful::save).
     ///
     /// # Errors
     /// [`Damaged`].
     fn restored(from: &mut Reader<'_>) -> Result<Self, Damaged>;
 }
 
-/// Implements [`Stateful`] and [`Value`] of a type by another value: what it is saved as, and what makes it of that, or nothing.
+/// Implements [`Stateful`] and [`Value`] for a type by conversion to and from another value; the conversion back may fail.
 ///
 /// ```
 /// #[derive(Debug, PartialEq)]
@@ -97,7 +97,7 @@ macro_rules! saved_as {
     };
 }
 
-/// An option or a list whose form the parameters decide.
+/// An option or a list whose form depends on the parameters.
 pub trait FixedForm {
     /// See [`Stateful::save`].
     fn save_fixed(&self, to: &mut dyn Writer);
@@ -105,16 +105,16 @@ pub trait FixedForm {
     /// See [`Stateful::restore`].
     ///
     /// # Errors
-    /// [`Damaged`], also where the form is another.
+    /// [`Damaged`], also if the form differs.
     fn restore_fixed(&mut self, from: &mut Reader<'_>) -> Result<(), Damaged>;
 }
 
-/// A name that numbers of a state belong to.
+/// A name for a group of numbers of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part {
     /// Name of the field.
     pub name: &'static str,
-    /// True where it is computed from the rest.
+    /// True if it is computed from the rest.
     pub is_derived: bool,
 }
 
@@ -125,7 +125,7 @@ impl Part {
         Self { name, is_derived: false }
     }
 
-    /// A field that is computed from the rest.
+    /// A field computed from the rest.
     #[must_use]
     pub const fn derived(name: &'static str) -> Self {
         Self { name, is_derived: true }
@@ -134,20 +134,20 @@ impl Part {
 
 /// Receives the numbers of a state.
 pub trait Writer {
-    /// A number that varies continuously.
+    /// Writes a number that varies continuously.
     fn number(&mut self, value: f64);
 
-    /// A count, a choice or a flag.
+    /// Writes a count, a choice or a flag.
     fn word(&mut self, value: u64);
 
-    /// Numbers up to [`leave`](Self::leave) belong to this part.
+    /// Begins a part: the numbers up to [`leave`](Self::leave) belong to it.
     fn enter(&mut self, part: Part);
 
-    /// The part ends.
+    /// Ends the part.
     fn leave(&mut self);
 }
 
-/// A writer that gives each number to `take` as a word, numbers by their bits.
+/// A writer that passes each number to `take` as a word, floating-point numbers by their bits.
 pub const fn words<F: FnMut(u64)>(take: F) -> Words<F> {
     Words(take)
 }
@@ -170,7 +170,7 @@ impl<F: FnMut(u64)> Writer for Words<F> {
     fn leave(&mut self) {}
 }
 
-/// The words of a saved state, one after the other.
+/// The words of a saved state, in sequence.
 #[derive(Debug, Clone)]
 pub struct Reader<'a> {
     words: &'a [u64],
@@ -178,19 +178,19 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// From the first of `words` on.
+    /// Reads `words` from the first on.
     #[must_use]
     pub const fn new(words: &'a [u64]) -> Self {
         Self { words, is_moved: false }
     }
 
-    /// From the first of `words` on, in which numbers were changed after they had been saved.
+    /// Reads `words` from the first on, some of which were changed after saving.
     #[must_use]
     pub const fn moved(words: &'a [u64]) -> Self {
         Self { words, is_moved: true }
     }
 
-    /// True where numbers were changed: a state that would not do it in its next step computes again what it derives from them.
+    /// True if numbers were changed: a state then recomputes derived values that its next step would not recompute.
     #[must_use]
     pub const fn is_moved(&self) -> bool {
         self.is_moved
@@ -214,19 +214,19 @@ impl<'a> Reader<'a> {
         self.word().map(f64::from_bits)
     }
 
-    /// A number of things each of which has at least one word.
+    /// The length of a list whose items have at least one word each.
     ///
     /// # Errors
-    /// [`Damaged`] where there are fewer words than that.
+    /// [`Damaged`] if fewer words are left.
     pub fn length(&mut self) -> Result<usize, Damaged> {
         let length = self.word()?;
         usize::try_from(length).ok().filter(|length| *length <= self.words.len()).ok_or(Damaged)
     }
 
-    /// The end.
+    /// Checks that no words are left.
     ///
     /// # Errors
-    /// [`Damaged`] where there are further words.
+    /// [`Damaged`] if there are further words.
     pub const fn end(&self) -> Result<(), Damaged> {
         if self.words.is_empty() { Ok(()) } else { Err(Damaged) }
     }
@@ -235,14 +235,14 @@ impl<'a> Reader<'a> {
 /// Restores `state` from all of `words`.
 ///
 /// # Errors
-/// [`Damaged`] where they are not of a state with the same parameters; then `state` must not be used but to restore another.
+/// [`Damaged`] if they are not of a state with the same parameters; `state` must then not be used except to restore another.
 pub fn restore(state: &mut (impl Stateful + ?Sized), words: &[u64]) -> Result<(), Damaged> {
     let mut from = Reader::new(words);
     state.restore(&mut from)?;
     from.end()
 }
 
-/// Numbers are not a saved state of what they are to restore.
+/// The words are not a saved state of the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("not a state of this loop: it was saved with other parameters, or it is damaged")]
 pub struct Damaged;

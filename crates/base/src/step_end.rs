@@ -1,13 +1,13 @@
-//! How far a step of a simulation has come.
+//! Progress of a simulation step.
 
 use crate::state::Stateful;
-/// How far a step of a simulation has come: that of an FMU, or of any other block of a co-simulation.
+/// Progress of a simulation step of an FMU or of any other block of a co-simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum StepEnd {
-    /// To its end.
+    /// Completed.
     Done,
-    /// To this time (s) before its end: an event was met, or the step returned early. The rest is to be asked for.
+    /// Completed up to this time (s): an event occurred, or the step returned early. The rest must be requested.
     Until(f64),
-    /// To this time (s), where the block wants the simulation to end.
+    /// Completed up to this time (s), at which the block requests the end of the simulation.
     Terminated(f64),
 }

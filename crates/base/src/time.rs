@@ -14,17 +14,17 @@ pub struct Tick(pub u64);
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
 pub struct Rate(NonZeroU32);
 
-/// How many base ticks one period of a task lasts; at least 1.
+/// Number of base ticks in one period of a task, at least 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Divider(NonZeroU32);
 
-/// Counts down to a task's next turn; the state that goes with its [`Divider`]. The first turn is at once.
+/// Countdown to a task's next turn; the state that accompanies its [`Divider`]. The first turn is at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Countdown {
     ticks_left: u32,
 }
 
-/// Why a rate or a time does not fit the grid of base ticks.
+/// Reason why a rate or a time does not fit the grid of base ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum RateError {
     /// A rate must be a whole number of hertz from 1 to 4 294 967 295.
@@ -55,7 +55,7 @@ pub enum RateError {
     },
 }
 
-/// Roundings that a time may have gone through before [`Rate::tick_at`] sees it, in units of its last place.
+/// Number of roundings in a time that [`Rate::tick_at`] tolerates, in units of its last place.
 const ROUNDINGS: f64 = 8.0;
 
 impl Rate {
@@ -68,7 +68,7 @@ impl Rate {
         }
     }
 
-    /// The rate of a task that turns every `every` ticks of this one; rounded down where it is no whole number of hertz.
+    /// The rate of a task that turns every `every` ticks of this one; rounded down to whole hertz.
     #[must_use]
     pub const fn of_task(self, every: Divider) -> Self {
         match NonZeroU32::new(self.0.get() / every.0.get()) {
@@ -107,8 +107,8 @@ impl Rate {
         tick.0 as f64 / f64::from(self.0.get())
     }
 
-    /// First tick at or after `seconds`; negative times count as tick 0. A time counts as the tick before it when it is
-    /// later by rounding only: by at most 1e-9 of a tick, or by eight units in the last place of a long time.
+    /// First tick at or after `seconds`; negative times count as tick 0. A time that is later than a tick only by rounding (by at most 1e-9
+    /// of a tick, or by eight units in the last place of a long time) counts as that tick.
     #[must_use]
     pub fn tick_at(self, seconds: f64) -> Tick {
         let ticks = seconds * f64::from(self.0.get());
@@ -117,10 +117,10 @@ impl Rate {
         Tick(libm::ceil(ticks - rounding) as u64)
     }
 
-    /// How many ticks of this base rate one period of `task` lasts.
+    /// Number of ticks of this base rate in one period of `task`.
     ///
     /// # Errors
-    /// [`RateError::TooFast`]; [`RateError::NotDividing`] names the nearest rates that fit.
+    /// [`RateError::TooFast`]; [`RateError::NotDividing`] with the nearest rates that fit.
     pub fn divider(self, task: Rate) -> Result<Divider, RateError> {
         let (base, wanted) = (self.hertz(), task.hertz());
         if wanted > base {
@@ -152,7 +152,7 @@ impl Divider {
         self.0.get()
     }
 
-    /// Whether each turn of this task coincides with one of `faster`.
+    /// True if each turn of this task coincides with one of `faster`.
     #[must_use]
     pub const fn is_multiple_of(self, faster: Self) -> bool {
         self.0.get().is_multiple_of(faster.0.get())
@@ -160,7 +160,7 @@ impl Divider {
 }
 
 impl Countdown {
-    /// Counts this tick; whether it is the task's turn. To be called once per tick with the task's own divider.
+    /// Counts this tick; true if it is the task's turn. To be called once per tick with the task's own divider.
     #[inline]
     pub const fn is_due(&mut self, every: Divider) -> bool {
         let due = self.ticks_left == 0;
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(hz(1_000).tick_at(-1.0), Tick(0));
     }
 
-    /// An hour at 16 kHz holds 5.8e7 ticks: its rounding is 1e-8 of a tick, a hundredth of a tick is not.
+    /// An hour at 16 kHz has 5.8e7 ticks: its rounding is 1e-8 of a tick, far below a hundredth of a tick.
     #[test]
     fn tick_at_forgives_no_more_after_an_hour() {
         let hour = 3600.0_f64;

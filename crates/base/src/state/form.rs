@@ -1,4 +1,4 @@
-//! Numbers of a saved state: their names, and where they are among its words.
+//! Numbers of a saved state: their names, and their positions among its words.
 use super::{Part, Writer};
 use std::string::String;
 use std::vec::Vec;
@@ -6,15 +6,15 @@ use std::vec::Vec;
 /// A number that varies continuously.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Number {
-    /// Names of the parts that it belongs to, with dots between them.
+    /// Names of its parts, joined by dots.
     pub name: String,
-    /// Its word.
+    /// Index of its word.
     pub word: usize,
-    /// True where it is computed from the rest.
+    /// True if it is computed from the rest.
     pub is_derived: bool,
 }
 
-/// A writer that keeps the names of the numbers of a saved state.
+/// A writer that records the names of the numbers of a saved state.
 #[derive(Debug, Default)]
 pub struct Form {
     /// The numbers in their order.
@@ -24,7 +24,7 @@ pub struct Form {
 }
 
 impl Form {
-    /// The word of the first number `name`.
+    /// The index of the word of the first number `name`.
     #[must_use]
     pub fn word(&self, name: &str) -> Option<usize> {
         self.numbers.iter().find(|number| number.name == name).map(|number| number.word)

@@ -76,7 +76,7 @@ fn another_form_is_refused() {
     assert_eq!(restore(&mut 0_u8, &[256]), Err(Damaged));
 }
 
-/// Names of numbers, those in brackets are derived.
+/// Names of numbers; derived ones are in brackets.
 #[derive(Default)]
 struct Names {
     path: Vec<Part>,

@@ -1,18 +1,18 @@
-//! Texts of errors that were restored. They have to live as long as the program, as those do that are written in it.
+//! Texts of restored errors. They must live as long as the program, like those written in it.
 use super::Damaged;
 use std::boxed::Box;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-/// Most bytes of texts that are kept: errors have some hundred different ones.
+/// Largest total length of stored texts (bytes): errors have some hundred different ones.
 const MOST: usize = 1 << 16;
 
 static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
-/// The text `text`, kept once.
+/// The text `text`, stored once.
 ///
 /// # Errors
-/// [`Damaged`] where more is to be kept than errors can say.
+/// [`Damaged`] if the total exceeds any set of error texts.
 pub(super) fn kept(text: &str) -> Result<&'static str, Damaged> {
     let mut all = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(kept) = all.get(text) {

@@ -1,8 +1,8 @@
-//! States that are values: numbers, flags, and what is made of several states.
+//! States that are values: numbers, flags, and compositions of states.
 use super::{Damaged, FixedForm, Part, Reader, Stateful, Value, Writer};
 use core::convert::identity;
 
-/// Implements [`Stateful`] and [`Value`] of a type by what writes it and what reads it.
+/// Implements [`Stateful`] and [`Value`] for a type by a function that writes it and one that reads it.
 macro_rules! values {
     ($($type:ty: $save:expr, $restored:expr;)*) => {$(
         impl Stateful for $type {
@@ -171,7 +171,7 @@ impl<T: Stateful> FixedForm for [T] {
     }
 }
 
-/// A name or a bound in an error. Without the feature `std` a state with one is not restored.
+/// A name or a bound in an error. Without the feature `std`, a state that contains one cannot be restored.
 impl Stateful for &'static str {
     fn save(&self, to: &mut dyn Writer) {
         to.word(self.len() as u64);
