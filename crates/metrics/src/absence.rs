@@ -3,7 +3,7 @@ use crate::quantity::Quantity;
 use servobench_signals::{Presence, Signal, Unit};
 use thiserror::Error;
 
-/// Why a metric has no value. What is absent is never zero.
+/// Reasons why a metric has no value. An absent value is never zero.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Absence {
     /// The recording lacks a channel.
@@ -20,30 +20,30 @@ pub enum Absence {
         /// First instant at which it is not finite (s).
         time: f64,
     },
-    /// The values are finite, but what is made of them is not.
+    /// The values are finite, but a result computed from them is not.
     #[error("the values are too large to compute with")]
     Overflow,
-    /// The metric is about a move, and there is none.
+    /// The metric needs a move, and there is none.
     #[error("the program has no move")]
     NoMove,
-    /// No instant of the recording lies in the part that the metric is about.
+    /// The recording has no instant in the part that the metric covers.
     #[error("nothing was recorded {part}")]
     NothingRecorded {
         /// The part, in words.
         part: &'static str,
     },
-    /// The run or the pause is too short for a metric of what follows a profile.
+    /// The run or the pause is too short for a metric of the time after a profile.
     #[error(
         "the load is seen for {} at rest; this metric takes {}, two periods of its slowest mode and 20 rows",
         Quantity::new(*rest, "s"), Quantity::new(*needed, "s")
     )]
     RestTooShort {
-        /// How long the load is seen (s).
+        /// Duration of the recorded rest (s).
         rest: f64,
-        /// How long it must be (s).
+        /// Minimum duration (s).
         needed: f64,
     },
-    /// Rows that stand for many ticks are too far apart.
+    /// Rows, each for many ticks, are too far apart.
     #[error(
         "rows at {} are too few to measure: {} at least, or so few channels that every tick has memory for them",
         Quantity::new(*rate, "Hz"), Quantity::new(*needed, "Hz")
@@ -86,10 +86,10 @@ pub enum Absence {
         unit: String,
         /// Last instant at which the load was seen outside, after the profile (s).
         exit: f64,
-        /// How long after the profile the recording watched (s).
+        /// Recorded time after the profile (s).
         watched: f64,
     },
-    /// The last move ends in motion, or another took over: no target is the last.
+    /// The last move ends in motion, or another move took over: there is no last target.
     #[error("`{label}`, the last move, does not end at rest")]
     NoLastTarget {
         /// Label of the move.
@@ -131,7 +131,7 @@ pub enum Absence {
         /// Periods that are needed.
         needed: f64,
     },
-    /// The motion is no sum of decaying modes.
+    /// The motion is not a sum of decaying modes.
     #[error("decaying modes explain only {:.0} % of the motion after the profile", 100.0 * share)]
     NotModal {
         /// Share of the energy that the fitted modes explain, 0 to 1.
@@ -140,13 +140,13 @@ pub enum Absence {
     /// The load holds still where a mode would move it: friction, not vibration.
     #[error("the load sticks and slips instead of oscillating")]
     Sticks,
-    /// No drive that follows points has a buffer that could err.
+    /// The drive does not follow points, so that no buffer could fail.
     #[error("the drive follows no points of a trajectory")]
     NoPoints,
-    /// The metric is of a drive on a fieldbus.
+    /// The metric needs a drive on a fieldbus.
     #[error("no fieldbus tells what the drive limits")]
     NoBus,
-    /// The scenario makes nothing wrong on its bus.
+    /// The scenario orders no fault on its bus.
     #[error("no fault of the bus is ordered")]
     NoBusFault,
     /// No FMU beside the axis exchanges a continuous signal.
@@ -160,13 +160,13 @@ pub enum Absence {
         /// Periods that are needed.
         needed: f64,
     },
-    /// The motion swings, but no decaying mode could be fitted: what damps it depends on how far it swings.
+    /// The motion swings, but no decaying mode could be fitted: its damping depends on its amplitude.
     #[error("amplitude-dependent: no decaying mode could be fitted to the motion after the profile")]
     AmplitudeDependent,
-    /// Nothing oscillates where the scenario says that the mode is.
+    /// Nothing oscillates at the frequency that the scenario gives for the mode.
     #[error("no mode within {} % of {}", 100.0 * share, Quantity::new(*frequency, "Hz"))]
     NotThere {
-        /// Where it was searched (Hz).
+        /// Centre of the search (Hz).
         frequency: f64,
         /// Half width of the search, relative.
         share: f64,
@@ -174,7 +174,7 @@ pub enum Absence {
 }
 
 impl Absence {
-    /// Whether the axis just lacks what few axes have: nobody misses the metric who did not ask for it.
+    /// True if the axis only lacks equipment that few axes have, so that the absence needs no report unless the metric was requested.
     #[must_use]
     pub fn is_of_rare_equipment(&self) -> bool {
         match self {
@@ -188,7 +188,7 @@ impl Absence {
     }
 }
 
-/// What an axis must have for a signal that not every one has.
+/// Equipment that an axis must have for a signal, as the end of a message; empty for a signal of every axis.
 fn only_where(signal: Signal) -> &'static str {
     match (signal.presence(), signal) {
         (Presence::WithCurrentLoop, Signal::SaturationVoltage) => "; only a PMSM has a voltage",

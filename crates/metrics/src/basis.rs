@@ -1,4 +1,4 @@
-//! What vibration, settling and rest are measured over, at least: two periods of the slowest mode, and enough rows.
+//! Shortest basis of vibration, settling and rest: two periods of the slowest mode, and enough rows.
 use crate::absence::Absence;
 use crate::measure::Question;
 use crate::metric::{MetricSet, Metrics};
@@ -7,34 +7,34 @@ use servobench_base::Rate;
 use servobench_trace::Recording;
 use std::ops::Range;
 
-/// Periods of the slowest mode: one alone does not tell a mode from a drift.
+/// Periods of the slowest mode: a single one cannot be distinguished from a drift.
 const PERIODS: f64 = 2.0;
-/// Shortest basis (s): what a rigid axis leaves after its profile takes about so long to show.
+/// Shortest basis (s): about as long as the motion of a rigid axis after its profile takes to show.
 const SHORTEST: f64 = 20e-3;
 /// Fewest rows.
 const ROWS: u32 = 20;
 
 impl Question {
-    /// How long the load must be seen after a profile (s), with rows at `rate`, for a metric of vibration, of settling or of rest: two
+    /// Shortest recorded time after a profile (s), with rows at `rate`, for a metric of vibration, of settling or of rest: two
     /// periods of `mode`, or else of the lowest mode of the model, 20 ms, and 20 rows.
     #[must_use]
     pub fn basis(&self, rate: Rate) -> f64 {
         self.seen().max(f64::from(ROWS) * rate.period())
     }
 
-    /// The same, of any rows.
+    /// The same, whatever the rows.
     fn seen(&self) -> f64 {
         self.mode.or(self.lowest_mode).map_or(0.0, |mode| PERIODS / mode).max(SHORTEST)
     }
 
-    /// Lowest rate of rows (Hz) that are measured in place of every tick: 20 of them in the shortest basis.
+    /// Lowest rate (Hz) at which rows are measured in place of every tick: 20 of them in the shortest basis.
     #[must_use]
     pub fn coarsest_rate(&self) -> f64 {
         f64::from(ROWS) / self.seen()
     }
 }
 
-/// True where `rows` of `recording` are a basis.
+/// Checks that `rows` of `recording` are a basis.
 ///
 /// # Errors
 /// [`Absence::NothingRecorded`] without a row, [`Absence::RestTooShort`].
@@ -51,7 +51,7 @@ pub(crate) fn of(recording: &Recording, rows: &Range<usize>, question: &Question
     }
 }
 
-/// Takes back what was made of rows that stand for many ticks each and are too far apart.
+/// Withholds metrics of rows that stand for many ticks each and are too far apart.
 pub(crate) fn withhold(metrics: &mut Metrics, recording: &Recording, question: &Question) {
     let (rate, needed) = (recording.rate.hertz(), question.coarsest_rate());
     let is_thinned = question.base_rate.is_some_and(|base| base.hertz() > rate);

@@ -1,10 +1,10 @@
-//! How much of its limits a set-point uses. Analytic: from the plan, never by differencing samples.
+//! Peaks of a set-point relative to its limits. Analytic: from the plan, never by differencing samples.
 use crate::absence::Absence;
 use crate::metric::MetricSet;
 use crate::name::Name;
 use crate::span::Phase;
 
-/// What rounding may add to a limit, as a part of it: what generators promise.
+/// Relative excess over a limit that rounding may cause: the guarantee of the generators.
 const ROUNDING: f64 = 1e-9;
 
 const DERIVATIVES: [(Name, &str); 4] = [

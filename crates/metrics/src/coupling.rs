@@ -4,7 +4,7 @@ use crate::metric::MetricSet;
 use crate::name::Name;
 use servobench_trace::{CouplingEstimate, Recording};
 
-/// Estimated error from which on a run has a warning: 40 exchanges per period with inputs of order 1.
+/// Smallest estimated error with a warning: 40 exchanges per period with inputs of order 1.
 pub const COUPLING_ERROR_WARNED: f64 = 0.01;
 
 /// Notes the estimate of the run.

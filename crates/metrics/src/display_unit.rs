@@ -1,4 +1,4 @@
-//! Units in which positions and their derivatives are told: those in which somebody wrote them.
+//! Display units of positions and their derivatives: those in which a user wrote them.
 use crate::quantity::Quantity;
 use std::f64::consts::PI;
 
@@ -6,13 +6,13 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplayUnit {
     symbol: String,
-    /// How much of the SI unit it is.
+    /// Size in SI units.
     si: f64,
-    /// Whether it is the SI unit, which takes the prefix that suits the number.
+    /// True for the SI unit, which takes the prefix that suits the number.
     takes_prefix: bool,
 }
 
-/// Units of lengths and angles that are none of the SI, with what units of their derivatives begin with. One of the SI takes
+/// Non-SI units of lengths and angles, each with the beginning of the units of its derivatives. An SI unit takes
 /// the prefix that suits each derivative.
 const BASES: [(&str, &str, f64); 16] = [
     ("nm", "nm", 1e-9),
@@ -37,13 +37,13 @@ const LONG: f64 = 1e6;
 const POWERS: [&str; 5] = ["", "/s", "/s²", "/s³", "/s⁴"];
 
 impl DisplayUnit {
-    /// That of the SI, with the prefix that suits each number, for derivative `k`, 0 to 4, of a position in `m` or `rad`.
+    /// SI unit, with the prefix that suits each number, of derivative `k`, 0 to 4, of a position in `m` or `rad`.
     #[must_use]
     pub fn si(base: &str, k: usize) -> Self {
         Self { takes_prefix: true, ..Self::plain(base, k) }
     }
 
-    /// That of the SI without a prefix.
+    /// SI unit without a prefix.
     #[must_use]
     pub fn plain(base: &str, k: usize) -> Self {
         Self { symbol: format!("{base}{}", POWERS.get(k).unwrap_or(&"")), si: 1.0, takes_prefix: false }
@@ -64,7 +64,7 @@ impl DisplayUnit {
         })
     }
 
-    /// That of derivative `k` of the length or angle that this unit, of another derivative, begins with.
+    /// Unit of derivative `k` of the length or angle with which this unit, of another derivative, begins.
     #[must_use]
     pub fn of_derivative(&self, k: usize) -> Option<Self> {
         let begin = self.symbol.split('/').next().unwrap_or_default().trim();
@@ -85,7 +85,7 @@ impl DisplayUnit {
         self
     }
 
-    /// How much of the SI unit it is.
+    /// Size in SI units.
     #[must_use]
     pub const fn scale(&self) -> f64 {
         self.si
@@ -118,14 +118,14 @@ impl DisplayUnit {
         format!("{number} {}", self.symbol)
     }
 
-    /// Whether it takes the prefix that suits the number.
+    /// True if it takes the prefix that suits the number.
     #[must_use]
     pub const fn takes_prefix(&self) -> bool {
         self.takes_prefix
     }
 }
 
-/// Units of position and its derivatives, velocity to snap, as somebody wrote them.
+/// Units of position and its derivatives, velocity to snap, as a user wrote them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplayUnits {
     base: &'static str,
@@ -133,14 +133,14 @@ pub struct DisplayUnits {
 }
 
 impl DisplayUnits {
-    /// Those of the SI, for positions in `m` or `rad`.
+    /// SI units, for positions in `m` or `rad`.
     #[must_use]
     pub const fn new(base: &'static str) -> Self {
         Self { base, given: [const { None }; 5] }
     }
 
     /// The same with derivative `k` of position, 0 to 4, in the unit in which `text` was written, whose value is `value`
-    /// (SI). A text of no unit, and a value of zero, which does not say how large the unit is, change nothing.
+    /// (SI). A text without a unit, and a value of zero, from which the size of the unit cannot be computed, change nothing.
     #[must_use]
     pub fn as_given(mut self, k: usize, text: &str, value: f64) -> Self {
         if let (Some(slot), Some(unit)) = (self.given.get_mut(k), DisplayUnit::given(text, value)) {
@@ -149,14 +149,14 @@ impl DisplayUnits {
         self
     }
 
-    /// Unit in which derivative `k` of position is told: the given one, else one that goes with the nearest given one, else
-    /// that of the SI with the prefix that suits the number.
+    /// Unit in which derivative `k` of position is shown: the given one, else one that matches the nearest given one, else
+    /// the SI unit with the prefix that suits the number.
     #[must_use]
     pub fn unit(&self, k: usize) -> DisplayUnit {
         self.known(k).unwrap_or_else(|| DisplayUnit::si(self.base, k))
     }
 
-    /// The same, at last that of the SI without a prefix.
+    /// The same, but the last resort is the SI unit without a prefix.
     #[must_use]
     pub fn plain(&self, k: usize) -> DisplayUnit {
         self.known(k).unwrap_or_else(|| DisplayUnit::plain(self.base, k))
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    /// Whoever writes revolutions per minute reads revolutions, and millimetres who writes those.
+    /// A velocity in revolutions per minute implies positions in revolutions, and likewise for millimetres.
     #[test]
     fn other_derivatives_go_with_the_given_one() {
         let of = |text, value, k| DisplayUnit::given(text, value).unwrap().of_derivative(k);

@@ -1,4 +1,4 @@
-//! What the program asks of motor and inverter: current, voltage, torque, power.
+//! Load that the program puts on motor and inverter: current, voltage, torque, power.
 use crate::absence::Absence;
 use crate::extremes::most_of;
 use crate::metric::MetricSet;
@@ -8,7 +8,7 @@ use crate::span::{Checked, channel, largest_magnitude, root_mean, unit};
 use servobench_signals::Signal;
 use std::ops::Range;
 
-/// Peak value of a phase current; what |i_dq| is in the amplitude-invariant frame.
+/// Peak value of a phase current; |i_dq| in the amplitude-invariant frame.
 const PEAK_CURRENT: &str = "Apk";
 /// Effective value of a phase current.
 const RMS_CURRENT: &str = "Arms";
@@ -76,7 +76,7 @@ fn longest([d, q]: [&[f64]; 2]) -> Result<f64, Absence> {
     if d.is_empty() { Err(Absence::NothingRecorded { part: PART }) } else { Ok(square.sqrt()) }
 }
 
-/// Σ share·period: the channel holds which share of the control ticks since the last row was saturated.
+/// Σ share·period: the channel holds the share of the control ticks since the last row that were saturated.
 fn saturation_time(recording: &Checked<'_>, share: Signal, rows: &Range<usize>) -> Result<f64, Absence> {
     let shares = &channel(recording, share)?[rows.clone()];
     if shares.is_empty() {
@@ -124,7 +124,7 @@ mod tests {
         assert!((set.value(Name::TorquePeak).unwrap() - 2.0).abs() < 1e-6);
     }
 
-    /// Oracle: by hand. A row holds the tick that ends there; none ends at the first.
+    /// Oracle: by hand. A row holds the tick that ends there; no tick ends at the first.
     #[test]
     fn the_ripple_of_an_inverter_that_switches_is_in_peak_and_effective_value() {
         let recording = Build::new(10_000, 10_000)

@@ -1,9 +1,9 @@
-//! Smallest and largest of many values: which one comes first does not matter, so that several are looked at side by side.
+//! Smallest and largest of many values: the order of comparison does not matter, so that several are compared side by side.
 
-/// Values that are looked at side by side.
+/// Values that are compared side by side.
 const LANES: usize = 16;
 
-/// Largest of what `of` makes of each row of `columns`, at least 0; what is no number is passed over.
+/// Largest of `of` over the rows of `columns`, at least 0; not-a-number values are skipped.
 pub(crate) fn most_of<const N: usize>(columns: [&[f64]; N], of: impl Fn([f64; N]) -> f64) -> f64 {
     let larger = |most: f64, value: f64| if value > most { value } else { most };
     let rows = columns.iter().map(|column| column.len()).min().unwrap_or(0);
@@ -18,7 +18,7 @@ pub(crate) fn most_of<const N: usize>(columns: [&[f64]; N], of: impl Fn([f64; N]
     most.into_iter().chain(rest).fold(0.0, larger)
 }
 
-/// Smallest and largest of `values`; infinite where there are none. What is no number is passed over.
+/// Smallest and largest of `values`; infinite where there are none. Not-a-number values are skipped.
 pub(crate) fn range_of(values: &[f64]) -> (f64, f64) {
     let within = |(low, high): (f64, f64), x: f64| (if x < low { x } else { low }, if x > high { x } else { high });
     let (chunks, rest) = values.as_chunks::<LANES>();
@@ -32,7 +32,7 @@ pub(crate) fn range_of(values: &[f64]) -> (f64, f64) {
     rest.iter().fold(all.unwrap_or((f64::INFINITY, f64::NEG_INFINITY)), |range, x| within(range, *x))
 }
 
-/// How far apart the smallest and the largest of `values` are; 0 where there are none.
+/// Distance between the smallest and the largest of `values`; 0 where there are none.
 pub(crate) fn span_of(values: &[f64]) -> f64 {
     let (low, high) = range_of(values);
     (high - low).max(0.0)

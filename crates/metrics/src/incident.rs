@@ -1,7 +1,7 @@
-//! Incidents of an axis and its drive, which a scenario can expect; most of them do harm where it does not.
+//! Incidents of an axis and its drive, which a scenario can expect; most of them do harm if unexpected.
 //!
 //! They are found after the run, in its channels and states, and noted as its events: a tick costs nothing. Those that no channel
-//! shows (a joint of a user's own model at the end of its range, a fault of the bus) are noted while it runs.
+//! shows (a joint of a user's own model at the end of its range, a fault of the bus) are noted during the run.
 mod contact;
 mod measured;
 mod spell;
@@ -35,7 +35,7 @@ servobench_config::choices! {
     }
 }
 
-/// Incidents of one kind that are noted at most; the last one says that there were others.
+/// Largest number of noted incidents of one kind; the last one reports that there were others.
 const MOST_NOTED: usize = 100;
 
 impl Incident {
@@ -45,18 +45,18 @@ impl Incident {
         Self::ALL.iter().find(|(_, one, _)| *one == self).map_or("", |(name, ..)| name)
     }
 
-    /// True where it does harm unless it is expected: a limit of the drive, or a fault that the scenario orders, does none.
+    /// True if it does harm unless expected: a limit of the drive, or a fault that the scenario orders, does none.
     #[must_use]
     pub const fn is_harm(self) -> bool {
         !matches!(self, Self::InternalLimit | Self::BusFault)
     }
 
-    /// The incident that `event` is.
+    /// The incident in `event`, if it is one.
     pub(crate) fn of(event: &Event) -> Option<Self> {
         Self::from_name(&event.incident.as_ref()?.name)
     }
 
-    /// The incident of this name.
+    /// The incident with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(one, ..)| *one == name).map(|(_, incident, _)| *incident)
@@ -69,7 +69,7 @@ impl fmt::Display for Incident {
     }
 }
 
-/// Notes the incidents that channels and states of `recording` show as its events, and which contacts do no harm.
+/// Notes the incidents that channels and states of `recording` show as its events, and the contacts that do no harm.
 pub fn note_incidents(recording: &mut Recording, rules: &Rules<'_>) {
     let found: Vec<Event> = [
         contact::incidents(recording, rules),
@@ -85,7 +85,7 @@ pub fn note_incidents(recording: &mut Recording, rules: &Rules<'_>) {
     recording.events.sort_by(|one, two| one.start.total_cmp(&two.start));
 }
 
-/// Those of `events` that are noted.
+/// Limits `events` to the number that is noted.
 fn first(mut events: Vec<Event>) -> Vec<Event> {
     if events.len() > MOST_NOTED {
         events.truncate(MOST_NOTED);

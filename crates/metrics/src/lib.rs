@@ -1,10 +1,10 @@
-//! From a [`Recording`](servobench_trace::Recording) to numbers with units, and from these to a verdict.
+//! Metrics with units, computed from a [`Recording`](servobench_trace::Recording), and the verdict on them.
 //!
 //! ```text
 //! measure(&recording, &question) → Metrics      judge(&[limit]) → Verdict
 //! ```
-//! Every metric has a stable name ([`Name`]) and one definition (`docs/metrics.md`). What cannot be measured is absent
-//! and says why ([`Absence`]); it is never zero, and a limit on it is missed.
+//! Every metric has a stable name ([`Name`]) and one definition (`docs/metrics.md`). A metric that cannot be measured is absent
+//! with a reason ([`Absence`]); it is never zero, and a limit on it is missed.
 
 mod absence;
 mod basis;

@@ -1,4 +1,4 @@
-//! A recording to its metrics.
+//! Metrics of a recording.
 use crate::metric::{MetricSet, Metrics, MoveMetrics};
 use crate::name::Name;
 use crate::span::{Checked, Phase, phases};
@@ -8,21 +8,21 @@ use servobench_base::Rate;
 use servobench_signals::Signal;
 use servobench_trace::{Ending, Recording};
 
-/// What vibrates by less than this share of the settling window does not matter to whoever gave it.
+/// Share of the settling window below which a vibration does not matter.
 const PART_OF_WINDOW: f64 = 1e-3;
-/// Increments of an encoder within which a motion may be its doing.
+/// Increments of an encoder below which a motion may be caused by its resolution.
 const INCREMENTS: f64 = 4.0;
 
-/// What a measurement needs to know besides the recording.
+/// Data that a measurement needs besides the recording.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Question {
-    /// Settling window, ± around the target (axis unit). Without it there is no settling time.
+    /// Settling window, ± around the target (axis unit). Without it, there is no settling time.
     pub window: Option<f64>,
-    /// Where homing has to put the zero of the task, as the engine has it (axis unit).
+    /// Correct position of the zero of the task after homing, in the coordinate of the engine (axis unit).
     pub home_at: Option<f64>,
-    /// From when on residual vibration is measured (s). Without it, from the end of the last profile.
+    /// Start of the measurement of residual vibration (s). Without it, the end of the last profile.
     pub from: Option<f64>,
-    /// Natural frequency of the mode that is asked for (Hz). Without it, the mode with the most energy is reported.
+    /// Natural frequency of the requested mode (Hz). Without it, the mode with the most energy is reported.
     pub mode: Option<f64>,
     /// Frequency of the lowest mode of the model (Hz); `None` where it is rigid or not known.
     pub lowest_mode: Option<f64>,
@@ -39,7 +39,7 @@ impl Question {
     }
 }
 
-/// Signals that metrics and requirements are made of: a recording of these gives all that one of every signal gives.
+/// Signals from which metrics and requirements are computed: a recording of these gives the same results as one of every signal.
 pub const MEASURED_FROM: [Signal; 33] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
@@ -76,7 +76,7 @@ pub const MEASURED_FROM: [Signal; 33] = [
     Signal::PowerBrake,
 ];
 
-/// Metrics that need the dominant mode of a residual vibration, which takes longer than all others.
+/// Metrics that need the dominant mode of a residual vibration, whose fit takes longer than all others.
 const OF_A_MODE: [Name; 5] = [
     Name::ResidualVibrationAmplitude,
     Name::ResidualVibrationFrequency,
@@ -85,15 +85,15 @@ const OF_A_MODE: [Name; 5] = [
     Name::SteadyStateError,
 ];
 
-/// Measures everything that the recording allows; what it does not allow is absent with the reason.
+/// Measures everything that the recording allows; all else is absent with the reason.
 /// The definitions are in `docs/metrics.md`.
 #[must_use]
 pub fn measure(recording: &Recording, question: &Question) -> Metrics {
     measured(recording, question, Search::of(question.mode))
 }
 
-/// The same of the metrics that are `wanted`: neither present nor absent are any others, and a mode that only they need is not looked
-/// for.
+/// Measures only the metrics that are `wanted`: others are neither present nor absent, and a mode that only they need is not
+/// fitted.
 #[must_use]
 pub fn measure_only(recording: &Recording, question: &Question, wanted: &dyn Fn(Name) -> bool) -> Metrics {
     let needs_a_mode = OF_A_MODE.into_iter().any(wanted);
@@ -110,7 +110,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
     let checked = Checked::of(recording);
     let mut run = MetricSet::default();
     let mut moves = Vec::with_capacity(phases.len());
-    // The stretch that `from` begins, and every rest after it.
+    // The stretch that begins at `from`, and every rest after it.
     let from = question.from.map(|from| Residual::from_time(&checked, from, question, search));
     let mut residuals: Vec<_> = from.into_iter().collect();
     let begins = question.from.unwrap_or(f64::NEG_INFINITY);
@@ -119,7 +119,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
         let made = phase.made;
         let metrics = move_metrics(&checked, phase, question, &residual);
         moves.push(MoveMetrics { label: made.label.clone(), start: made.start, end: made.end, metrics });
-        // A move that another takes over, or that goes on, leaves no rest; the last one is measured as it is.
+        // A move that another takes over, or that ends in motion, leaves no rest; the last one is measured as it is.
         if made.start > begins && (made.ending == Ending::AtRest || k + 1 == phases.len()) {
             residuals.push(residual);
         }
@@ -139,7 +139,7 @@ fn measured(recording: &Recording, question: &Question, search: Search) -> Metri
     metrics
 }
 
-/// One move: its profile and what follows until the next. Torque, current and voltage are those of the profile.
+/// One move: its profile and the time until the next. Torque, current and voltage are those of the profile.
 fn move_metrics(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, residual: &Residual) -> MetricSet {
     let mut metrics = MetricSet::default();
     let this = std::slice::from_ref(phase);

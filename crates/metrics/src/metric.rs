@@ -4,20 +4,20 @@ use crate::name::Name;
 use crate::verdict::{Limit, Miss, Verdict};
 use std::collections::BTreeMap;
 
-/// A number with its unit, and how it stands against its limit.
+/// A number with its unit, limit and verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metric {
     /// Value (SI); always finite.
     pub value: f64,
     /// Unit symbol; empty for a pure number. `Apk` is a peak value, `Arms` an effective one.
     pub unit: String,
-    /// Limit that it was judged against.
+    /// Limit by which it was judged.
     pub limit: Option<Limit>,
-    /// Whether it is within its limit; `None` before judgement or without a limit.
+    /// True if within its limit; `None` before judgement or without a limit.
     pub pass: Option<bool>,
 }
 
-/// Metrics by name, and the reasons of those that are absent.
+/// Metrics by name, and the reasons why others are absent.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MetricSet {
     present: BTreeMap<Name, Metric>,
@@ -27,13 +27,13 @@ pub struct MetricSet {
 /// The metrics of one move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoveMetrics {
-    /// What the move is, in words.
+    /// Description of the move, in words.
     pub label: String,
     /// Start of the profile (s).
     pub start: f64,
     /// End of the profile (s).
     pub end: f64,
-    /// Its metrics, under the names that they have for the run.
+    /// Its metrics, under the same names as for the run.
     pub metrics: MetricSet,
 }
 
@@ -47,30 +47,30 @@ pub struct Metrics {
 }
 
 impl MetricSet {
-    /// The metric, when it could be measured.
+    /// The metric, if it could be measured.
     #[must_use]
     pub fn get(&self, name: Name) -> Option<&Metric> {
         self.present.get(&name)
     }
 
-    /// Value of the metric (SI), when it could be measured.
+    /// Value of the metric (SI), if it could be measured.
     #[must_use]
     pub fn value(&self, name: Name) -> Option<f64> {
         self.get(name).map(|metric| metric.value)
     }
 
-    /// Why the metric is absent; `None` when it is present or is not measured here at all.
+    /// Reason why the metric is absent; `None` when it is present or is not measured here at all.
     #[must_use]
     pub fn absence(&self, name: Name) -> Option<&Absence> {
         self.absent.get(&name)
     }
 
-    /// What was measured, in the order of [`Name`].
+    /// Measured metrics, in the order of [`Name`].
     pub fn iter(&self) -> impl Iterator<Item = (Name, &Metric)> {
         self.present.iter().map(|(name, metric)| (*name, metric))
     }
 
-    /// What could not be measured and why, in the order of [`Name`].
+    /// Absent metrics with their reasons, in the order of [`Name`].
     pub fn absences(&self) -> impl Iterator<Item = (Name, &Absence)> {
         self.absent.iter().map(|(name, absence)| (*name, absence))
     }
@@ -97,19 +97,19 @@ impl MetricSet {
         misses
     }
 
-    /// Drops what is not `wanted`.
+    /// Drops metrics that are not `wanted`.
     pub(crate) fn retain(&mut self, wanted: impl Fn(Name) -> bool) {
         self.present.retain(|name, _| wanted(*name));
         self.absent.retain(|name, _| wanted(*name));
     }
 
-    /// Takes a metric back, and says why.
+    /// Withdraws a metric, with the reason.
     pub(crate) fn withhold(&mut self, name: Name, why: Absence) {
         self.present.remove(&name);
         self.absent.insert(name, why);
     }
 
-    /// Makes a metric zero whose magnitude is not above `floor`.
+    /// Sets a metric to zero if its magnitude is not above `floor`.
     pub(crate) fn clear(&mut self, name: Name, floor: f64) {
         if let Some(metric) = self.present.get_mut(&name)
             && metric.value.abs() <= floor
@@ -118,7 +118,7 @@ impl MetricSet {
         }
     }
 
-    /// Notes a metric, or why there is none.
+    /// Notes a metric, or the reason why there is none.
     pub(crate) fn note(&mut self, name: Name, unit: &str, result: Result<f64, Absence>) {
         match result {
             Ok(value) if !value.is_finite() => {
@@ -136,7 +136,7 @@ impl MetricSet {
 }
 
 impl Metrics {
-    /// The metric of the run, when it could be measured.
+    /// The metric of the run, if it could be measured.
     #[must_use]
     pub fn get(&self, name: Name) -> Option<&Metric> {
         self.run.get(name)
@@ -148,7 +148,7 @@ impl Metrics {
         Verdict { misses: self.run.judge(limits, None), ..Verdict::default() }
     }
 
-    /// Judges the metrics of each move by its own limits, as [`Metrics::judge`] does it for the run. Limits of moves that
+    /// Judges the metrics of each move by its own limits, as [`Metrics::judge`] judges those of the run. Limits of moves that
     /// were not made are missed.
     pub fn judge_moves(&mut self, limits: &[impl AsRef<[Limit]>]) -> Verdict {
         let mut misses = Vec::new();

@@ -3,10 +3,10 @@
 //! ```text
 //! y(t) = c + aperiodic tails + Σ e^{−ζωt}·(a·cos ω_d·t + b·sin ω_d·t)      ω_d = ω·√(1 − ζ²)
 //! ```
-//! fitted by least squares. Tails (real poles) take the settling of an integrator, further modes what else rings; so
-//! neither falsifies the mode that is reported. Spectra only propose where to start. Components are added until nothing is left that
-//! anybody asks for, while each removes at least a quarter of what is left. A motion that they do not explain (stick-slip, a limit
-//! cycle) is described by its swings.
+//! fitted by least squares. Tails (real poles) take the settling of an integrator, further modes take other oscillations; so
+//! neither falsifies the reported mode. Spectra only propose starting points. Components are added until nothing that matters is left,
+//! while each removes at least a quarter of the remainder. A motion that they do not explain (stick-slip, a limit cycle) is described by
+//! its swings.
 //!
 //! A long record is thinned without aliasing to at least 16 values per period of the fastest mode proposed, and its
 //! first 4096 values are fitted: 128 periods or more.
@@ -37,7 +37,7 @@ use order::Order;
 use series::Series;
 use swings::Swings;
 
-/// A record of a motion that has no input.
+/// A record of a motion without input.
 #[derive(Debug, Clone, Copy)]
 pub struct Signal<'a> {
     /// Deviation from rest (any unit).
@@ -46,9 +46,9 @@ pub struct Signal<'a> {
     pub start: f64,
     /// Time from one value to the next (s).
     pub step: f64,
-    /// Below this the values mean nothing: their rounding, or the step of a sensor.
+    /// Resolution of the values: their rounding, or the step of a sensor.
     pub resolution: f64,
-    /// Below this nobody asks for a vibration (unit of the values).
+    /// Smallest vibration that matters (unit of the values).
     pub least: f64,
 }
 
@@ -65,7 +65,7 @@ pub struct Mode {
     pub share: f64,
 }
 
-/// How a record vibrates.
+/// Vibration of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vibration {
     /// Envelope of the dominant mode at time 0; where no mode could be fitted, half of the largest swing; 0 where nothing swings (unit
@@ -79,25 +79,25 @@ pub struct Vibration {
     pub share: Result<f64, Absence>,
 }
 
-/// Periods that a record must hold.
+/// Minimum periods of a record.
 const PERIODS: f64 = 2.0;
-/// Values that a record must hold.
+/// Minimum values of a record.
 const VALUES: usize = 16;
 /// Half width of the band about a given frequency, relative.
 const BAND: f64 = 0.25;
 const VALUES_PER_PERIOD: f64 = 16.0;
 const MAX_VALUES: usize = 4096;
-/// A record that has more is not thinned to fewer: two dozen parameters fit two dozen values, whatever these are.
+/// Minimum number of values after thinning: two dozen parameters would fit any two dozen values.
 const MIN_VALUES: usize = 256;
 
 impl Vibration {
-    /// Of what is at rest, or goes one way.
+    /// No vibration: the record rests or drifts in one direction.
     fn none() -> Self {
         let absent = || Err(Absence::NoVibration);
         Self { amplitude: 0.0, frequency: absent(), damping: absent(), share: absent() }
     }
 
-    /// Of `swings` that are not a sum of modes, for the reason `unfit`.
+    /// Vibration from `swings` that are not a sum of modes, for the reason `unfit`.
     fn of_swings(swings: Swings, unfit: Unfit) -> Self {
         let too_short = |periods| Absence::TooShort { periods, needed: PERIODS };
         let (damping, share) = match unfit {
@@ -110,7 +110,7 @@ impl Vibration {
         Self { amplitude: swings.amplitude, frequency, damping: Err(damping), share: Err(share) }
     }
 
-    /// The mode with which the record rings, where one could be fitted that is seen for two periods.
+    /// The mode of the record, if one could be fitted that is seen for two periods.
     ///
     /// # Errors
     /// [`Absence`] of its damping ratio.
@@ -124,7 +124,7 @@ impl Vibration {
 /// `near` (Hz), within 25 % of that frequency.
 ///
 /// # Errors
-/// [`Absence`]: the record has fewer than 16 values, or what swings does so at another frequency than `near`.
+/// [`Absence`]: the record has fewer than 16 values, or swings at another frequency than `near`.
 pub fn vibration(signal: &Signal<'_>, near: Option<f64>) -> Result<Vibration, Absence> {
     if signal.values.len() < VALUES {
         return Err(Absence::TooShort { periods: 0.0, needed: PERIODS });
@@ -137,7 +137,7 @@ pub fn vibration(signal: &Signal<'_>, near: Option<f64>) -> Result<Vibration, Ab
     if height <= signal.resolution.max(signal.least) {
         return Ok(Vibration::none());
     }
-    // Scaled to about 1, so that squares of nanometres keep far from the smallest numbers.
+    // Scaled to about 1, so that squares of nanometres stay far from the smallest numbers.
     let values: Vec<f64> = signal.values.iter().map(|y| (y - low) / height).collect();
     let (resolution, least) = (signal.resolution / height, signal.least / height);
     let scaled = Signal { values: &values, resolution, least, ..*signal };
@@ -192,13 +192,14 @@ fn fitted(signal: &Signal<'_>, near: Option<f64>) -> Result<Found, Unfit> {
     dominant::dominant(&order, &series, signal, near, least)
 }
 
-/// Swings of a record are larger than this: what somebody asks for, and what noise reaches from its lowest value to its highest.
+/// Hysteresis that the swings of a record must exceed: the largest of the smallest vibration that matters, the resolution and the
+/// peak-to-peak value of noise.
 fn hysteresis(signal: &Signal<'_>) -> f64 {
     signal.least.max(signal.resolution).max(2.0 * noise::DEVIATIONS * noise::deviation(signal.values))
 }
 
 /// The rest position of a record in which `mode` rings: the constant of the least squares fit of a constant and that mode.
-/// `None` when the record cannot tell them apart.
+/// `None` when the record does not separate them.
 pub(crate) fn rest_beside(mode: &Mode, values: &[f64], step: f64) -> Option<f64> {
     let first = *values.first()?;
     let values: Vec<f64> = values.iter().map(|y| y - first).collect();
@@ -206,7 +207,7 @@ pub(crate) fn rest_beside(mode: &Mode, values: &[f64], step: f64) -> Option<f64>
     Some(first + Fit::of(vec![Component::oscillating_at(mode.frequency, mode.damping)], &series)?.constant())
 }
 
-/// How many values of the record make one of the series that is fitted.
+/// Number of values of the record per value of the series that is fitted.
 fn thinning(signal: &Signal<'_>, fastest: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
     let factor = (1.0 / (VALUES_PER_PERIOD * fastest * signal.step)) as usize;

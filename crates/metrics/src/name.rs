@@ -1,10 +1,10 @@
-//! The metrics: their stable names, what they measure, what they mean.
+//! The metrics: stable names, quantities, meanings.
 use servobench_config::{Kind, Measure, any, not_negative, quantities};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Declares [`Name`] once: variant, name in files, what it is of, what it measures, a limit as users write it, meaning in a few
+/// Declares [`Name`] once: variant, name in files, scope, quantity, a limit as users write it, meaning in a few
 /// words.
 macro_rules! names {
     ($($variant:ident $text:literal $scope:ident $kind:ident $example:literal $meaning:literal,)*) => {
@@ -24,13 +24,13 @@ macro_rules! names {
                 match self { $(Self::$variant => $text,)* }
             }
 
-            /// What it is of.
+            /// Part of a run that it covers.
             #[must_use]
             pub const fn scope(self) -> Scope {
                 match self { $(Self::$variant => Scope::$scope,)* }
             }
 
-            /// What it measures.
+            /// Kind of quantity that it measures.
             #[must_use]
             pub const fn kind(self) -> Kind {
                 match self { $(Self::$variant => $kind,)* }
@@ -115,32 +115,32 @@ names! {
     CouplingError "coupling_error" Run RATIO "0.01" "estimated error of what is exchanged with FMUs within a step",
 }
 
-/// What a metric is of, and with it what a run must have so that it can be measured.
+/// Part of a run that a metric covers, and thereby the prerequisites of its measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
     /// Any part of a run.
     Run,
     /// A move.
     Move,
-    /// What follows a move, or the time from which on residual vibration is measured.
+    /// The time after a move, or from the start of the measurement of residual vibration.
     AfterMove,
 }
 
 impl Name {
-    /// Whether there is none without a settling window.
+    /// True if it needs a settling window.
     #[must_use]
     pub const fn needs_window(self) -> bool {
         matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime)
     }
 
-    /// True where it is of what follows a profile, and needs a [basis](crate::Question::basis).
+    /// True if it covers the time after a profile, and needs a [basis](crate::Question::basis).
     #[must_use]
     pub const fn needs_basis(self) -> bool {
         matches!(self, Self::SettlingTime | Self::MoveAndSettlingTime | Self::ProgramTime | Self::SteadyStateError)
             || matches!(self.scope(), Scope::AfterMove)
     }
 
-    /// True where it is made of the rows of a recording; others are made of the plan, or by the master of a coupling.
+    /// True if it is computed from the rows of a recording; others come from the plan, or from the master of a coupling.
     #[must_use]
     pub const fn is_of_rows(self) -> bool {
         !matches!(
@@ -154,20 +154,20 @@ impl Name {
         )
     }
 
-    /// Whether the sign of the value means a direction. A largest allowed value then bounds the magnitude.
+    /// True if the sign of the value means a direction. A largest allowed value then bounds the magnitude.
     #[must_use]
     pub const fn is_signed(self) -> bool {
         matches!(self, Self::SteadyStateError | Self::FollowingErrorCruiseMotor | Self::FollowingErrorCruiseLoad)
     }
 
-    /// What a largest allowed value must be.
+    /// Values that a largest allowed value may have.
     #[must_use]
     pub const fn largest(self) -> Measure {
         not_negative(self.kind(), self.example())
     }
 
-    /// What an end of an allowed range must be: below zero only where the value can be, and its sign is no direction (the damping of a
-    /// vibration that grows); other bounds are of magnitudes.
+    /// Values that an end of an allowed range may have: below zero only where the value can be, and its sign is not a direction (the
+    /// damping of a vibration that grows); other bounds are of magnitudes.
     #[must_use]
     pub const fn end_of_range(self) -> Measure {
         match self {
@@ -207,7 +207,7 @@ impl fmt::Display for Name {
 mod tests {
     use super::*;
 
-    /// Results files and scenarios depend on these names: the list of the first release, typed out once more.
+    /// Results files and scenarios depend on these names: the list of the first release, written out once more.
     #[test]
     fn names_are_stable() {
         let promised = "following_error_peak_motor following_error_peak_load following_error_rms_motor \

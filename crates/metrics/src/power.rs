@@ -73,7 +73,7 @@ mod tests {
         assert!((set.value(Name::ElectricalEnergy).unwrap() - 20.0).abs() < 1e-10);
     }
 
-    /// Oracle: by hand. An axis without them is told why it has no such metrics.
+    /// Oracle: by hand. An axis without them reports why it has no such metrics.
     #[test]
     fn inverter_and_link_are_measured_where_they_are_recorded() {
         let recording = Build::new(1_000, 1_000)

@@ -2,8 +2,7 @@
 use std::fmt;
 
 /// A value in SI with its unit; displays as `8.30 µm`. A precision is a number of significant
-/// digits: `{:.5}` gives `8.3000 µm`. Width and alignment work as everywhere, to the right when not
-/// given.
+/// digits: `{:.5}` gives `8.3000 µm`. Width and alignment work as everywhere; the default alignment is to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity<'a> {
     /// Value (SI).
@@ -15,7 +14,7 @@ pub struct Quantity<'a> {
 /// SI prefixes and their powers of ten.
 const PREFIXES: [(&str, i32); 8] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9)];
 const SIGNIFICANT: usize = 3;
-/// Digits that are shown at most to tell two numbers apart.
+/// Maximum number of digits that are shown to distinguish two numbers.
 const MOST: usize = 7;
 
 impl<'a> Quantity<'a> {
@@ -25,7 +24,7 @@ impl<'a> Quantity<'a> {
         Self { value, unit }
     }
 
-    /// Symbol with the prefix that suits an axis up to `largest` (SI), and how much of the plain unit (SI) it is: `mm` and
+    /// Symbol with the prefix that suits an axis up to `largest` (SI), and its size in the plain unit (SI): `mm` and
     /// 0.001 for 0.25 m. The largest number at the axis is from a half to 500.
     #[must_use]
     pub fn axis_unit(largest: f64, unit: &str) -> (String, f64) {
@@ -39,7 +38,7 @@ impl<'a> Quantity<'a> {
         }
     }
 
-    /// Significant digits, from three to seven, that show two numbers apart by two units or more in the last digit.
+    /// Number of significant digits, from three to seven, that show two numbers apart by two units or more in the last digit.
     #[must_use]
     pub fn digits_apart(one: f64, two: f64) -> usize {
         let (largest, difference) = (one.abs().max(two.abs()), (one - two).abs());
@@ -52,7 +51,7 @@ impl<'a> Quantity<'a> {
         digits
     }
 
-    /// The text with the prefix that `largest` (SI) has, so that the numbers of a row share one; with its own when it is
+    /// The text with the prefix of `largest` (SI), so that the numbers of a row share one; with its own when it is
     /// smaller by more than three powers of ten.
     #[must_use]
     pub fn beside(&self, largest: f64) -> String {
@@ -102,7 +101,7 @@ fn prefix(unit: &str, exponent: i32) -> Option<(&'static str, i32)> {
         _ if first.ends_with(['²', '³', '⁴']) || first == "kg" => {
             return (-4..6).contains(&exponent).then_some(("", 0));
         }
-        // Nobody writes kilometres of travel, kiloseconds or kiloradians.
+        // Kilometres of travel, kiloseconds and kiloradians are not in use.
         "m" | "s" | "rad" => (-12, 0),
         _ => (-12, 9),
     };

@@ -1,7 +1,7 @@
-//! What every run is held to beside its limits, unless its scenario lifts it by name.
+//! Requirements that every run must meet beside its limits, except for those that its scenario lifts by name.
 //!
-//! A requirement is a line of [`Requirement`] and a module that gives the reasons for which a recording breaks it. What each of
-//! them means exactly, with its numbers, is in `docs/requirements.md`.
+//! A requirement is a line of [`Requirement`] and a module that gives the reasons why a recording breaks it. Their exact
+//! meanings, with all numbers, are in `docs/requirements.md`.
 mod arrival;
 mod bounds;
 mod calm;
@@ -44,7 +44,7 @@ use std::str::FromStr;
 /// Declares [`Requirement`] once: variant, name in files, meaning in a few words.
 macro_rules! requirements {
     ($($variant:ident $text:literal $meaning:literal,)*) => {
-        /// What every run is held to unless its scenario lifts it; the order is the order of tables.
+        /// Requirements that every run must meet unless its scenario lifts them; the order is the order of tables.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Requirement {
             $(#[doc = $meaning] $variant,)*
@@ -84,10 +84,10 @@ requirements! {
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
 
-/// Source and name of the signal that says which [kind](servobench_base::RequestKind) of request the task makes.
+/// Source and name of the signal with the [kind](servobench_base::RequestKind) of request that the task makes.
 pub const REQUEST_KIND: (&str, &str) = ("request", "kind");
 
-/// Channels that requirements are judged by, of those that the axis has. They are recorded at every tick, whatever is kept.
+/// Channels by which requirements are judged, if the axis has them. They are recorded at every tick, whatever is kept.
 pub const JUDGED_BY: [Signal; 14] = [
     Signal::RequestPosition,
     Signal::RequestVelocity,
@@ -119,32 +119,32 @@ impl FromStr for Requirement {
     }
 }
 
-/// How a run stands to a requirement.
+/// Status of a requirement in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// It is met.
+    /// The requirement is met.
     Met,
-    /// It is not, for at least one reason.
+    /// The requirement is broken, for at least one reason.
     Broken,
-    /// The scenario lifts it; the reasons are what would have broken it, if anything.
+    /// The scenario lifts it; the reasons are those that would have broken it, if any.
     Lifted,
-    /// It has no meaning in this run: a program without calls, an axis without a drive.
+    /// The requirement has no meaning in this run: a program without calls, an axis without a drive.
     NotAsked,
 }
 
-/// How a run stands to a requirement, and why.
+/// Status of a requirement in a run, with reasons.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RequirementResult {
-    /// How the run stands to it.
+    /// Status of the requirement.
     pub standing: Standing,
-    /// Why it is broken, or would be if it were not lifted: each reason in a sentence.
+    /// Reasons why it is broken, or would be if it were not lifted, each in a sentence.
     pub reasons: Vec<String>,
 }
 
 impl RequirementResult {
-    /// True of a requirement `name` that is broken, or lifted and would be: the run did not do what was requested, and its metrics cannot be
-    /// compared with those of other runs. Lifting `rings` is how swings after a stop are measured.
+    /// True of a requirement `name` that is broken, or lifted and would be: the run did not do what was requested, and its metrics cannot
+    /// be compared with those of other runs. Lifting `rings` is the method to measure swings after a stop.
     #[must_use]
     pub fn is_not_met(&self, name: &str) -> bool {
         match self.standing {
@@ -158,11 +158,11 @@ impl RequirementResult {
 /// A fault or an incident that the scenario expects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
-    /// Which.
+    /// The fault or incident.
     pub on: Occasion,
-    /// From when on it may come (s).
+    /// Earliest time (s).
     pub from: f64,
-    /// Until when it must have come (s); infinite: by the end of the run.
+    /// Latest time (s); infinite: the end of the run.
     pub to: f64,
 }
 
@@ -173,36 +173,36 @@ pub enum Occasion {
     Fault {
         /// State or error code: `ErrorStop`, `8611h`, the `ErrorID` of a block.
         fault: String,
-        /// Whose: `axis`, `drive`, `link`, or the name of a call.
+        /// Its source: `axis`, `drive`, `link`, or the name of a call.
         who: String,
     },
     /// An event that is an incident.
     Event(Incident),
 }
 
-/// An expectation, and whether it was met.
+/// An expectation, and the time at which it was met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
-    /// What was expected.
+    /// The expectation.
     pub expectation: Expectation,
-    /// When it came (s); `None`: it did not.
+    /// Time of its occurrence (s); `None`: it did not occur.
     pub met: Option<f64>,
 }
 
 impl Expectation {
-    /// True without a window of time: such an expectation excuses what comes at any time, as a lifted requirement does.
+    /// True without a window of time: such an expectation excuses its occasion at any time, as a lifted requirement does.
     #[must_use]
     pub fn is_wide_open(&self) -> bool {
         self.from <= 0.0 && !self.to.is_finite()
     }
 
-    /// True where what comes at `time` (s) comes when it is expected.
+    /// True if an occurrence at `time` (s) is within the window of time.
     #[must_use]
     pub fn is_open_at(&self, time: f64) -> bool {
         (self.from..=self.to).contains(&time)
     }
 
-    /// The code that `fault` is, where it is one: four hexadecimal digits and an `h`.
+    /// Value of `fault` as a code, if it is one: four hexadecimal digits and an `h`.
     #[must_use]
     pub fn code_of(fault: &str) -> Option<u32> {
         let digits = fault.strip_suffix('h').filter(|digits| digits.len() == 4)?;
@@ -297,7 +297,7 @@ pub(crate) mod tests {
         assert!(lifted.passed() && lifted.requirements.contains(&(Requirement::Stable, standing)), "{lifted:?}");
     }
 
-    /// A loop of which the run alone is judged passes with a warning; where it fails anyway, or is lifted, nobody needs one.
+    /// A run that is judged without an analysis of its loop passes with a warning; if it fails anyway, or is lifted, there is no warning.
     #[test]
     fn what_is_not_analysed_is_a_warning() {
         let recording = Build::new(1000, 11).channel(Signal::LoadPosition, "m", |_| 0.0).finish();
@@ -314,7 +314,7 @@ pub(crate) mod tests {
         assert_eq!(judge_requirements(&recording, &unstable).warnings, [""; 0]);
     }
 
-    /// Of a run that diverged there is nothing to judge: no lift makes it pass.
+    /// A run that diverged cannot be judged: no lift makes it pass.
     #[test]
     fn a_run_that_diverged_cannot_pass() {
         let recording = Build::new(1000, 11).finish();

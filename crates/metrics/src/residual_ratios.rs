@@ -1,4 +1,4 @@
-//! What the set-points alone make of modes around a frequency, by closed form.
+//! Ratio of the residual vibrations of two set-points in modes around a frequency, by closed form.
 use crate::undamped::undamped_residual;
 use servobench_trace::Move;
 use std::f64::consts::TAU;
@@ -6,31 +6,31 @@ use std::f64::consts::TAU;
 /// Frequencies at which the ratio is computed. A lobe of the spectrum is 1/T wide, T the duration of the move: even of
 /// a hundred lobes each gets twenty.
 const STEPS: u32 = 2000;
-/// Boxes that differ by less, relative, are the same.
+/// Relative difference below which the lengths of two moving averages are the same.
 const SAME: f64 = 1e-9;
 
-/// Share of the frequencies that is left out at either end: a ratio has poles where a spectrum has its zeros, which no
+/// Share of the frequencies that is left out at either end, as a divisor: a ratio has poles where a spectrum has its zeros, which no
 /// real mode hits.
 const LEFT_OUT: u32 = 10;
 
-/// How the vibration that one set-point leaves stands to that of another, for most modes around a frequency: reference
-/// over size, above 1 for less.
+/// Ratio of the residual vibration of a reference set-point to that of another, for most modes around a frequency: above 1 if the
+/// other leaves less.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualRatios {
-    /// One mode in ten has a smaller one.
+    /// Tenth percentile: one mode in ten has a smaller ratio.
     pub low: f64,
-    /// One mode in ten has a larger one.
+    /// Ninetieth percentile: one mode in ten has a larger ratio.
     pub high: f64,
 }
 
 impl ResidualRatios {
-    /// Of `this` to `other`, for undamped modes within `around` (relative) of `frequency` (Hz); `None` unless both make one
-    /// move of bounded order.
+    /// Compares `this` with the reference `other`, for undamped modes within `around` (relative) of `frequency` (Hz); `None` unless both
+    /// make one move of bounded order.
     #[must_use]
     pub fn of(this: &[Move], other: &[Move], frequency: f64, around: f64) -> Option<Self> {
         let ([this], [other]) = (this, other) else { return None };
         let (mut boxes, mut other_boxes) = (boxes(this)?, boxes(other)?);
-        // What both have is no difference, and its zeros are none of the ratio.
+        // Common moving averages cancel, and their zeros are not zeros of the ratio.
         boxes.retain(|length| {
             let same = other_boxes.iter().position(|other| (other - length).abs() <= SAME * length);
             same.map(|index| other_boxes.remove(index)).is_none()
@@ -48,8 +48,8 @@ impl ResidualRatios {
     }
 }
 
-/// Lengths (s) of the boxes whose convolution is the velocity of `made`: each is the peak of a derivative over that of the
-/// next, x/v, v/a, a/j, j/s, as far as the order goes. `None` for a move of no distance.
+/// Lengths (s) of the moving averages whose convolution is the velocity of `made`: each is the peak of a derivative over that of the
+/// next, x/v, v/a, a/j, j/s, up to the order. `None` for a move without a distance.
 fn boxes(made: &Move) -> Option<Vec<f64>> {
     let derivatives = [(made.to - made.from).abs()].into_iter().chain(made.peaks);
     let derivatives: Vec<f64> = derivatives.take_while(|peak| peak.is_finite() && *peak > 0.0).collect();
@@ -78,8 +78,8 @@ mod tests {
         }
     }
 
-    /// The two moves of Lambrechts share the boxes 1 s, 0.2 s and 0.1 s; the fourth, 0.05 s, is the whole ratio:
-    /// x/|sin x| with x = 0.05·π·f. Up to its pole at 40 Hz it grows; within 1 % of 38.985 Hz it goes from 28 to 63, and
+    /// The two moves of Lambrechts share the moving averages 1 s, 0.2 s and 0.1 s; the fourth, 0.05 s, is the whole ratio:
+    /// x/|sin x| with x = 0.05·π·f. Up to its pole at 40 Hz it grows; within 1 % of 38.985 Hz it rises from 28 to 63, and
     /// without a tenth at either end from its value at 38.985·0.992 Hz to that at 38.985·1.008 Hz.
     #[test]
     fn the_ratio_is_that_of_the_box_that_only_one_has() {

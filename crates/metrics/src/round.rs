@@ -1,6 +1,6 @@
 //! Round numbers: 1, 2 or 5 times a power of ten.
 
-/// What rounding may take from a number that is round already (part of it).
+/// Relative reduction by rounding that a round number may have.
 const ROUNDING: f64 = 1e-9;
 
 /// The largest round number that is at most `value`, which is finite and positive.
@@ -19,7 +19,7 @@ pub fn round_above(value: f64) -> f64 {
 
 /// The round numbers around `value`, ascending: from the power of ten below to that above.
 fn candidates(value: f64) -> [f64; 4] {
-    // Powers by their decimals: 10^-4 computed is not 0.0001.
+    // Powers from decimal text: 10^-4 computed is not 0.0001.
     let exponent: i32 = format!("{value:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let power = |exponent: i32| format!("1e{exponent}").parse::<f64>().unwrap_or(1.0);
     let one = power(exponent);
@@ -42,7 +42,7 @@ mod tests {
             (99.0, 50.0, 100.0),
             (0.1, 0.1, 0.1),
             (0.3e-6, 0.2e-6, 0.5e-6),
-            // What was computed as 0.1 + 0.2 − 0.1 is 0.2.
+            // The computed 0.1 + 0.2 − 0.1 counts as 0.2.
             (0.1 + 0.2 - 0.1, 0.2, 0.2),
             (0.7 - 0.5, 0.2, 0.2),
         ] {

@@ -1,10 +1,10 @@
-//! What is rounding counts as zero, or one rounding would be reported as a third less than another.
+//! Rounding errors count as zero, or one of them would be reported as a third less than another.
 use crate::extremes::most_of;
 use crate::metric::{MetricSet, Metrics};
 use crate::name::Name;
 use servobench_trace::Recording;
 
-/// Differences of positions.
+/// Metrics that are differences of positions.
 const DIFFERENCES: [Name; 11] = [
     Name::Overshoot,
     Name::SteadyStateError,
@@ -18,12 +18,12 @@ const DIFFERENCES: [Name; 11] = [
     Name::ResidualVibrationRms,
     Name::ResidualVibrationAmplitude,
 ];
-/// Last places of a position in which the differences of two may be rounding.
+/// Last places of a position within which the difference of two may be rounding.
 const PLACES: f64 = 8.0;
-/// Damping ratio below which the fit cannot tell a mode from an undamped one.
+/// Damping ratio below which the fit cannot distinguish a mode from an undamped one.
 const UNDAMPED: f64 = 1e-9;
 
-/// Makes zero what the recorded positions cannot show.
+/// Sets metrics to zero that the recorded positions cannot show.
 pub(crate) fn clear(metrics: &mut Metrics, recording: &Recording) {
     let positions = recording.channels.iter().filter(|channel| channel.spec.name.ends_with(".position"));
     let largest = positions.fold(0.0, |largest, channel| {

@@ -1,4 +1,4 @@
-//! Settling time, overshoot and what is left at rest: the load against its target.
+//! Settling time, overshoot and the error at rest: the load against its target.
 use crate::absence::Absence;
 use crate::basis;
 use crate::measure::Question;
@@ -10,14 +10,14 @@ use servobench_signals::Signal;
 use servobench_trace::Ending;
 
 const LOAD: Signal = Signal::LoadPosition;
-/// The load must be seen inside the window for one part in so many of the time after the profile, or it has not settled:
+/// Divisor of the time after the profile: the load must be inside the window for one such part, or it has not settled:
 /// a vibration beyond the window passes through it, too.
 const DWELL: usize = 20;
-/// The mean over the last one of so many parts of the time after the profile is the error at rest.
+/// Divisor of the time after the profile: the mean over the last such part is the error at rest.
 const REST: usize = 10;
 
 /// Notes duration, settling, overshoot and the error at rest of one move.
-/// `mode` is that with which the load rings afterwards, where it does.
+/// `mode` is the mode of the load's ringing afterwards, if any.
 pub(crate) fn note(
     set: &mut MetricSet,
     recording: &Checked<'_>,
@@ -43,8 +43,8 @@ pub(crate) fn note(
     );
 }
 
-/// Notes the worst of `moves`. A move that is followed by the next before it can settle does not count, nor one whose way is not larger
-/// than the window.
+/// Notes the worst of `moves`. A move that is followed by the next before it can settle does not count, nor one whose distance is not
+/// larger than the window.
 pub(crate) fn note_worst(set: &mut MetricSet, recording: &Checked<'_>, moves: &[MoveMetrics]) {
     let unit = recording.about.axis_unit.as_str();
     for (name, unit) in [
@@ -58,8 +58,8 @@ pub(crate) fn note_worst(set: &mut MetricSet, recording: &Checked<'_>, moves: &[
     }
 }
 
-/// Notes when the last target is reached for good, counted from t = 0. Settling ends it, not the end of the profile, and all waits and
-/// earlier moves are in it: of two programs with the same targets the one with the smaller time has done them sooner.
+/// Notes the time at which the last target is reached for good, counted from t = 0. It ends with settling, not with the profile, and
+/// includes all waits and earlier moves: of two programs with the same targets, the one with the smaller time is faster.
 pub(crate) fn note_program(set: &mut MetricSet, phases: &[Phase<'_>], moves: &[MoveMetrics]) {
     set.note(Name::ProgramTime, "s", program_time(phases, moves));
 }
@@ -141,7 +141,7 @@ fn overshoot(load: &[f64], phase: &Phase<'_>) -> Result<f64, Absence> {
     largest(beyond, "of the move").map(|beyond| beyond.max(0.0))
 }
 
-/// Target minus position, mean over the last tenth of the time before the next move. Where a mode rings, over whole periods
+/// Target minus position, mean over the last tenth of the time before the next move. If a mode rings, over whole periods
 /// of it, and without it: a mean over part of a period would be that of the vibration.
 fn error_at_rest(load: &[f64], phase: &Phase<'_>, step: f64, mode: Option<Mode>) -> f64 {
     let rows = phase.rest.clone();
@@ -248,7 +248,7 @@ mod tests {
         let rings = after_a_move(|t| 11e-6 * (2.0 * PI * 20.0 * t).sin());
         assert!(matches!(of_first(&rings, Some(WINDOW)).absence(Name::SettlingTime), Some(Absence::NotSettled { .. })));
         assert_eq!(of_first(&rings, None).absence(Name::SettlingTime), Some(&Absence::NoWindow));
-        // The move does not depend on how it settles.
+        // The duration of the move does not depend on its settling.
         assert_eq!(of_first(&rings, None).value(Name::MoveTime), Some(1.0));
     }
 
@@ -274,8 +274,8 @@ mod tests {
         }
     }
 
-    /// The load leaves ±10 µm for the last time 0.06·ln 100 s after the end of the second profile, at 2.5 s; what the first one left does
-    /// not count, nor does anything where the last target is not reached or is none.
+    /// The load leaves ±10 µm for the last time 0.06·ln 100 s after the end of the second profile, at 2.5 s; the ringing of the first one
+    /// does not count, and there is no value if the last target is not reached or does not exist.
     #[test]
     fn the_program_ends_when_its_last_target_is_reached_for_good() {
         let run = |after: fn(f64) -> f64, ending: Ending| {

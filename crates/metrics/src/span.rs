@@ -1,4 +1,4 @@
-//! Which rows of a recording a metric is about.
+//! Rows of a recording that a metric covers.
 use crate::absence::Absence;
 use crate::extremes::most_of;
 use servobench_base::Tick;
@@ -16,12 +16,12 @@ pub(crate) struct Phase<'a> {
     pub(crate) profile: Range<usize>,
     /// Rows from the end of the profile to just before the next move, or to the end of the recording.
     pub(crate) after: Range<usize>,
-    /// Of these, the rows until another motion is requested that is not a move: a velocity, a stop, a search for a switch.
+    /// Its rows until another motion is requested that is not a move: a velocity, a stop, a search for a switch.
     pub(crate) rest: Range<usize>,
 }
 
 impl Phase<'_> {
-    /// All rows of the move: profile and what follows.
+    /// All rows of the move: profile and the time after it.
     pub(crate) fn rows(&self) -> Range<usize> {
         self.profile.start..self.after.end
     }
@@ -32,7 +32,7 @@ impl Phase<'_> {
     }
 }
 
-/// The part of `after` in which nothing is requested to move, once what is requested has come to rest.
+/// The part of `after` without a requested motion, once the request has come to rest.
 fn rest_of(recording: &Recording, after: &Range<usize>) -> Range<usize> {
     let requested = recording.channel(Signal::RequestVelocity).and_then(|values| values.get(after.clone()));
     let Some(requested) = requested else { return after.clone() };
@@ -59,11 +59,11 @@ pub(crate) fn phases(recording: &Recording) -> Vec<Phase<'_>> {
         .collect()
 }
 
-/// A recording whose channels are looked through once each for values that are not finite: a program may have as many moves as rows.
+/// A recording whose channels are each searched once for values that are not finite: a program may have as many moves as rows.
 #[derive(Debug)]
 pub(crate) struct Checked<'a> {
     recording: &'a Recording,
-    /// First row of each channel that is not finite, once it is known.
+    /// First row of each channel that is not finite, once known.
     gaps: Vec<OnceCell<Option<usize>>>,
 }
 
@@ -81,7 +81,7 @@ impl Deref for Checked<'_> {
     }
 }
 
-/// Values of a channel. What was looked at before takes no memory any more.
+/// Values of a channel, searched only once.
 ///
 /// # Errors
 /// [`Absence::NoChannel`], [`Absence::NotFinite`].
@@ -99,7 +99,7 @@ pub(crate) fn channel<'a>(checked: &'a Checked<'_>, signal: Signal) -> Result<&'
     }
 }
 
-/// The first row that is not finite. Most often there is none, which is found out of many values at once.
+/// The first row that is not finite. Most often there is none, which is checked for many values at once.
 fn first_gap(values: &[f64]) -> Option<usize> {
     const MANY: usize = 64;
     let has_gap = |values: &[f64]| values.iter().fold(false, |has_gap, value| has_gap | !value.is_finite());

@@ -39,7 +39,7 @@ impl Build {
         self
     }
 
-    /// Sets the requests of the task: from which time (s) on it makes which kind.
+    /// Sets the requests of the task: start (s) and kind of each.
     pub(crate) fn requests(self, changes: &[(f64, &str)]) -> Self {
         let (source, name) = crate::requirement::REQUEST_KIND;
         self.signal(source, name, changes)

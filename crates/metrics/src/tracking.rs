@@ -31,7 +31,7 @@ const SIDES: [Side; 2] = [
 ];
 
 /// Notes the errors: peaks over `rows`; RMS and cruise value during the profiles of `phases`, the RMS over `rows` when
-/// there is no move.
+/// there are no moves.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: Range<usize>, phases: &[Phase<'_>]) {
     for side in &SIDES {
         let (error, unit) = (channel(recording, side.channel), unit(recording, side.channel));
@@ -51,7 +51,7 @@ pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>, rows: Range<usi
     set.note(Name::VelocityErrorPeak, unit(recording, MOTOR_VELOCITY), velocity);
 }
 
-/// Of the cruise values of the moves, the one with the largest magnitude.
+/// The cruise value with the largest magnitude among the moves.
 fn largest_cruise(recording: &Checked<'_>, error: &[f64], phases: &[Phase<'_>]) -> Result<f64, Absence> {
     if phases.is_empty() {
         return Err(Absence::NoMove);
@@ -66,8 +66,8 @@ fn largest_cruise(recording: &Checked<'_>, error: &[f64], phases: &[Phase<'_>]) 
         .unwrap_or(Err(Absence::NoCruise))
 }
 
-/// Mean error over the second half of the part at constant velocity. The first half is left to the transient with
-/// which the axis enters it; the mean takes out what vibrates.
+/// Mean error over the second half of the part at constant velocity. The first half is left to the transient at
+/// its start; the mean removes vibrations.
 fn cruise(recording: &Checked<'_>, error: &[f64], made: &Move) -> Result<f64, Absence> {
     let (start, length) = made.cruise;
     let rows = recording.index_at(start + length / 2.0)..recording.index_at(start + length);
@@ -87,8 +87,8 @@ fn velocity_error_peak(recording: &Checked<'_>, rows: Range<usize>) -> Result<f6
     if unit(recording, VELOCITY_REFERENCE) != unit(recording, MOTOR_VELOCITY) {
         return Err(Absence::UnitsDiffer { one: VELOCITY_REFERENCE, two: MOTOR_VELOCITY });
     }
-    // Between two cycles of the position loop its output is held: there it says what the motor should have done, not what it
-    // should do.
+    // Between two cycles of the position loop its output is held: there it is the velocity that the motor should have had, not the
+    // one that it should have.
     let written = written(recording, VELOCITY_REFERENCE, rows);
     let error = written.map(|row| (reference[row] - actual[row]).abs());
     largest(error, "at a cycle of the position loop")
@@ -135,7 +135,7 @@ mod tests {
             .finish()
     }
 
-    /// The transient has died to e⁻⁴⁸ in the second half of the cruise: what is left is v/k_p to rounding.
+    /// The transient has died to e⁻⁴⁸ in the second half of the cruise: the remainder is v/k_p to rounding.
     #[test]
     fn cruise_is_the_stationary_error_with_its_sign() {
         let recording = two_moves();

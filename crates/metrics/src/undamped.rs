@@ -1,14 +1,14 @@
-//! Closed form of the vibration that a rest-to-rest profile leaves.
+//! Closed form of the residual vibration after a rest-to-rest profile.
 /// Amplitude (unit of `distance`) with which an undamped mode of angular frequency `omega` (rad/s) rings after its
 /// base has followed a rest-to-rest profile exactly:
 ///
 /// ```text
 /// A = |X|·∏ |sin(ω·T_k/2)/(ω·T_k/2)|
 /// ```
-/// `boxes` are the lengths T_k (s) of the boxes whose convolution is the velocity: x/v, v/a, a/j, j/s when every bound
+/// `boxes` are the lengths T_k (s) of the moving averages whose convolution is the velocity: x/v, v/a, a/j, j/s when every bound
 /// is reached. The mode sees its base through `1 − s²/(s² + ω²)`, so what remains is the spectrum of the velocity at
-/// ω; a convolution of boxes has a product of sincs.
-/// Source of the boxes: Lambrechts, Boerlage, Steinbuch, *Trajectory planning and feedforward design for
+/// ω; a convolution of moving averages has a product of sincs.
+/// Source of the moving averages: Lambrechts, Boerlage, Steinbuch, *Trajectory planning and feedforward design for
 /// electromechanical motion systems*, Control Engineering Practice 13, 2005.
 #[must_use]
 pub fn undamped_residual(distance: f64, omega: f64, boxes: &[f64]) -> f64 {

@@ -1,4 +1,4 @@
-//! Limits and what comes of them.
+//! Limits and the verdict on them.
 use crate::absence::Absence;
 use crate::name::Name;
 use crate::quantity::Quantity;
@@ -10,9 +10,9 @@ use std::fmt;
 pub struct Limit {
     /// The metric.
     pub metric: Name,
-    /// Smallest value that passes; of a metric whose sign is a direction ([`Name::is_signed`]), the smallest magnitude.
+    /// Smallest permitted value; for a metric whose sign is a direction ([`Name::is_signed`]), the smallest magnitude.
     pub min: Option<f64>,
-    /// Largest value that passes, or magnitude.
+    /// Largest permitted value, or magnitude.
     pub max: Option<f64>,
 }
 
@@ -27,20 +27,20 @@ pub struct Miss {
     pub value: Option<f64>,
     /// Unit of the metric.
     pub unit: String,
-    /// Why the metric is absent.
+    /// Reason why the metric is absent.
     pub absence: Option<Absence>,
 }
 
-/// Whether every limit is kept, every requirement met, and every expected fault has come.
+/// Result of a run: missed limits, requirements, expected faults, warnings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Verdict {
     /// The limits that were missed, in the order in which they were given.
     pub misses: Vec<Miss>,
-    /// How the run stands to each requirement, in the order of [`Requirement::ALL`]; empty where only limits were judged.
+    /// Status of each requirement, in the order of [`Requirement::ALL`]; empty if only limits were judged.
     pub requirements: Vec<(Requirement, RequirementResult)>,
     /// The faults that were expected, in the order of the file.
     pub expected: Vec<Expected>,
-    /// What breaks no requirement and should be known: in words.
+    /// Findings that break no requirement, in words.
     pub warnings: Vec<String>,
 }
 
@@ -51,7 +51,7 @@ impl Limit {
         Self { metric, min: None, max: Some(max) }
     }
 
-    /// Both at once: the tighter bound on each side.
+    /// Combines both: the tighter bound on each side.
     #[must_use]
     pub(crate) fn and(&self, other: &Self) -> Self {
         let tighter = |one: Option<f64>, two: Option<f64>, pick: fn(f64, f64) -> f64| match (one, two) {
@@ -62,7 +62,7 @@ impl Limit {
         Self { metric: self.metric, min, max }
     }
 
-    /// Whether `value` is within. A limit that is not a number is never kept.
+    /// True if `value` is within the limit. A limit that is not a number is never kept.
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
         let size = if self.metric.is_signed() { value.abs() } else { value };
@@ -81,7 +81,7 @@ impl Verdict {
         self
     }
 
-    /// Whether every limit is kept, every requirement met, and every expected fault has come.
+    /// True if every limit is kept, every requirement met, and every expected fault has come.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.misses.is_empty()
@@ -89,7 +89,7 @@ impl Verdict {
             && !self.requirements.iter().any(|(_, result)| result.standing == Standing::Broken)
     }
 
-    /// What fails, in words: missed limits, broken requirements, expected faults that did not come.
+    /// Reasons for a failure, in words: missed limits, broken requirements, expected faults that did not come.
     pub fn reasons(&self) -> impl Iterator<Item = String> {
         let misses = self.misses.iter().map(ToString::to_string);
         let broken = self.requirements.iter().filter(|(_, result)| result.standing == Standing::Broken);
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    /// Two moves at 0.8 mm and −0.9 mm, each with a band of its own.
+    /// Two moves at 0.8 mm and −0.9 mm, each with a separate band.
     #[test]
     fn each_move_keeps_its_own_limits() {
         let made = |error| {

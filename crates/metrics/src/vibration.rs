@@ -1,4 +1,4 @@
-//! Residual vibration of the load: what is left when the set-point has come to rest.
+//! Residual vibration of the load, after the set-point has come to rest.
 use crate::absence::Absence;
 use crate::basis;
 use crate::extremes::range_of;
@@ -11,14 +11,14 @@ use servobench_signals::Signal;
 use std::ops::Range;
 
 const LOAD: Signal = Signal::LoadPosition;
-/// Values in which a mode is looked for, at most: a minute at 16 kHz. What a move leaves ringing has died away by then, and a spectrum of
-/// ten minutes would take a gigabyte.
+/// Maximum number of values in which a mode is searched for: a minute at 16 kHz. The ringing after a move has died away by then, and
+/// a spectrum of ten minutes would take a gigabyte.
 const HEARD: usize = 1 << 20;
 
-/// Where the mode of a vibration is looked for.
+/// Frequencies at which the mode of a vibration is searched for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Search {
-    /// Nobody wants one.
+    /// No mode is needed.
     Nowhere,
     /// At any frequency.
     Everywhere,
@@ -38,22 +38,22 @@ impl Search {
 pub(crate) struct Residual {
     peak_to_peak: Result<f64, Absence>,
     rms: Result<f64, Absence>,
-    /// `None` when none was looked for.
+    /// `None` without a search.
     mode: Option<Result<Vibration, Absence>>,
 }
 
 impl Residual {
-    /// No vibration to measure, and why.
+    /// No vibration to measure, with the reason.
     pub(crate) fn absent(why: &Absence) -> Self {
         Self { peak_to_peak: Err(why.clone()), rms: Err(why.clone()), mode: Some(Err(why.clone())) }
     }
 
-    /// From the end of the profile to the next move. `search` says where a mode is looked for.
+    /// From the end of the profile to the next move; `search` gives the frequencies of the mode.
     pub(crate) fn after(recording: &Checked<'_>, phase: &Phase<'_>, question: &Question, search: Search) -> Self {
         Self::over(recording, &phase.rest, phase.made.end, phase.made.to, question, search)
     }
 
-    /// From `time` (s) to the next move. The amplitude is that at the end of the profile before it, where nothing has pushed since.
+    /// From `time` (s) to the next move. The amplitude is that at the end of the profile before it, if no effort has changed since.
     pub(crate) fn from_time(recording: &Checked<'_>, time: f64, question: &Question, search: Search) -> Self {
         let start = recording.index_at(time);
         let next = recording.moves.iter().map(|made| recording.index_at(made.start)).find(|row| *row > start);
@@ -106,8 +106,8 @@ impl Residual {
         }
     }
 
-    /// The largest of every rest of a program: of peak-to-peak value and of RMS, and the mode with the largest amplitude. A pause that is
-    /// too short to measure does not count; a last rest that is has cut the run short.
+    /// Largest peak-to-peak value and RMS over all rests of a program, and the mode with the largest amplitude. A pause that is too
+    /// short to measure does not count; a too short last rest means that the run was cut short.
     pub(crate) fn largest(mut all: Vec<Self>) -> Self {
         let Some(last) = all.pop() else { return Self::absent(&Absence::NoMove) };
         if let Err(why @ (Absence::RestTooShort { .. } | Absence::NothingRecorded { .. })) = &last.peak_to_peak {
@@ -123,12 +123,12 @@ impl Residual {
         })
     }
 
-    /// The dominant mode, where one could be fitted.
+    /// The dominant mode, if one could be fitted.
     pub(crate) fn mode(&self) -> Option<Mode> {
         self.mode.as_ref()?.as_ref().ok()?.mode().ok()
     }
 
-    /// Notes the metrics, without those of a mode when none was looked for.
+    /// Notes the metrics, without those of a mode if none was searched for.
     pub(crate) fn note(&self, set: &mut MetricSet, recording: &Checked<'_>) {
         let unit = recording.about.axis_unit.as_str();
         set.note(Name::ResidualVibrationPp, unit, self.peak_to_peak.clone());
@@ -142,7 +142,7 @@ impl Residual {
     }
 }
 
-/// The larger of two, by `size`; one that is absent only where both are.
+/// The larger of two, by `size`; absent only if both are.
 fn larger<T>(one: Result<T, Absence>, two: Result<T, Absence>, size: impl Fn(&T) -> f64) -> Result<T, Absence> {
     match (one, two) {
         (Ok(one), Ok(two)) => Ok(if size(&two) > size(&one) { two } else { one }),
@@ -151,7 +151,7 @@ fn larger<T>(one: Result<T, Absence>, two: Result<T, Absence>, size: impl Fn(&T)
     }
 }
 
-/// True where an effort from outside changes within `rows`.
+/// True if an external effort changes within `rows`.
 fn is_pushed(recording: &Checked<'_>, rows: &Range<usize>) -> bool {
     let changes = |signal: Signal| {
         let values = channel(recording, signal).ok().and_then(|values| values.get(rows.clone()));
@@ -167,7 +167,7 @@ mod tests {
     use crate::synthetic::{Build, planned};
     use core::f64::consts::TAU;
 
-    /// 1 µm at 20 Hz, and 50 µm at 40 Hz once no mode is looked for any more.
+    /// 1 µm at 20 Hz, and 50 µm at 40 Hz after the part in which a mode is searched for.
     #[test]
     fn a_mode_is_of_the_first_minute_and_the_peaks_are_of_all() {
         let rate = 16_000;

@@ -1,7 +1,7 @@
-//! Contacts with the ends of the travel, and which of them do no harm.
+//! Contacts with the ends of the travel, and those of them that do no harm.
 //!
-//! A contact is meant, or is nobody's doing, while the axis is in Homing, which `MC_StepBlock` is a step of, and while the drive gives the
-//! motor no power. Such a contact goes on harmless when that ends, unless the load is pushed in harder then.
+//! A contact is harmless while the axis is in Homing, of which `MC_StepBlock` is a step, and while the drive gives the motor no
+//! power. Such a contact stays harmless when that ends, unless the load is pushed in harder then.
 use super::Incident;
 use super::spell::spells;
 use super::states::spells_of;
@@ -11,15 +11,15 @@ use servobench_signals::Signal;
 use servobench_trace::{Event, Recording};
 use std::ops::Range;
 
-/// Time (s) for which a load may be off a stop and meets it again in the same contact: the flights of a bounce. A fall from rest
-/// takes it 1 mm in half of it, and a stop takes most of the velocity with which a load comes.
+/// Time (s) for which a load may be off a stop within one contact: the flights of a bounce. A fall from rest covers 1 mm in half
+/// of it, and a stop takes most of the velocity with which a load comes.
 const FLIGHT: f64 = 0.05;
-/// How much harder a load that lies on a stop is pushed in by what does no harm: a force that is applied at once, to whatever has no
-/// damping, goes to twice its value.
+/// Factor by which harmless causes may push a load that lies on a stop in harder: the effect of a force that is applied at once,
+/// without damping, rises to twice its value.
 const HARDER: f64 = 2.0;
 /// States of a drive that gives the motor power.
 const POWERED: [&str; 3] = ["Operation enabled", "Quick stop active", "Fault reaction active"];
-/// Who notes a contact.
+/// Source of the events of contacts.
 const MECHANICS: &str = "mechanics";
 
 /// A contact of the load with an end stop.
@@ -55,10 +55,10 @@ fn harmless(recording: &Recording, rules: &Rules<'_>) -> Vec<Harmless> {
     all
 }
 
-/// Why a contact at `time` (s) does no harm, and until when that lasts.
+/// Reason why a contact at `time` (s) does no harm, and the end of its validity.
 fn excuse(times: &[Harmless], time: f64) -> Option<(&'static str, f64)> {
     let first = times.iter().find(|one| one.start <= time && time < one.end)?;
-    // From one such time into the next.
+    // One such time may continue into the next.
     let mut end = first.end;
     while let Some(next) = times.iter().find(|one| one.start <= end && end < one.end) {
         end = next.end;
@@ -66,7 +66,7 @@ fn excuse(times: &[Harmless], time: f64) -> Option<(&'static str, f64)> {
     Some((first.why, end))
 }
 
-/// The contacts of the load with `[axis.end_stops]`, each as an event, and those in which it is pushed in harder afterwards.
+/// Contacts of the load with `[axis.end_stops]`, each as an event, and those in which it is pushed in harder afterwards.
 pub(super) fn incidents(recording: &Recording, rules: &Rules<'_>) -> Vec<Event> {
     let Some(efforts) = recording.channel(Signal::EffortEndStop) else { return Vec::new() };
     let contacts = contacts(recording, efforts);
@@ -100,8 +100,8 @@ pub(super) fn incidents(recording: &Recording, rules: &Rules<'_>) -> Vec<Event> 
     events
 }
 
-/// Completes the events of joints of a user's own model that come to the end of their range: how fast the load was, and why that does no
-/// harm, where it does none.
+/// Completes the events of joints of a user's own model that come to the end of their range: the velocity of the load, and the
+/// reason why that does no harm, where it does none.
 pub(super) fn complete_joints(recording: &mut Recording, rules: &Rules<'_>) {
     let is_joint = |event: &Event| Incident::of(event) == Some(Incident::EndStop);
     if !recording.events.iter().any(is_joint) {
@@ -145,7 +145,7 @@ fn contacts(recording: &Recording, efforts: &[f64]) -> Vec<Contact> {
         .collect()
 }
 
-/// Of the touches of a contact, the largest velocity over the tick before.
+/// Largest velocity over the tick before each touch of a contact.
 fn speed(recording: &Recording, efforts: &[f64], rows: &Range<usize>) -> Option<f64> {
     let positions = recording.channel(Signal::LoadPosition)?;
     let touches = rows.clone().filter(|row| *row > 0 && efforts[*row] != 0.0 && efforts[*row - 1] == 0.0);
@@ -153,7 +153,7 @@ fn speed(recording: &Recording, efforts: &[f64], rows: &Range<usize>) -> Option<
     touches.map(|row| (positions[row] - positions[row - 1]).abs() * hertz).reduce(f64::max)
 }
 
-/// The effort of the largest magnitude.
+/// Effort with the largest magnitude.
 fn peak(efforts: &[f64]) -> f64 {
     efforts.iter().copied().fold(0.0, |most, effort| if effort.abs() > most.abs() { effort } else { most })
 }
@@ -268,7 +268,7 @@ mod tests {
         }
     }
 
-    /// A joint that the mechanics have noted at 0.4 s, where the load has 0.2 m/s; the axis is in Homing until 0.3 s or 0.5 s.
+    /// A joint that the mechanics noted at 0.4 s, where the load has 0.2 m/s; the axis is in Homing until 0.3 s or 0.5 s.
     #[test]
     fn a_joint_at_its_end_is_excused_as_a_stop_is() {
         for (until, excuse) in [(0.3, None), (0.5, Some("in homing"))] {

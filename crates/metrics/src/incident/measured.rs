@@ -6,7 +6,7 @@ use crate::name::Name;
 use crate::span::{Checked, channel, largest, unit};
 use servobench_signals::Signal;
 
-/// Notes what the incidents of the run amount to.
+/// Notes the metrics of the incidents of the run.
 pub(crate) fn note(set: &mut MetricSet, recording: &Checked<'_>) {
     let stops = channel(recording, Signal::EffortEndStop).and_then(|efforts| {
         channel(recording, Signal::LoadPosition)?;
@@ -66,7 +66,7 @@ mod tests {
         }
     }
 
-    /// Nobody who has no such equipment is told that a metric of it is absent.
+    /// An axis without such equipment gets no report that its metrics are absent.
     #[test]
     fn what_an_axis_cannot_have_is_rare() {
         let mut set = MetricSet::default();

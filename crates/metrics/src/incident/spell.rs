@@ -1,6 +1,6 @@
-//! Times in which something is so.
+//! Time spans in which a condition holds.
 
-/// The rows, from the first to just before the last, in which `holds`; those apart by at most `gap` rows are one.
+/// Ranges of rows in which `holds`, end exclusive; those apart by at most `gap` rows are one.
 pub(super) fn spells(values: &[f64], gap: usize, holds: impl Fn(f64) -> bool) -> Vec<std::ops::Range<usize>> {
     let mut spells: Vec<std::ops::Range<usize>> = Vec::new();
     for (row, _) in values.iter().enumerate().filter(|(_, value)| holds(**value)) {

@@ -6,10 +6,10 @@ use servobench_trace::{Event, Recording};
 pub(super) const BUFFER: (&str, &str) = ("drive", "buffer");
 /// Source and name of bit 11 of the statusword.
 pub(super) const INTERNAL_LIMIT: (&str, &str) = ("drive", "internal_limit");
-/// Name of the limit that bit 11 stands for, in events.
+/// Name in events of the limit that bit 11 stands for.
 const LIMIT: &str = "internal limit";
 
-/// Errors that a buffer latches: as its state has them, as an incident, in words.
+/// Errors that a buffer latches: value of its state, incident, words.
 const ERRORS: [(&str, Incident, &str); 3] = [
     ("point missing", Incident::MissingPoint, "a point of the trajectory is missing in the buffer of the drive"),
     ("Overflow", Incident::BufferOverflow, "the trajectory buffer of the drive overflows: points are lost"),
@@ -20,7 +20,7 @@ const ERRORS: [(&str, Incident, &str); 3] = [
     ),
 ];
 
-/// Spells of a state in which `holds`, from start to end (s); the last one may go on, to infinity.
+/// Spells of a state in which `holds`, from start to end (s); the last one may last to infinity.
 pub(super) fn spells_of(
     recording: &Recording,
     (source, name): (&str, &str),
@@ -43,7 +43,7 @@ pub(super) fn spells_of(
     spells
 }
 
-/// Such spells as far as the recording goes.
+/// Such spells, clipped at the end of the recording.
 pub(super) fn recorded(recording: &Recording, spells: Vec<[f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
     let last = recording.time_of(recording.len().saturating_sub(1));
     spells.into_iter().map(move |[start, end]| [start, end.min(last).max(start)])

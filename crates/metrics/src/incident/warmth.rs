@@ -5,7 +5,7 @@ use crate::requirement::Rules;
 use servobench_signals::Signal;
 use servobench_trace::{Event, Recording};
 
-/// Time (s) for which a winding may be below its limit and the spell goes on: a temperature that the ripple of the current moves across
+/// Time (s) for which a winding may be below its limit within one spell: a temperature that the ripple of the current moves across
 /// the limit is one incident. Thermal time constants of windings are tens of seconds.
 const COOLER: f64 = 1.0;
 

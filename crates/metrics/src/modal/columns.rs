@@ -1,16 +1,16 @@
-//! Columns of equal length, and sums of products of them.
+//! Columns of equal length, and sums of their products.
 //!
-//! A sum of products is one chain of additions after the other; a processor adds up several columns in the time of one. So what is done
-//! with one column and many others is done with four of them at a time: the same operations in the same order for each.
+//! A sum of products is a chain of dependent additions; a processor adds up several columns in the time of one. So operations of
+//! one column with many others are made with four of them at a time: the same operations in the same order for each.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 
 use servobench_base::wide_registers;
 use std::slice::ChunksExact;
 
-/// Columns that are worked on side by side.
+/// Columns that are processed side by side.
 const TOGETHER: usize = 4;
 
-/// Columns of equal length, one behind the other in memory.
+/// Columns of equal length, contiguous in memory.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     rows: usize,
@@ -18,7 +18,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// None yet, of `rows` values each (at least one), with room for `count`.
+    /// Empty, for columns of `rows` values (at least one), with room for `count`.
     pub(crate) fn new(rows: usize, count: usize) -> Self {
         assert!(rows > 0, "a column has a value");
         Self { rows, values: Vec::with_capacity(rows * count) }
@@ -28,7 +28,7 @@ impl Columns {
         self.values.len() / self.rows
     }
 
-    /// Adds `count` columns of zeros, and gives them to be filled in.
+    /// Adds `count` columns of zeros, and returns them to be filled in.
     pub(crate) fn add(&mut self, count: usize) -> &mut [f64] {
         let here = self.values.len();
         self.values.resize(here + count * self.rows, 0.0);
@@ -45,7 +45,7 @@ impl Columns {
         &self.values[index * self.rows..][..self.rows]
     }
 
-    /// The first `count` of them, one behind the other.
+    /// The first `count` columns, contiguous.
     pub(crate) fn first(&self, count: usize) -> &[f64] {
         &self.values[..count * self.rows]
     }
@@ -59,12 +59,12 @@ impl Columns {
         self.values.split_at_mut(index * self.rows)
     }
 
-    /// Takes the last one out.
+    /// Removes the last column and returns it.
     pub(crate) fn pop(&mut self) -> Vec<f64> {
         self.values.split_off(self.values.len() - self.rows)
     }
 
-    /// All of them, one behind the other.
+    /// All columns, contiguous.
     pub(crate) fn all_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
@@ -86,7 +86,7 @@ fn dot_in_any(one: &[f64], two: &[f64]) -> f64 {
     dots_of([two], one)[0]
 }
 
-/// The [`dot`] of `one` with each of `others`, columns one behind the other, as many as there are `sums`.
+/// The [`dot`] of `one` with each of `others`, contiguous columns, as many as there are `sums`.
 pub(crate) fn dots(one: &[f64], others: &[f64], sums: &mut [f64]) {
     wide_registers!(dots_in_any(one, others, sums), dots_in_wide_registers, one, others, sums);
 }
@@ -109,8 +109,8 @@ fn dots_in_any(one: &[f64], others: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// Subtracts from each of `vectors`, columns one behind the other, its projection on the unit vector `unit`, and puts down how long that
-/// is: `along`.
+/// Subtracts from each of `vectors`, contiguous columns, its projection on the unit vector `unit`, and writes the lengths of the
+/// projections to `along`.
 pub(crate) fn remove_from_each(unit: &[f64], vectors: &mut [f64], along: &mut [f64]) {
     wide_registers!(
         remove_from_each_in_any(unit, vectors, along),
@@ -163,7 +163,7 @@ fn dots_of<const N: usize>(columns: [&[f64]; N], with: &[f64]) -> [f64; N] {
 mod tests {
     use super::*;
 
-    /// What a processor with wide registers gives and what any other gives are the same bits, and one column the same as many.
+    /// Processors with and without wide registers give the same bits, and so do one column and many.
     #[test]
     fn both_kinds_of_processors_give_the_same_bits() {
         let mut random = servobench_testkit::Random::seeded(19);

@@ -1,4 +1,4 @@
-//! Which of the fitted modes is reported.
+//! Selection of the fitted mode that is reported.
 use super::fit::Fit;
 use super::model::{Component, Oscillation, tail};
 use super::order::Order;
@@ -10,54 +10,54 @@ use core::f64::consts::PI;
 
 /// Stronger damping is settling, not vibration; stronger growth ends in an error, not in a recording.
 const MAX_DAMPING: f64 = 0.5;
-/// Share of the oscillation that modes must explain where they leave something.
+/// Share of the oscillation that modes must explain, unless they explain everything.
 const EXPLAINED: f64 = 0.9;
-/// The largest value that is left where a mode is one, as a share of its envelope; what leaves more is imitated.
+/// Largest remainder of a true mode, as a share of its envelope; a larger one shows an imitation.
 const IMITATED: f64 = 0.2;
-/// A mode below this share of the record's height is taken for a crumb of its tail.
+/// A mode below this share of the record's height is an artefact of its tail.
 const CRUMB: f64 = 1e-7;
-/// A mode larger than this, in heights of the record, is one of several that all but cancel: no vibration anybody sees.
+/// A mode larger than this, in heights of the record, is one of several that nearly cancel: not a visible vibration.
 const CANCELLING: f64 = 2.0;
-/// An oscillation is visible while its envelope is above 5 % of its largest value, e⁻³, and above what nobody asks for.
+/// An oscillation is visible while its envelope is above 5 % of its largest value, e⁻³, and above the smallest vibration that matters.
 const VISIBLE: f64 = 3.0;
-/// What moves by less than this share of a mode's envelope for a quarter of its period stands still. At the least
+/// A motion by less than this share of a mode's envelope for a quarter of its period is a standstill. At the least
 /// favourable instant a mode beside a drift of its own velocity still moves by 8 %.
 const STILL: f64 = 0.01;
-/// Stillness is looked for while the envelope is above this share of its largest value; of a mode that has all but died
-/// away an encoder may see nothing.
+/// Stillness is searched for while the envelope is above this share of its largest value; a mode that has nearly died
+/// away may be invisible to an encoder.
 const LOUD: f64 = 0.2;
-/// The same in steps of a sensor, which may not see less.
+/// The same in steps of a sensor, to which less may be invisible.
 const INCREMENTS: f64 = 4.0;
 
 /// A mode that is seen for fewer periods may be the imitation of a motion that comes to a stop, by a few poles of much damping.
 const FEW_PERIODS: f64 = 5.0;
-/// A motion comes to a stop where a quarter of a period moves it by so many times what noise and encoder show at rest, and the next one by
-/// no more than that. Of what decays as such a mode does, a quarter moves by 1/22 of the one before at least.
+/// A motion comes to a stop where a quarter of a period moves it by this multiple of noise and encoder resolution at rest, and the
+/// next one by no more than that. If it decays as such a mode does, a quarter moves by 1/22 of the one before at least.
 const STOPPED: f64 = 25.0;
-/// Means in a quarter of a period, of which a stop is told: noise is less in them.
+/// Means in a quarter of a period, from which a stop is detected: noise is less in them.
 const MEANS: usize = 4;
 
 /// A fitted mode.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) mode: Mode,
-    /// Periods before its envelope has fallen to 5 %, or to what nobody asks for, as far as the record goes.
+    /// Periods before its envelope falls to 5 %, or below the smallest vibration that matters, within the record.
     pub(crate) periods: f64,
 }
 
-/// Why a record has no fitted mode.
+/// Reasons why a record has no fitted mode.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Unfit {
-    /// Tails explain it, or nothing is there.
+    /// Tails explain it, or it is empty.
     Settles,
-    /// The slowest part of it is shorter than two periods.
+    /// Its slowest part is shorter than two periods.
     TooShort {
         /// Periods in the record.
         periods: f64,
     },
-    /// It holds still where a mode would move it.
+    /// The record holds still where a mode would move it.
     Sticks,
-    /// It has modes, but none near the frequency that was given.
+    /// The record has modes, but none near the frequency that was given.
     Elsewhere,
     /// Modes explain this share of it only.
     NotModal {
@@ -67,11 +67,11 @@ pub(crate) enum Unfit {
 }
 
 /// The mode with the most energy in `signal`, a record of height 1, of which `series` was thinned and `order` fitted;
-/// with `near` (Hz), the one with the most energy within [`BAND`]. Modes that are seen for two periods come before those that die sooner.
-/// Nothing below `least` is a mode.
+/// with `near` (Hz), the one with the most energy within [`BAND`]. Modes that are visible for two periods come before those that die
+/// sooner. Nothing below `least` is a mode.
 ///
 /// # Errors
-/// [`Unfit`]: why there is none.
+/// [`Unfit`]: the reason why there is none.
 pub(crate) fn dominant(
     order: &Order,
     series: &Series,
@@ -122,7 +122,7 @@ pub(crate) fn dominant(
             }
         }
     }
-    // What all but cancels may still be what swings: then a small mode beside it is a part of the imitation.
+    // A component that nearly cancels may still be the swing: then a small mode beside it is a part of the imitation.
     let among_larger = best.is_some_and(|(_, largest, _)| {
         let rest = order.fit.sum_of(|component| cancelling.contains(&component));
         !cancelling.is_empty() && Swings::of(&rest, series.step, 2.0 * largest).is_some()
@@ -137,8 +137,8 @@ pub(crate) fn dominant(
     }
 }
 
-/// True where the record moves by more than `unseen` in a quarter of a period of the mode `found` and holds still in the next one; of a mode
-/// that grows, in the one before.
+/// True if the record moves by more than `unseen` in a quarter of a period of the mode `found` and holds still in the next one; for a
+/// mode that grows, in the one before.
 fn comes_to_a_stop(signal: &Signal<'_>, found: Oscillation, unseen: f64) -> bool {
     let rows = (quarter(signal, found) / MEANS).max(1);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / rows as f64;
@@ -160,7 +160,7 @@ fn quarter(signal: &Signal<'_>, found: Oscillation) -> usize {
     quarter
 }
 
-/// Whether the record stands still for a quarter of a period while the mode `found` with this `envelope` is loud: then
+/// True if the record stands still for a quarter of a period while the mode `found` with this `envelope` is loud: then
 /// something else moves it, and a sum of modes only imitates that.
 fn stands_still(signal: &Signal<'_>, found: Oscillation, envelope: impl Fn(f64) -> f64) -> bool {
     let quarter = quarter(signal, found);
@@ -168,23 +168,23 @@ fn stands_still(signal: &Signal<'_>, found: Oscillation, envelope: impl Fn(f64) 
     let loud = LOUD * envelope(time(0)).max(envelope(time(signal.values.len())));
     signal.values.chunks_exact(quarter).enumerate().any(|(k, values)| {
         let least = envelope(time(k * quarter)).min(envelope(time((k + 1) * quarter)));
-        // Within the resolution it is not seen to move; two values stand still by chance.
+        // Motion within the resolution is invisible; two values stand still by chance.
         quarter > 2 && least > loud.max(INCREMENTS * signal.resolution) && span_of(values) < STILL * least
     })
 }
 
-/// The oscillation that a component is, when it counts as vibration.
+/// The oscillation of a component, if it counts as vibration.
 fn vibration(component: Component) -> Option<Oscillation> {
     component.oscillation().filter(|found| found.damping().abs() <= MAX_DAMPING)
 }
 
-/// Amplitude in the record at time 0: what was fitted to the thinned series, by its gain.
+/// Amplitude in the record at time 0: fitted to the thinned series, corrected by its gain.
 fn amplitude(found: Oscillation, coefficients: &[f64], series: &Series) -> f64 {
     let gain = series.gain(found.decay, found.damped);
     libm::hypot(coefficients[0], coefficients[1] / found.damped) / libm::hypot(gain.0, gain.1)
 }
 
-/// Share of the energy of the oscillation, settling taken off, that the vibrations which `which` picks explain.
+/// Share of the energy of the oscillation, without settling, that the vibrations selected by `which` explain.
 fn explained(fit: &Fit, which: impl Fn(Oscillation) -> bool) -> f64 {
     let fitted = fit.sum_of(|component| vibration(component).is_some_and(&which));
     let whole: f64 = fitted.iter().zip(&fit.residual).map(|(y, r)| (y + r) * (y + r)).sum();

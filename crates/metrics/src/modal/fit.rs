@@ -11,13 +11,13 @@ use std::ops::Range;
 pub(crate) struct Fit {
     /// The components beside the constant.
     pub(crate) components: Vec<Component>,
-    /// Sum of squares of what is left.
+    /// Sum of squares of the residual.
     pub(crate) energy: f64,
-    /// What is left.
+    /// Difference between the series and the fit.
     pub(crate) residual: Vec<f64>,
     /// Coefficient of the constant, then those of the components in order.
     pub(super) coefficients: Vec<f64>,
-    /// What the coefficients multiply.
+    /// Columns that the coefficients multiply.
     pub(super) columns: Columns,
     pub(super) basis: Orthonormal,
 }
@@ -42,12 +42,12 @@ impl Fit {
         self.coefficients[0]
     }
 
-    /// Largest magnitude of what is left.
+    /// Largest magnitude of the residual.
     pub(crate) fn peak(&self) -> f64 {
         most_of([&self.residual], |[y]| y.abs())
     }
 
-    /// The one of `candidates` that takes most of what is left, and how much (sum of squares).
+    /// The one of `candidates` that removes most of the residual, and by how much (sum of squares).
     pub(crate) fn best_of(&self, candidates: &Candidates) -> Option<(Component, f64)> {
         let Candidates { components, columns } = candidates;
         let gains = self.basis.gains(columns.clone(), components.first()?.width(), &self.residual);
@@ -55,18 +55,18 @@ impl Fit {
         gains.reduce(|one, two| if two.1 > one.1 { two } else { one })
     }
 
-    /// With one component more.
+    /// The fit with one more component.
     pub(crate) fn with(&self, component: Component, series: &Series) -> Option<Self> {
         Self::of([self.components.as_slice(), &[component]].concat(), series)
     }
 
-    /// With the one of `candidates` that takes most of what is left.
+    /// The fit with the one of `candidates` that removes most of the residual.
     pub(crate) fn with_best_of(&self, candidates: &Candidates, series: &Series) -> Option<Self> {
         let (best, _) = self.best_of(candidates)?;
         self.with(best, series)
     }
 
-    /// The components with the places of their coefficients.
+    /// The components with the ranges of their coefficients.
     pub(super) fn terms(&self) -> impl Iterator<Item = (Component, Range<usize>)> {
         self.components.iter().scan(1, |next, component| {
             let first = *next;
@@ -80,7 +80,7 @@ impl Fit {
         self.terms().map(|(component, places)| (component, &self.coefficients[places]))
     }
 
-    /// Sum of the fitted components that `which` picks.
+    /// Sum of the fitted components selected by `which`.
     pub(crate) fn sum_of(&self, which: impl Fn(Component) -> bool) -> Vec<f64> {
         let mut sum = vec![0.0; self.residual.len()];
         for place in self.terms().filter(|(component, _)| which(*component)).flat_map(|(_, places)| places) {

@@ -1,34 +1,34 @@
 //! Linear least squares by orthonormal columns.
 use super::columns::{Columns, dot, remove_from_each};
 
-/// Below this share of its own length, what is left of a column after projection is rounding.
+/// Below this share of its own length, the remainder of a column after projection is rounding.
 const DEPENDENT: f64 = 1e-11;
 /// A projection that leaves more than this share of a vector (squared) has not cancelled.
 const SOUND: f64 = 0.1;
 
 /// Orthonormal columns Q and the triangle R of `A = Q·R`.
 ///
-/// By modified Gram–Schmidt: each column of Q, once it is there, is taken out of all that come later. Where that cancels, a second time,
+/// By modified Gram–Schmidt: each column of Q, once known, is removed from all later ones. Where that cancels, a second time,
 /// which is enough (Giraud, Langou, Rozložník, 2005).
 #[derive(Debug, Clone)]
 pub(crate) struct Orthonormal {
     columns: Columns,
-    /// The columns of R, one behind the other, each with its zeros.
+    /// The columns of R, contiguous, each with its zeros.
     triangle: Vec<f64>,
 }
 
-/// The best sum of columns.
+/// The best linear combination of columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub(crate) basis: Orthonormal,
-    /// What the columns are to be multiplied by.
+    /// Factors of the columns.
     pub(crate) coefficients: Vec<f64>,
-    /// What is left.
+    /// Difference between the values and the combination.
     pub(crate) residual: Vec<f64>,
 }
 
 impl Solution {
-    /// The sum of `columns` that is nearest to `values`; `None` when they are linearly dependent or not finite.
+    /// The sum of `columns` nearest to `values`; `None` when they are linearly dependent or not finite.
     pub(crate) fn of(columns: &Columns, values: &[f64]) -> Option<Self> {
         let count = columns.count();
         let mut columns = columns.clone();
@@ -57,8 +57,8 @@ impl Solution {
 }
 
 impl Orthonormal {
-    /// How much of the sum of squares of `residual`, orthogonal to what is there, each group of further `columns` would take; `None` when
-    /// they depend on what is there, or on each other. A group has `width` columns.
+    /// Sum of squares of `residual`, orthogonal to the columns present, that each group of further `columns` would remove; `None` when
+    /// they depend on those present, or on each other. A group has `width` columns.
     pub(crate) fn gains(&self, mut columns: Columns, width: usize, residual: &[f64]) -> Vec<Option<f64>> {
         let before: Vec<f64> = columns.iter().map(|column| dot(column, column)).collect();
         self.remove_once(&mut columns);
@@ -66,7 +66,7 @@ impl Orthonormal {
         groups.map(|(columns, before)| self.gain(columns, before, residual)).collect()
     }
 
-    /// That of one group, out of which the columns that are there were taken once.
+    /// The gain of one group, from which the columns present were removed once.
     fn gain(&self, columns: &mut [f64], before: &[f64], residual: &[f64]) -> Option<f64> {
         let mut sum = 0.0;
         for (k, before) in before.iter().enumerate() {
@@ -91,7 +91,7 @@ impl Orthonormal {
         }
     }
 
-    /// The x of `R·x = coordinates`.
+    /// The solution x of `R·x = coordinates`.
     fn back_substitute(&self, mut coordinates: Vec<f64>) -> Vec<f64> {
         let count = coordinates.len();
         for k in (0..count).rev() {
@@ -106,7 +106,7 @@ impl Orthonormal {
     }
 }
 
-/// Solves the symmetric positive definite `a·x = b` by Cholesky, of `a` the lower triangle; `None` when it is not
+/// Solves the symmetric positive definite `a·x = b` by Cholesky, from the lower triangle of `a`; `None` when it is not
 /// definite.
 pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
@@ -131,8 +131,8 @@ pub(crate) fn solve_definite(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Ve
     b.iter().all(|x| x.is_finite()).then_some(b)
 }
 
-/// Makes `vector`, which had the squared length `before` and out of which the unit vectors `there` were taken once, orthogonal to them,
-/// and adds what that takes to its `coordinates`.
+/// Makes `vector`, which had the squared length `before` and from which the unit vectors `there` were removed once, orthogonal to
+/// them, and adds the removed parts to its `coordinates`.
 fn remove_again<'a>(
     there: impl Iterator<Item = &'a [f64]>,
     vector: &mut [f64],
@@ -154,7 +154,7 @@ fn remove_again<'a>(
     left
 }
 
-/// The same, and makes it a unit vector; `None` when it depends on the others, or is not finite. Returns its length before that.
+/// The same, and normalises it; `None` when it depends on the others, or is not finite. Returns its length before that.
 fn make_unit<'a>(
     there: impl Iterator<Item = &'a [f64]>,
     vector: &mut [f64],
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(basis.gains(columns(&[[0.0, 1.0, 2.0], [1.0, 3.0, 5.0]]), 2, &residual), [None]);
     }
 
-    /// Columns that are all but parallel: what is taken out twice is orthogonal to the last digit, and fits.
+    /// Columns that are nearly parallel: removed twice, they are orthogonal to the last digit, and fit.
     #[test]
     fn what_cancels_is_taken_out_twice() {
         let nearly = columns(&[[1.0, 1.0, 1.0], [1.0, 1.0 + 1e-8, 1.0]]);

@@ -1,4 +1,4 @@
-//! Motion after a move as a sum of what a linear system at rest input can do.
+//! Motion after a move as a sum of the free responses of a linear system.
 //!
 //! ```text
 //! y(t) = c + Σ B·(1 − e^{−λt})/(λT) + Σ e^{−σt}·(a·cos √q·t + b·sin(√q·t)/√q)
@@ -37,13 +37,13 @@ pub(crate) struct Oscillation {
     pub(crate) damped: f64,
 }
 
-/// Fastest decay that is told from a jump, per step.
+/// Fastest decay that differs from a jump, per step.
 const FASTEST: f64 = 10.0;
 /// Exponents over a whole series below which an exponential is a straight line with a curvature.
 const STRAIGHT: f64 = 1e-6;
 /// Growth of a tail over the series, as a power of e: tenfold at most. A tail that grows takes over from a drift.
 const TAIL_GROWTH: f64 = 2.3;
-/// The same of an oscillation.
+/// The same for an oscillation.
 const GROWTH: f64 = 20.0;
 /// Largest frequency, in Nyquist frequencies.
 const NYQUIST: f64 = 0.98;
@@ -74,7 +74,7 @@ impl Component {
         Self::Pair { decay: damping * omega, square: omega * omega }
     }
 
-    /// The oscillation that this component is; `None` for tails.
+    /// The oscillation of this component; `None` for tails.
     pub(crate) fn oscillation(self) -> Option<Oscillation> {
         match self {
             Self::Pair { decay, square } if square > 0.0 => Some(Oscillation { decay, damped: square.sqrt() }),
@@ -90,7 +90,7 @@ impl Component {
         }
     }
 
-    /// Adds the columns that the coefficients multiply.
+    /// Adds the columns of its coefficients.
     pub(crate) fn add_to(self, columns: &mut Columns, series: &Series) {
         match self {
             Self::Tail { rate } => add_tail(rate, columns, series),
@@ -102,8 +102,8 @@ impl Component {
         }
     }
 
-    /// Adds the derivatives of this component, whose columns begin at `first` among `columns` and have these `coefficients`, by its
-    /// non-linear parameters.
+    /// Adds the derivatives of this component, whose columns begin at `first` among `columns` and have these `coefficients`, with respect
+    /// to its non-linear parameters.
     pub(crate) fn add_derivatives_to(
         self,
         derivatives: &mut Columns,
@@ -170,7 +170,7 @@ fn add_tail(rate: f64, columns: &mut Columns, series: &Series) {
     }
 }
 
-/// Derivative of [`tail`], which is `y` there, by λ: `t²/T·(e^{−u}·(1 + u) − 1)/u²`, u = λt.
+/// Derivative of [`tail`], here `y`, by λ: `t²/T·(e^{−u}·(1 + u) − 1)/u²`, u = λt.
 fn tail_by_rate(rate: f64, t: f64, length: f64, y: f64) -> f64 {
     let u = rate * t;
     let g = if u.abs() < 1e-3 {
@@ -232,7 +232,7 @@ mod tests {
         columns
     }
 
-    /// Columns are what the formula says, and the derivatives are what central differences of them say: an error of the
+    /// Columns match the formula, and derivatives match central differences: an error of the
     /// order of step², and rounding over step. Both sides of q = 0, and close to it.
     #[test]
     fn columns_and_derivatives() {

@@ -1,25 +1,25 @@
-//! Noise in a record: what changes from value to value without belonging to any motion.
+//! Noise in a record: changes from value to value that belong to no motion.
 use super::columns::dot;
 
-/// Noise is not looked at any more within so many standard deviations.
+/// Number of standard deviations within which everything is taken for noise.
 pub(crate) const DEVIATIONS: f64 = 5.0;
-/// Coefficients of the fourth difference. It takes a line, a parabola and a cubic off altogether, and of an oscillation with sixteen
+/// Coefficients of the fourth difference. It removes a line, a parabola and a cubic altogether, and of an oscillation with sixteen
 /// values to a period it leaves 2 %.
 const FOURTH: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
-/// Standard deviation of that of white noise of 1: the root of the sum of squares of these, 70.
+/// Standard deviation of the fourth difference of white noise of 1: the root of the sum of squares of these, 70.
 const GAIN: f64 = 8.366_600_265_340_756;
-/// Standard deviation of a normal distribution by the median of its magnitude.
+/// Standard deviation of a normal distribution over the median of its magnitude.
 const OF_MEDIAN: f64 = 1.482_602_218_505_602;
-/// Differences that are looked at, at most: their median scatters by 2 %.
+/// Maximum number of differences that are used: their median scatters by 2 %.
 const LOOKED_AT: usize = 2048;
-/// Distances at which differences of white noise have nothing in common, those of an oscillation everything at one of them or another.
+/// Lags at which differences of white noise are uncorrelated, and those of an oscillation fully correlated at one or another.
 const APART: std::ops::Range<usize> = FOURTH.len()..17;
-/// What they may have in common by chance: their correlation scatters by 5 % where [`LOOKED_AT`] are looked at.
+/// Correlation that may occur by chance: it scatters by 5 % over [`LOOKED_AT`] differences.
 const IN_COMMON: f64 = 0.3;
 
-/// Standard deviation of the white noise in `values`: by the median of fourth differences, which a few jumps do not move. Of every tick a
-/// motion has hundreds of values to a period, so that it leaves nothing; where it has few, what it leaves is not noise, and there is said
-/// to be none.
+/// Standard deviation of the white noise in `values`: by the median of fourth differences, which a few jumps do not move. A motion has
+/// hundreds of values to a period at every tick, so that nothing of it remains; where it has few, the remainder is not noise, and the
+/// result is 0.
 pub(crate) fn deviation(values: &[f64]) -> f64 {
     let differences: Vec<f64> = values.windows(FOURTH.len()).take(LOOKED_AT).map(fourth_difference).collect();
     if differences.len() < 2 * APART.end || !is_white(&differences) {

@@ -1,4 +1,4 @@
-//! How many components a record holds.
+//! Number of components in a record.
 use super::fit::{Candidates, Fit};
 use super::model::Component;
 use super::series::Series;
@@ -7,39 +7,39 @@ use super::spectrum::{self, HIGHEST, LOWEST};
 /// A component must leave at most this share of the energy.
 const WORTH: f64 = 0.75;
 const MAX_COMPONENTS: usize = 12;
-/// Least-squares fits of one record. A record that is a sum of decaying modes needs twenty to forty; what is not explained then is no such
-/// sum.
+/// Maximum number of least-squares fits of one record. A record that is a sum of decaying modes needs twenty to forty; a motion
+/// that is not explained then is not such a sum.
 const MAX_FITS: usize = 40;
-/// The same of its last refinement.
+/// The same for its last refinement.
 const FINE_FITS: usize = 9;
-/// What is left below this share of the record (squared) is not looked at any more.
+/// Share of the record (squared) below which a remainder is ignored.
 pub(crate) const NOTHING: f64 = 1e-20;
 const START_DAMPING: [f64; 4] = [0.0, 0.005, 0.03, 0.15];
 /// Starting points of tails, λ·T.
 const START_TAILS: [f64; 4] = [1.0, 5.0, 25.0, 100.0];
-/// A step of a fit that still grows takes this share of what is left, or the next component is tried.
+/// Least share of the remainder that a step of a growing fit takes, or else the next component is tried.
 const COARSE: f64 = 0.1;
 /// The same for the fit that is reported.
 const FINE: f64 = 1e-9;
-/// Share of what nobody asks for (squared) that the fit that is reported need not take, either: a tenth of its peak.
+/// Share of the smallest vibration that matters (squared) that the reported fit may leave, too: a tenth of its peak.
 const PRECISE: f64 = 1e-2;
-/// Of two kinds of components, one that takes so many times less than the other before its poles are moved is not tried.
+/// Factor by which one kind of component may take less than the other before its poles are moved; if farther behind, it is not tried.
 const FAR_BEHIND: f64 = 2.0;
 /// Frequencies closer than this share start the same fit.
 const SAME: f64 = 0.03;
 
-/// A fit, and whether it leaves anything.
+/// A fit, and whether it is complete.
 #[derive(Debug)]
 pub(crate) struct Order {
     /// The fit.
     pub(crate) fit: Fit,
-    /// True where nothing is left but what nobody asks for.
+    /// True if the remainder is below the smallest vibration that matters.
     pub(crate) is_whole: bool,
 }
 
 impl Order {
-    /// Component after component, while each takes a good part of what is left, until nothing above `least` is. Oscillations start from
-    /// the frequencies `proposed` (Hz) and from the spectrum of what is left.
+    /// Adds component after component, while each takes a good part of the remainder, until that is not above `least`. Oscillations
+    /// start from the frequencies `proposed` (Hz) and from the spectrum of the remainder.
     pub(crate) fn of(series: &Series, proposed: &[f64], least: f64) -> Option<Self> {
         let mut fit = Fit::of(vec![], series)?;
         let nothing = NOTHING * fit.energy;
@@ -58,7 +58,7 @@ impl Order {
     }
 }
 
-/// The tail of a series, where it has one.
+/// The tail of a series, if it has one.
 pub(crate) fn trend(series: &Series) -> Option<Fit> {
     let bare = Fit::of(vec![], series)?;
     let with = bare.with_best_of(&tails(series), series)?.refined(series, COARSE, 0.0, &mut { MAX_FITS });
@@ -76,7 +76,7 @@ fn with_another(fit: &Fit, series: &Series, proposed: &[f64], tails: &Candidates
     let is_new = |frequency: &&f64| !found.iter().any(|other| (other - **frequency).abs() < SAME * other);
     frequencies.extend(proposed.iter().filter(is_new));
     let mut best = [tails, &oscillations(series, &frequencies)].map(|candidates| fit.best_of(candidates));
-    // What promises more goes first.
+    // The most promising first.
     best.sort_by(|one, two| gain(*two).total_cmp(&gain(*one)));
     let most = gain(best[0]);
     let worth_a_try = best.into_iter().flatten().filter(|(_, gain)| FAR_BEHIND * gain >= most);

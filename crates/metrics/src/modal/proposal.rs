@@ -6,9 +6,9 @@ use super::order::{NOTHING, trend};
 use super::series::Series;
 use super::spectrum::{self, HIGHEST, LOWEST};
 
-/// Values from which the tail is guessed.
+/// Values from which the tail is estimated.
 const COARSE: usize = 512;
-/// What is over within this share of a coarse step says little about the record in between.
+/// Share of a coarse step within which a tail that has ended tells little about the record in between.
 const OVER: f64 = 0.5;
 
 /// Frequencies (Hz) between `low` and `high` at which the record oscillates, once its slow tail is taken off; none for a
@@ -29,7 +29,7 @@ pub(crate) fn frequencies(signal: &Signal<'_>, low: f64, high: f64) -> Vec<f64> 
     spectrum::peaks(&values, signal.step, low, high.min(HIGHEST / signal.step))
 }
 
-/// Subtracts from `values` the tail of the signal, but for a constant.
+/// Subtracts from `values` the tail of the signal, without its constant.
 fn subtract_tail(values: &mut [f64], signal: &Signal<'_>) {
     let coarse = Series::thinned(signal.values, signal.start, signal.step, signal.values.len() / COARSE, usize::MAX);
     for (component, coefficients) in trend(&coarse).iter().flat_map(Fit::parts) {

@@ -1,4 +1,4 @@
-//! The poles that fit best: Levenberg–Marquardt on what the best amplitudes leave (separable least squares).
+//! The poles that fit best: Levenberg–Marquardt on the residual of the best amplitudes (separable least squares).
 //!
 //! Source: Golub & Pereyra, *Separable nonlinear least squares*, Inverse Problems 19, 2003, with the Jacobian of Kaufman;
 //! damping after Nielsen, *Damping parameter in Marquardt's method*, IMM-REP-1999-05.
@@ -8,10 +8,10 @@ use super::least_squares::solve_definite;
 use super::model::Component;
 use super::series::Series;
 
-/// Energy that is rounding, relative to that of the series.
+/// Energy of rounding, relative to that of the series.
 const ROUNDING: f64 = 1e-28;
 
-/// How much a step is held back, relative to the curvature.
+/// Damping of a step, relative to the curvature.
 struct Damping {
     mu: f64,
     /// Next increase of `mu`.
@@ -21,7 +21,7 @@ struct Damping {
 impl Damping {
     const START: Self = Self { mu: 1e-3, increase: 2.0 };
 
-    /// After a step that took `share` of what it promised: less damping the better the promise was kept. More where
+    /// After a step that took `share` of the predicted reduction: less damping the better the prediction was. More where
     /// much less was taken, or steps would go back and forth across a valley.
     fn accept(&mut self, share: f64) {
         let off = 2.0 * share - 1.0;
@@ -36,7 +36,7 @@ impl Damping {
 }
 
 impl Fit {
-    /// The same with the poles where the energy is least, as far as steps promise to take the share `worth` of it and more than `least`,
+    /// Moves the poles to where the energy is least, while steps promise to take the share `worth` of it and more than `least`,
     /// and there are `fits` left to try them.
     pub(crate) fn refined(mut self, series: &Series, worth: f64, least: f64, fits: &mut usize) -> Self {
         let least = least.max(ROUNDING * dot(&series.values, &series.values));
@@ -83,7 +83,7 @@ impl Fit {
         }
     }
 
-    /// Derivatives of the fitted curve by the poles, without what the amplitudes can make good.
+    /// Derivatives of the fitted curve with respect to the poles, without the part that the amplitudes can compensate.
     fn derivatives(&self, series: &Series) -> Columns {
         let mut derivatives = Columns::new(series.values.len(), self.coefficients.len());
         for (component, places) in self.terms() {

@@ -5,13 +5,13 @@
 //! ```
 //! The windowed mean of `e^{st}` is `G(s)·e^{st}` with `G(s) = Σ_j w_j·e^{s·j·h}`: every mode stays the same mode and
 //! only its complex amplitude is multiplied by a number that is known exactly. Beyond three quarters of the new
-//! rate, from where an oscillation could fold onto the mode that is looked for, the window lets less than 1/800 pass.
+//! rate, from where an oscillation could fold onto the mode of interest, the window lets less than 1/800 pass.
 use core::f64::consts::PI;
 
 /// Window length in units of the thinning.
 const OVERLAP: usize = 4;
 
-/// Values at equal steps, and how they came from the record.
+/// Values at equal steps, and their derivation from the record.
 #[derive(Debug, Clone)]
 pub(crate) struct Series {
     /// Values.
@@ -47,12 +47,12 @@ impl Series {
         self.values.len().saturating_sub(1) as f64 * self.step
     }
 
-    /// Of white noise in the record, the standard deviation that is left, as a share.
+    /// Standard deviation of white noise after thinning, relative to that in the record.
     pub(crate) fn noise_gain(&self) -> f64 {
         self.taps.iter().map(|tap| tap * tap).sum::<f64>().sqrt()
     }
 
-    /// The complex gain (re, im) with which `e^{(−decay + i·frequency)·t}` has passed the window (1/s, rad/s).
+    /// The complex gain (re, im) of the window for `e^{(−decay + i·frequency)·t}` (1/s, rad/s).
     pub(crate) fn gain(&self, decay: f64, frequency: f64) -> (f64, f64) {
         self.taps.iter().enumerate().fold((0.0, 0.0), |(re, im), (j, w)| {
             let t = j as f64 * self.fine;

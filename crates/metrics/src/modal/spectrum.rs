@@ -1,4 +1,4 @@
-//! Where a record oscillates: peaks of its spectrum.
+//! Oscillation frequencies of a record: peaks of its spectrum.
 //!
 //! Only the position of a peak leaves this module; the fit that starts there does not depend on the last bits of the
 //! transform.
@@ -9,11 +9,11 @@ use realfft::num_complex::Complex;
 use std::cell::RefCell;
 use std::ops::Range;
 
-/// Lowest frequency that is looked for, in cycles per record.
+/// Lowest frequency of the search, in cycles per record.
 pub(crate) const LOWEST: f64 = 0.7;
-/// Highest frequency that is looked for, in cycles per step.
+/// Highest frequency of the search, in cycles per step.
 pub(crate) const HIGHEST: f64 = 0.45;
-/// Peaks lower than this share of the highest one are not looked at.
+/// Peaks lower than this share of the highest one are ignored.
 const FAINT: f64 = 0.01;
 /// Bins whose powers differ by less than this share count as equal; the lowest frequency wins.
 const EQUAL: f64 = 2e-9;
@@ -44,8 +44,8 @@ pub(crate) fn peaks(values: &[f64], step: f64, low: f64, high: f64) -> Vec<f64> 
     found
 }
 
-/// Length of the transform of `count` values: at least twice as long, so that a peak is found to a quarter of a cycle, and a power of two
-/// or three times one.
+/// Length of the transform of `count` values: at least twice as long, so that a peak is found to a quarter of a cycle, and a power of
+/// two or three times one.
 fn padded(count: usize) -> usize {
     let power = (2 * count).next_power_of_two();
     if 3 * power / 4 >= 2 * count && power >= 4 { 3 * power / 4 } else { power }
@@ -77,7 +77,7 @@ impl Default for Transforms {
 /// Longest transform whose memory is kept for the next one, 2 MB in all.
 const KEPT: usize = 1 << 16;
 
-/// What transforms work with: a suite asks for the same lengths again and again.
+/// Buffers of the transforms, kept because a suite needs the same lengths again and again.
 #[derive(Default)]
 struct Bench {
     transforms: Transforms,
@@ -126,13 +126,13 @@ impl Bench {
         }
         [under_hann, under_half].map(|input| match transform.process_with_scratch(input, output, scratch) {
             Ok(()) => output.iter().map(|z| z.re * z.re + z.im * z.im).collect(),
-            // Lengths are those that the transform asked for; without a spectrum there is no peak.
+            // Lengths are those that the transform requires; without a spectrum there is no peak.
             Err(_) => Vec::new(),
         })
     }
 }
 
-/// Cosines of `length` of `count` angles that go evenly through half a turn, each in the middle of its share, from the one at `first` on;
+/// Cosines of `length` of `count` angles that cover half a turn evenly, each in the middle of its share, from the one at `first` on;
 /// at most [`TOGETHER`].
 fn half_turn(first: usize, length: usize, count: usize) -> [f64; TOGETHER] {
     let share = PI / count as f64;

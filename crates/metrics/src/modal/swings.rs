@@ -2,13 +2,13 @@
 //!
 //! A reversal is an extreme from which the motion has come back by more than a hysteresis. Between two of them is a swing.
 
-/// Periods that reversals must show before they have a frequency.
+/// Periods that reversals must show to have a frequency.
 const PERIODS: f64 = 2.0;
 
 /// Swings of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Swings {
-    /// Half of the largest one (unit of the values).
+    /// Half of the largest swing (unit of the values).
     pub(crate) amplitude: f64,
     /// Periods between the first reversal and the last.
     pub(crate) periods: f64,
@@ -17,11 +17,11 @@ pub(crate) struct Swings {
 }
 
 impl Swings {
-    /// Of `values` with steps of `step` (s), reversals being larger than `hysteresis`. `None` where the motion does not come back from
-    /// anywhere: it rests or goes one way.
+    /// Swings of `values` with steps of `step` (s), with reversals larger than `hysteresis`. `None` where the motion never comes back:
+    /// it rests or goes in one direction.
     ///
     /// A single reversal has a stretch before it and one after it. The smaller one counts: an overshoot is a swing, the last crumb of a
-    /// tail is as small as it is.
+    /// tail is equally small.
     pub(crate) fn of(values: &[f64], step: f64, hysteresis: f64) -> Option<Self> {
         let (first, last) = (*values.first()?, *values.last()?);
         let reversals = reversals(values, hysteresis);
@@ -42,7 +42,7 @@ impl Swings {
 fn reversals(values: &[f64], hysteresis: f64) -> Vec<(usize, f64)> {
     let mut found = Vec::new();
     let Some(&first) = values.first() else { return found };
-    // Before it is known which way the motion goes, the lowest and the highest value so far.
+    // Before the direction of the motion is known, the lowest and the highest value so far.
     let (mut low, mut high) = ((0, first), (0, first));
     let mut rises: Option<bool> = None;
     for (row, &y) in values.iter().enumerate() {
@@ -62,7 +62,7 @@ fn reversals(values: &[f64], hysteresis: f64) -> Vec<(usize, f64)> {
                 found.push(low);
                 (rises, high) = (Some(true), (row, y));
             }
-            // The first way of a motion: where it began is not a reversal.
+            // The first direction of a motion: its beginning is not a reversal.
             None if falls_back || rises_back => {
                 rises = Some(rises_back);
                 (low, high) = if rises_back { (low, (row, y)) } else { ((row, y), high) };

@@ -1,19 +1,19 @@
 //! Cosines and sines of angles at equal steps, by the addition theorems.
 //!
 //! Each depends on the one before, and a processor waits for it. So the angles are cut into stretches, which begin with fresh values and
-//! are gone through side by side: the same operations in the same order for each.
+//! are processed side by side: the same operations in the same order for each.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 
 use servobench_base::wide_registers;
 
 /// Steps between two fresh evaluations of the transcendental functions; each step rounds once.
 pub(crate) const FRESH: usize = 64;
-/// Stretches of so many steps that are gone through side by side.
+/// Number of such stretches that are processed side by side.
 const LANES: usize = 8;
-/// Values that are gone through side by side.
+/// Values that are processed side by side.
 pub(crate) const TOGETHER: usize = LANES * FRESH;
 
-/// Fills in `cosines` and `sines`, those of value k of as many as there are. `fresh` gives the pair of a value, `step` is that of one step;
+/// Fills in `cosines` and `sines`, one pair per value k. `fresh` gives the pair of a value, `step` is the pair of one step;
 /// they are `cos √q·t` and `sin √q·t/√q`, `square` being q, which may be negative.
 pub(crate) fn by_addition(
     fresh: impl Fn(usize) -> (f64, f64),
@@ -34,8 +34,8 @@ pub(crate) fn by_addition(
     }
 }
 
-/// Fills in `cosines` and `sines`, stretches of [`FRESH`] values of which those in `here` are the first, by the addition theorems, which
-/// hold on either side of q = 0. `step` is the [`pair`] of one step.
+/// Fills in `cosines` and `sines`, stretches of [`FRESH`] values whose first values are those in `here`, by the addition theorems,
+/// which hold on either side of q = 0. `step` is the [`pair`] of one step.
 fn go_on(here: [[f64; LANES]; 2], step: (f64, f64), square: f64, cosines: &mut [f64], sines: &mut [f64]) {
     wide_registers!(
         go_on_in_any(here, step, square, cosines, sines),

@@ -9,16 +9,16 @@ use super::task::{Piece, ROUNDING, Task};
 use crate::quantity::Quantity;
 use servobench_trace::{Ending, Recording};
 
-/// The default window is the distance of the way by this.
+/// The default window is the distance of the move by this.
 const PART_OF_WAY: f64 = 1e-3;
-/// It is at least so many increments of the encoder, or units of the bus.
+/// Least default window, in increments of the encoder or units of the bus.
 pub(super) const RESOLUTIONS: f64 = 10.0;
-/// Where the window is larger than the tolerance, so many of them are left.
+/// Least remaining window in the same resolutions, where the window is larger than the tolerance.
 const LEAST_RESOLUTIONS: f64 = 2.0;
-/// The largest share of the way by which deflection explains an error, and by which a loop that has had too little time is off.
+/// Largest share of the distance by which deflection, or too little time for the loop, explains an error.
 const OF_WAY: f64 = 0.1;
 
-/// Half width of the window in which a load has arrived after a way over `distance`, unless the scenario gives one: a thousandth of the
+/// Default half width of the window in which a load has arrived after a move over `distance`: a thousandth of the
 /// distance, and at least ten times the `resolution`: an increment of the encoder that closes the position loop, or a unit of the bus
 /// (all in the axis unit).
 #[must_use]
@@ -26,7 +26,7 @@ pub fn arrival_window(distance: f64, resolution: f64) -> f64 {
     (PART_OF_WAY * distance.abs()).max(RESOLUTIONS * resolution)
 }
 
-/// Why targets are not reached; `None` where there is none.
+/// Reasons why targets are not reached; `None` without a target.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     if task.rules.driven == Driven::Not {
         return None;
@@ -74,7 +74,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     )
 }
 
-/// A move of which the run does not see the end.
+/// A move whose end the run does not reach.
 fn unfinished(recording: &Recording) -> Option<String> {
     let last = recording.time_of(recording.len().saturating_sub(1));
     let mut to_targets = recording.moves.iter().filter(|made| made.ending == Ending::AtRest);
@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(found(&one_move(|_| f64::NAN), &rules()).len(), 1, "what is not a number has not arrived");
     }
 
-    /// The scenario's window, at most 5 % of the way, or a thousandth of it and ten increments or units of the bus.
+    /// The scenario's window, at most 5 % of the distance, or a thousandth of it and ten increments or units of the bus.
     #[test]
     fn the_window_is_that_of_the_scenario_but_never_the_way() {
         for (window, increment, bus_unit, bound) in [

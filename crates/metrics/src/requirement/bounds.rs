@@ -6,10 +6,10 @@ use crate::quantity::Quantity;
 use servobench_signals::Signal;
 use servobench_trace::Recording;
 
-/// How many times the range of the program an axis may leave it by.
+/// Largest excursion of an axis from the range of the program, in multiples of that range.
 const TIMES_THE_RANGE: f64 = 10.0;
 
-/// Why the axis is not where it can be.
+/// Reasons why the axis is out of bounds.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Vec<String> {
     if let Some(EarlyEnd::Diverged { time, reason }) = &rules.ended {
         return vec![format!("the run diverged at {}: {reason}", Quantity::new(*time, "s"))];
@@ -33,7 +33,7 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Vec<String> {
     outside.into_iter().collect()
 }
 
-/// Where the program goes.
+/// Range of the positions of the program.
 #[derive(Debug, Clone, Copy)]
 struct Range {
     low: f64,
@@ -47,8 +47,8 @@ impl Range {
     }
 }
 
-/// From the lowest to the highest set-point, with where the axis starts; `None` where nothing is to move, and where nothing
-/// moves it.
+/// From the lowest to the highest set-point, including the starting position of the axis; `None` where nothing is to move, and where
+/// nothing moves it.
 fn range(recording: &Recording, rules: &Rules<'_>) -> Option<Range> {
     if rules.driven == Driven::Not {
         return None;

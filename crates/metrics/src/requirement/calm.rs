@@ -1,4 +1,4 @@
-//! Stretches in which the task asks for one velocity and nothing that the scenario orders disturbs the axis: what swings there is
+//! Stretches in which the task requests one velocity and nothing that the scenario orders disturbs the axis: swings there are
 //! the loop's own.
 use super::Rules;
 use super::excitation::disturbed;
@@ -18,13 +18,13 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Calm {
     /// Its rows.
     pub(super) rows: Range<usize>,
-    /// The velocity that is requested (axis unit per s), 0 where the axis is to stand.
+    /// Requested velocity (axis unit per s), 0 where the axis is to stand.
     pub(super) velocity: f64,
-    /// Distance of the motion that ended last, from where it turned last (axis unit); `None` before the first one.
+    /// Distance of the last motion before it, from its last turning point (axis unit); `None` before the first one.
     pub(super) after: Option<f64>,
 }
 
-/// The calm stretches of `recording` in order. What comes later does not change those before, but for the end of the last one.
+/// The calm stretches of `recording` in order. Later rows do not change earlier stretches, except the end of the last one.
 pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
     let channels = (recording.channel(Signal::RequestVelocity), recording.channel(Signal::RequestPosition));
     let (Some(velocities), Some(positions)) = channels else { return Vec::new() };
@@ -42,7 +42,7 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
             let v = velocities[start];
             let same =
                 velocities[start..phase.rows.end].iter().take_while(|next| (**next - v).abs() <= rounding).count();
-            // What is not a number is not even the same as itself.
+            // A not-a-number value is not even equal to itself.
             let end = start + same.max(1);
             let stands = v.abs() <= rounding;
             let from = *stood.get_or_insert(start);
@@ -63,13 +63,14 @@ pub(super) fn calm(recording: &Recording, rules: &Rules<'_>) -> Vec<Calm> {
     all
 }
 
-/// How far the last way of a motion leads in `rows`, at the ends of which it stands. A turn so small that an interpolation makes it is none.
+/// Distance from the last turning point to the end of a motion in `rows`, at the ends of which it stands. Turns so small that an
+/// interpolation makes them do not count.
 fn last_way(positions: &[f64], rows: Range<usize>) -> f64 {
     let ways = between_turning_points(positions, &rows, OF_FARTHEST * span_of(&positions[rows.clone()]));
     ways.last().map_or(0.0, |way| (positions[rows.end - 1] - positions[way.start]).abs())
 }
 
-/// What is left of `rows` without `others`, which are in order and apart from each other.
+/// Parts of `rows` outside `others`, which are in order and disjoint.
 fn without(rows: Range<usize>, others: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let mut left = Vec::new();
     let mut start = rows.start;
@@ -107,7 +108,7 @@ mod tests {
             .finish()
     }
 
-    /// To 0.2 m and back at 1 m/s without a pause: the way back is the motion before the rest.
+    /// To 0.2 m and back at 1 m/s without a pause: the return is the motion before the rest.
     #[test]
     fn a_motion_there_and_back_is_as_long_as_its_way_back() {
         let recording = Build::new(1000, 1000)
@@ -128,7 +129,7 @@ mod tests {
         assert!((found[0].after.unwrap() - 0.2).abs() < 1e-12, "{found:?}");
     }
 
-    /// Function blocks ask once per cycle, and the path between two of their requests overshoots by nanometres.
+    /// Function blocks make one request per cycle, and the path between two of their requests overshoots by nanometres.
     #[test]
     fn a_motion_that_ends_with_a_ripple_is_as_long_as_its_way() {
         let x = |t: f64| if t < 0.2 { t } else { 0.2 + 1e-5 * ((0.22 - t).max(0.0) * 314.0).sin() };

@@ -1,22 +1,22 @@
-//! Where an axis may be although its loops do as they should: efforts displace it, springs give way, friction sticks.
+//! Legitimate position errors of an axis whose loops work correctly: efforts displace it, springs give way, friction sticks.
 
-/// By how much efforts displace an axis that is controlled as it should be. Efforts are in the motor's coordinate, positions in that of
+/// Displacement by efforts of an axis that is controlled correctly. Efforts are in the motor's coordinate, positions in that of
 /// the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deflection {
-    /// Effort that no program asks for: bias, dry friction, and what is not modelled.
+    /// Effort that no program requests: bias, dry friction, and effects that are not modelled.
     pub effort: f64,
-    /// The most that the drive gives; infinite without a limit. What disturbs the axis by more is not held by any loop.
+    /// Largest effort of the drive; infinite without a limit. No loop holds against a larger disturbance.
     pub max_effort: f64,
     /// Position error per effort of loops without integral: r/(k_p·K).
     pub per_effort: f64,
     /// Velocity error per effort of a velocity loop without integral, r/k_p; 0 with one.
     pub velocity_per_effort: f64,
-    /// True where a loop has an integral, which takes the error away in time.
+    /// True where a loop has an integral, which removes the error in time.
     pub has_integral: bool,
-    /// Deflection of the springs between motor and load at rest: bias and friction of what is behind each, by its stiffness.
+    /// Deflection of the springs between motor and load at rest: bias and friction behind each, by its stiffness.
     pub elastic: f64,
-    /// That per effort on the load, in the load's coordinate.
+    /// Deflection of the springs per effort on the load, in the load's coordinate.
     pub elastic_per_effort: f64,
     /// Friction of the load's side by stiffness, within which the load sticks.
     pub stick: f64,
@@ -47,12 +47,12 @@ impl Deflection {
         self.per_effort * (self.effort + disturbance).min(self.max_effort)
     }
 
-    /// That of the `disturbance` alone.
+    /// Position error of loops without integral from the `disturbance` alone.
     pub(super) fn explained_alone(&self, disturbance: f64) -> f64 {
         self.per_effort * disturbance.min(self.max_effort)
     }
 
-    /// That which stays: none with an integral.
+    /// Position error that stays: none with an integral.
     pub(super) fn droop(&self, disturbance: f64) -> f64 {
         if self.has_integral { 0.0 } else { self.explained(disturbance) }
     }

@@ -9,12 +9,12 @@ use std::ops::Range;
 
 /// Share of the time, and of its second half.
 const OF_TIME: f64 = 0.5;
-/// Least share of the largest effort of the drive that counts.
+/// Least effort that counts, as a share of the largest effort of the drive.
 const OF_MOST: f64 = 1e-3;
 /// Shortest phase that is judged (s).
 const SHORTEST: f64 = 0.02;
 
-/// Why an effort is not given; `None` where none is requested.
+/// Reasons why an effort is not given; `None` where none is requested.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let recording = task.recording;
     let (requested, given) = (recording.channel(Signal::RequestEffort)?, recording.channel(Signal::EffortMotor)?);

@@ -1,8 +1,8 @@
-//! What explains that an axis swings: the task, and what the scenario orders to disturb the axis.
+//! Causes that explain swings of an axis: the task, and disturbances that the scenario orders.
 //!
-//! A request that accelerates and brakes explains one way from limit to limit at each turning point of its velocity, a disturbance
-//! at each of its own. Nothing that answers to the axis explains a swing: neither the set-point that a loop makes, nor the force of an
-//! end stop or of an FMU.
+//! A request that accelerates and brakes explains one transition from limit to limit at each turning point of its velocity, a
+//! disturbance at each of its own. Nothing that responds to the axis explains a swing: neither the set-point that a loop makes, nor the
+//! force of an end stop or of an FMU.
 use super::Rules;
 use super::rules::Disturbance;
 use super::turning_points::TurningPoints;
@@ -10,9 +10,9 @@ use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
-/// The least share that counts: of the largest effort of the motor in the run. A longer run has no smaller one.
+/// Least effort that counts, as a share of the largest effort of the motor in the run. A longer run does not have a smaller one.
 const EFFORT: f64 = 0.01;
-/// Of the range of the requested velocity, less is a rounding or a ripple.
+/// Share of the range of the requested velocity below which a change is a rounding or a ripple.
 const VELOCITY: f64 = 1e-3;
 
 /// Times (s) at which task and disturbances turn, in order.
@@ -86,7 +86,7 @@ fn turns_of(recording: &Recording, values: &[f64], least: f64, times: &mut Vec<f
     times.extend(turns.map(|(row, _)| recording.time_of(row)));
 }
 
-/// The largest effort of the motor, as the drive asks for it or as it is.
+/// The largest effort of the motor, requested by the drive or actual.
 fn largest_effort(recording: &Recording) -> f64 {
     let channels =
         [Signal::EffortReference, Signal::EffortMotor].into_iter().filter_map(|name| recording.channel(name));
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// The force of an FMU counts where the scenario says that it excites the axis.
+    /// The force of an FMU counts where the scenario declares it an excitation of the axis.
     #[test]
     fn what_an_fmu_gives_counts_where_it_excites() {
         let recording = recording(|_| 0.0, |t| 20.0 * (TAU * 5.0 * t).sin());

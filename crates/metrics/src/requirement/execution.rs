@@ -1,4 +1,4 @@
-//! `executed`: every call of a function block is executed, comes to what it is for, and ends without an error.
+//! `executed`: every call of a function block is executed, reaches its purpose, and ends without an error.
 use super::phases::RequestPhase;
 use super::rules::{Driven, EarlyEnd};
 use super::task::Task;
@@ -7,13 +7,13 @@ use crate::quantity::Quantity;
 use servobench_base::RequestKind;
 use servobench_trace::{Call, CallFate, Ending, Move};
 
-/// The state of the drive in which its loops follow, as recordings name it.
+/// The state of the drive in which its loops follow, as named in recordings.
 const OPERATION_ENABLED: &str = "Operation enabled";
 
-/// A task is silent that requests nothing for so long (s).
+/// Time without a request after which a task is silent (s).
 const SILENT: f64 = 0.02;
 
-/// Why the program is not executed; `None` where there is nothing to execute.
+/// Reasons why the program is not executed; `None` where there is nothing to execute.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let Task { recording, rules, .. } = task;
     let gave_up = match &rules.ended {
@@ -29,7 +29,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     Some(gave_up.into_iter().chain(wrong).chain(unpowered).chain(silent).collect())
 }
 
-/// Motions without power: of a drive that is off, and those that a loss of power ended which no expected fault explains.
+/// Motions without power: of a drive that is off, and those ended by a loss of power that no expected fault explains.
 fn unpowered(task: &Task<'_>) -> Vec<String> {
     let moves =
         |phase: &&RequestPhase| matches!(phase.kind, RequestKind::Follow | RequestKind::Velocity | RequestKind::Effort);
@@ -50,7 +50,7 @@ fn unpowered(task: &Task<'_>) -> Vec<String> {
         .collect()
 }
 
-/// A task that falls silent before it is done, while the drive would follow, unless the load makes what was planned meanwhile.
+/// A task that falls silent before it is done, while the drive would follow, unless the load makes the moves that were planned meanwhile.
 fn silent(task: &Task<'_>) -> Option<String> {
     let is_told = task.recording.signal("drive", "state").is_some();
     let mut pairs = task.phases.windows(2).filter(|pair| {
@@ -64,7 +64,7 @@ fn silent(task: &Task<'_>) -> Option<String> {
     Some(format!("the task requests nothing from {from} to {to}, and what was planned is not made"))
 }
 
-/// True where nothing was planned any more when the task fell `silent`, or the load does it nevertheless.
+/// True if nothing remained planned when the task fell `silent`, or the load does it nevertheless.
 fn is_done(task: &Task<'_>, before: &RequestPhase, silent: &RequestPhase) -> bool {
     let Some(rows) = &task.rows else { return false };
     let end = silent.rows.end - 1;
@@ -120,7 +120,7 @@ fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {
     }
 }
 
-/// When the error came that `expectation` expects of `call` (s).
+/// Time of the error that `expectation` expects of `call` (s).
 pub(super) fn fits(expectation: &Expectation, call: &Call) -> Option<f64> {
     let CallFate::Failed { time, id, .. } = call.fate else { return None };
     let Occasion::Fault { fault, who } = &expectation.on else { return None };

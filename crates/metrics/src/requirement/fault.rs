@@ -1,4 +1,4 @@
-//! `no_fault`: axis, drive and link have no fault but those that are expected, and what follows from these.
+//! `no_fault`: axis, drive and link have only expected faults, and their consequences.
 //!
 //! A fault of the drive stops the link, and either brings the axis to `ErrorStop`: while an expected fault lasts, one of a part
 //! behind it is its consequence.
@@ -18,9 +18,9 @@ pub(super) enum Part {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Occurrence {
     part: Part,
-    /// As the signal has it: `8611h`, `positive limit switch`, `ErrorStop`.
+    /// Value of the signal: `8611h`, `positive limit switch`, `ErrorStop`.
     fault: String,
-    /// When it came and went (s).
+    /// Start and end of the fault (s).
     start: f64,
     end: f64,
 }
@@ -43,7 +43,7 @@ impl Part {
         }
     }
 
-    /// Whether a value of its signal is a fault of its own.
+    /// True if a value of its signal is a fault of this part itself.
     fn is_fault(self, value: &str) -> bool {
         match self {
             Self::Drive => value != "none",
@@ -67,7 +67,7 @@ pub(super) fn occurrences(recording: &Recording) -> Vec<Occurrence> {
     all
 }
 
-/// When what is expected came (s).
+/// Time at which the expectation was met (s).
 pub(super) fn met(expectation: &Expectation, faults: &[Occurrence], recording: &Recording) -> Option<f64> {
     let of_parts = faults.iter().find(|fault| is_it(expectation, fault)).map(|fault| fault.start);
     of_parts.or_else(|| recording.calls.iter().find_map(|call| execution::fits(expectation, call)))
@@ -78,7 +78,7 @@ fn is_it(expectation: &Expectation, fault: &Occurrence) -> bool {
     who == fault.part.name() && expected.eq_ignore_ascii_case(&fault.fault) && expectation.is_open_at(fault.start)
 }
 
-/// The faults that nobody expects; `None` where there is nothing that could have one.
+/// The unexpected faults; `None` without a part that could have one.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>, faults: &[Occurrence]) -> Option<Vec<String>> {
     if Part::ALL.iter().all(|part| part.signal(recording).is_none()) {
         return None;
@@ -170,7 +170,7 @@ mod tests {
             let left_over = found(&following_error(), &[expecting(who, fault, from, to)]).unwrap();
             assert_eq!(left_over.len(), left, "{who} {fault}: {left_over:?}");
         }
-        // A second ErrorStop, when the expected fault is gone, is one of its own.
+        // A second ErrorStop, when the expected fault is gone, is separate.
         let mut again = following_error();
         again.signals[2].changes.push((0.9, "ErrorStop".into()));
         assert_eq!(found(&again, &expected).unwrap(), ["the axis goes to ErrorStop at 900 ms"]);

@@ -1,18 +1,18 @@
-//! `follows`: between two turning points of the request the load goes as the linear loop would.
+//! `follows`: between two turning points of the request, the load moves as the linear loop would.
 use super::rules::Driven;
 use super::task::{Piece, Task};
 
-/// The most that deflection adds, as a share of the span of the response.
+/// Largest allowance for deflection, as a share of the span of the response.
 const OF_DEFLECTION: f64 = 0.25;
-/// So much of it the load may be off as the response itself is off the request: a loop that lags lags by its gains, which nobody knows
+/// Allowance as a share of the distance between response and request: the lag of a loop depends on its gains, which are not known
 /// to better than that.
 const OF_LAG: f64 = 0.1;
-/// The least share of the way where no loop is known: its lag is in it.
+/// Least share of the distance where no loop is known: its lag is included.
 const UNKNOWN_LOOP: f64 = 0.25;
-/// Increments of the encoder that are added.
+/// Allowance in increments of the encoder.
 const INCREMENTS: f64 = 10.0;
 
-/// Why the load does not follow; `None` where no position is wanted of it.
+/// Reasons why the load does not follow; `None` where no position is requested.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let mut ways = task.pieces.iter().filter(|(piece, _)| *piece == Piece::Way).peekable();
     ways.peek().filter(|_| task.rules.driven != Driven::Not)?;
@@ -21,7 +21,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let is_known = task.rules.servo.is_some() || task.rules.driven == Driven::Exactly;
     let share_of_way = if is_known { follows } else { follows.max(UNKNOWN_LOOP) };
     let elastic = deflection.elastic + deflection.elastic_per_effort * task.on_load;
-    // What a disturbance does on the way an integral takes away afterwards.
+    // An integral removes the effect of a disturbance during the motion afterwards.
     let gives_way = elastic + deflection.droop(task.disturbance).max(deflection.explained_alone(task.disturbance));
     let left = ways.filter(|(_, way)| !task.is_excused(&way.rows)).filter_map(|(_, way)| {
         let span = way.span() + task.beside(&way.rows);
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(found(&there_and_back(|_| f64::NAN), &rules(), &[]).len(), 2);
     }
 
-    /// 3 % of the way; what deflection explains comes on top, up to a quarter.
+    /// 3 % of the distance; what deflection explains comes on top, up to a quarter.
     #[test]
     fn the_bound_is_a_share_of_the_way_and_what_is_explained() {
         let behind = |share: f64, deflection: Deflection| {
@@ -124,7 +124,7 @@ mod tests {
         );
     }
 
-    /// A loop of 3 1/s without feedforward is far behind its request, and turns before that does: it is not held to the request.
+    /// A loop of 3 1/s without feedforward is far behind its request, which turns before the load arrives: the request does not judge it.
     #[test]
     fn a_slow_loop_is_held_to_its_own_response() {
         let soft = Servo {

@@ -1,10 +1,10 @@
-//! Growth: an oscillation that swings further and further while the task asks for one velocity.
+//! Growth: an oscillation that swings further and further while the task requests one velocity.
 //!
-//! Where the axis is to stand its position swings, where it is to move its velocity. Swings from turning point to turning point are
-//! gathered in windows of equal numbers of swings, from the beginning of the stretch on. An oscillation grows where in [`WINDOWS`] windows
-//! after each other each mean swing is larger than the one before, the last one [`GROWTH`] times the first, and the growth does not fade from
-//! window to window, as that of a beat does; and where it has become larger than everything before, and than the encoder sees. The
-//! windows have the length of the swings, not of the run: what grew in a run grew in every longer one, whether or not it goes on.
+//! The position of a standing axis swings, and the velocity of a moving one. Swings from turning point to turning point are
+//! gathered in windows of equal numbers of swings, from the beginning of the stretch on. An oscillation grows if over [`WINDOWS`]
+//! consecutive windows each mean swing is larger than the one before, the last one [`GROWTH`] times the first, and the growth does not
+//! fade from window to window, as that of a beat does; and if it has become larger than everything before, and than the encoder sees.
+//! The windows have the length of the swings, not of the run: growth in a run is growth in every longer one, whether or not it continues.
 use super::Rules;
 use super::calm::{Calm, calm};
 use super::turning_points::{Swing, swings};
@@ -15,22 +15,22 @@ use servobench_trace::Recording;
 
 /// Windows in which an oscillation must grow.
 const WINDOWS: usize = 4;
-/// Swings in the shortest windows of an axis that stands; longer ones are twice as long, and so on.
+/// Swings in the shortest windows of a standing axis; longer ones are twice as long, and so on.
 const STANDING: [usize; 2] = [2, 3];
-/// The same of one that moves: what a turning motor swings by anyway is of many frequencies, and two swings of it say little.
+/// The same of a moving one: a turning motor always swings at many frequencies, and two of its swings tell little.
 const MOVING: [usize; 2] = [4, 6];
-/// How much further it swings in the last window than in the first. Of a beat, and of what is driven, which grow by as much from window
-/// to window at most, it is 2.9 with a growth that fades as slowly as [`FADING`] allows.
+/// Minimum ratio of the swings in the last window to those in the first. The ratio of a beat or of a driven oscillation, whose growth
+/// from window to window is at most constant, is 2.9 with a growth that fades as slowly as [`FADING`] allows.
 const GROWTH: f64 = 3.0;
-/// How much further at least in each window than in the one before.
+/// Minimum ratio of each window to the one before.
 const STEP: f64 = 1.1;
-/// What the growth from window to window may lose to the next.
+/// Minimum ratio of the growth from window to window to the growth before.
 const FADING: f64 = 0.85;
-/// How much further than in all windows before the first of them.
+/// Minimum ratio to all windows before the first of them.
 const RECORD: f64 = 1.5;
-/// The longest of the swings takes so many times as long as the shortest, at most.
+/// Maximum ratio of the longest to the shortest duration of the swings.
 const EVEN: usize = 3;
-/// Turning points are told apart by this share of the largest swing so far.
+/// Hysteresis of turning points, as a share of the largest swing so far.
 const SHARE: f64 = 0.125;
 
 /// An oscillation that grows, in words.
@@ -44,7 +44,7 @@ pub(super) fn growth(recording: &Recording, rules: &Rules<'_>) -> Option<String>
     })
 }
 
-/// The swings of a calm stretch beyond what the encoder sees, the lengths of the shortest windows, and what swings.
+/// The swings of a calm stretch beyond what the encoder sees, the lengths of the shortest windows, and the name of the quantity.
 fn of(
     recording: &Recording,
     position: &[f64],
@@ -64,7 +64,7 @@ fn of(
     (all.windows(2).filter(|pair| is_seen(pair)).map(|pair| pair[1]).collect(), MOVING, "velocity")
 }
 
-/// Rows from which and to which it grows, in windows of at least so many swings.
+/// First and last row of its growth, in windows of at least so many swings.
 fn grows(swings: &[Swing], shortest: [usize; 2]) -> Option<(usize, usize)> {
     let lengths = (0..usize::BITS).flat_map(|k| shortest.map(|shortest| shortest.checked_shl(k)));
     lengths.map_while(|length| length.filter(|length| WINDOWS * length <= swings.len())).find_map(|length| {
@@ -84,7 +84,7 @@ fn grows(swings: &[Swing], shortest: [usize; 2]) -> Option<(usize, usize)> {
     })
 }
 
-/// True where the swings take about as long as each other, as those of one oscillation do, and those of noise do not.
+/// True if the swings take about equally long, as those of one oscillation do, and those of noise do not.
 fn is_even(swings: &[Swing]) -> bool {
     let lengths = || swings.windows(2).map(|pair| pair[1].end - pair[0].end);
     lengths().max() <= lengths().min().map(|shortest| EVEN * shortest.max(1))
@@ -92,7 +92,7 @@ fn is_even(swings: &[Swing]) -> bool {
 
 fn is_growth(windows: &[f64]) -> bool {
     let ratios: Vec<f64> = windows.windows(2).map(|pair| pair[1] / pair[0]).collect();
-    // Of what grows a thousandfold from window to window, where a window begins in a swing is a factor of its own.
+    // If it grows a thousandfold from window to window, the phase in which a window begins is a factor in itself.
     let goes_on = |pair: &[f64]| pair[1] >= FADING * pair[0] || pair[1].ln() >= FADING * pair[0].ln();
     let whole: f64 = ratios.iter().product();
     whole >= GROWTH && ratios.iter().all(|ratio| *ratio >= STEP) && ratios.windows(2).all(goes_on)
@@ -136,8 +136,8 @@ mod tests {
         assert!(found.starts_with("the position of the motor swings further and further from "), "{found}");
     }
 
-    /// A beat grows too, but less and less, wherever in it one looks; so does an oscillation that is driven. A drift does not swing,
-    /// and what the encoder does not see is nothing.
+    /// A beat grows too, but less and less, in any part of it; so does a driven oscillation. A drift does not swing,
+    /// and motion that the encoder does not see does not count.
     #[test]
     fn beats_drifts_and_roundings_are_no_growth() {
         for share in [0.003, 0.01, 0.02, 0.03, 0.05, 0.1] {
@@ -160,7 +160,7 @@ mod tests {
         }
     }
 
-    /// What has grown once has grown, whether it goes on, stays or fades: from 10 periods of the swing to thirty times as many.
+    /// Growth once found stays found, whether it continues, stays or fades: from 10 periods of the swing to thirty times as many.
     #[test]
     fn a_longer_run_is_never_greener() {
         let mut red = 0;

@@ -1,11 +1,11 @@
-//! `no_harm`: no incident does harm but those that are expected.
+//! `no_harm`: only expected incidents do harm.
 use super::{Expectation, Occasion, Rules};
 use crate::incident::Incident;
 use crate::quantity::Quantity;
 use servobench_signals::Signal;
 use servobench_trace::{Event, Recording};
 
-/// Channels that show harm where it comes.
+/// Channels that show harm at the time of its occurrence.
 const SHOWN_BY: [Signal; 2] = [Signal::EffortEndStop, Signal::TemperatureWinding];
 
 /// Unexpected incidents that do harm, in words; `None` where nothing could come to harm.
@@ -22,7 +22,7 @@ pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<Str
     Some(harm.map(|event| format!("{}, at {}", event.message, Quantity::new(event.start, "s"))).collect())
 }
 
-/// When the incident came that is expected (s).
+/// Time of the expected incident (s).
 pub(super) fn met(expectation: &Expectation, recording: &Recording) -> Option<f64> {
     recording.events.iter().find(|event| is_it(expectation, event)).map(|event| event.start)
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! y = Σ w·z        z″ + d·z′ + ω²·(z − x − τ·x′) = 0        x the motor's position, Σ w = 1
 //! ```
-//! Each mode is discretised exactly for an input that is constant over a row, the mean of it, so that no frequency makes it unstable.
+//! Each mode is discretised exactly for an input that is constant over a row, its mean, so that no frequency makes it unstable.
 //! Source: Åström & Wittenmark, *Computer-Controlled Systems*, 3rd ed., §2.3.
 
 use servobench_base::HeldMode;
@@ -46,12 +46,12 @@ impl Swinging {
     }
 }
 
-/// A load on its springs; without modes it is where the motor is.
+/// A load on its springs; without modes, its position is that of the motor.
 #[derive(Debug, Clone)]
 pub(super) struct FlexibleLoad {
     modes: Vec<Swinging>,
     h: f64,
-    /// Where the motor was.
+    /// Last position of the motor.
     motor: f64,
 }
 
@@ -61,7 +61,7 @@ impl FlexibleLoad {
         Self { modes: modes.iter().map(|mode| Swinging::new(*mode, h)).collect(), h, motor: 0.0 }
     }
 
-    /// Where it is.
+    /// Position of the load.
     pub(super) fn position(&self) -> f64 {
         if self.modes.is_empty() {
             return self.motor;
@@ -95,7 +95,7 @@ mod tests {
         FlexibleLoad::new(&[HeldMode { weight: 1.0, omega, decay: 2.0 * zeta * omega, lead: 0.0 }], 1e-3)
     }
 
-    /// Oracle: the step response of a load that is not damped, 1 − cos(ω·t), of one at its limit, 1 − (1 + ω·t)·e^(−ω·t), and of one far
+    /// Oracle: the step response of an undamped load, 1 − cos(ω·t), of one at its limit, 1 − (1 + ω·t)·e^(−ω·t), and of one far
     /// beyond it, 1 − e^(−ω·t/(2ζ)).
     #[test]
     fn a_step_is_followed_as_the_damping_says() {

@@ -1,14 +1,14 @@
-//! `measure.home_at`: the place at which homing has put the zero of the task.
+//! `measure.home_at`: the place at which homing puts the zero of the task.
 //!
-//! The axis counts from what homing found, so that a switch that is not where it should be moves all targets with it and no error shows
-//! it. What the engine has less what the task counts is where the task's zero lies in the machine; it is read where the axis stands
-//! before its first motion after homing: the positions on a bus are late, and moving they are elsewhere.
+//! The axis counts from the switch that homing found, so that a misplaced switch moves all targets with it and no error shows it. The
+//! position in the engine less that counted by the task is the place of the task's zero in the machine; it is read while the axis stands
+//! before its first motion after homing: the positions on a bus are late, so that they are wrong during motion.
 use super::arrival::RESOLUTIONS;
 use super::task::Task;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
 
-/// Why the zero is not where the scenario has it; `None` where it is, and where nobody says so or the axis is never homed.
+/// Reason why the zero is not at the place that the scenario gives; `None` if it is, if none is given, or if the axis is never homed.
 pub(super) fn misplaced(task: &Task<'_>) -> Option<String> {
     let (recording, rules) = (task.recording, task.rules);
     let home_at = rules.home_at?;

@@ -1,4 +1,4 @@
-//! A recording against every requirement.
+//! Judgement of a recording by every requirement.
 use super::task::Task;
 use super::{
     Expected, Requirement, RequirementResult, Rules, Standing, arrival, bounds, effort, execution, fault, following,
@@ -8,10 +8,10 @@ use crate::coupling;
 use crate::verdict::Verdict;
 use servobench_trace::Recording;
 
-/// Reasons that are given for one requirement at most; one more says how many there are besides.
+/// Maximum number of reasons that are given for one requirement; one more gives the number of the others.
 const MOST_REASONS: usize = 5;
 
-/// Judges `recording`, of which every tick is to be there and the incidents are [noted](crate::note_incidents), by every requirement.
+/// Judges `recording`, in which every tick is needed and the incidents are [noted](crate::note_incidents), by every requirement.
 #[must_use]
 pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     let faults = fault::occurrences(recording);
@@ -62,7 +62,7 @@ pub fn judge_requirements(recording: &Recording, rules: &Rules<'_>) -> Verdict {
     Verdict { requirements, expected, warnings, ..Verdict::default() }
 }
 
-/// The first reasons, and how many others there are.
+/// The first reasons, and the number of the others.
 fn listed(mut reasons: Vec<String>) -> Vec<String> {
     if reasons.len() > MOST_REASONS {
         let others = reasons.len() - MOST_REASONS;

@@ -9,11 +9,11 @@ use std::ops::Range;
 pub(super) struct RequestPhase {
     /// The kind.
     pub(super) kind: RequestKind,
-    /// Its rows; empty where it begins after the last one.
+    /// Its rows; empty if it begins after the last one.
     pub(super) rows: Range<usize>,
 }
 
-/// The phases of `recording`, in order; none where it does not know the request. Phases without a row are left out.
+/// The phases of `recording`, in order; none if it lacks the request. Phases without a row are left out.
 pub(super) fn request_phases(recording: &Recording) -> Vec<RequestPhase> {
     let (source, name) = REQUEST_KIND;
     let Some(signal) = recording.signal(source, name) else { return Vec::new() };
@@ -31,8 +31,8 @@ pub(super) fn request_phases(recording: &Recording) -> Vec<RequestPhase> {
     phases
 }
 
-/// `rows` cut where `values` turn: at each extremum from which they come back by more than `least`. A value that is not finite turns
-/// nothing.
+/// `rows` cut where `values` turn: at each extremum from which they come back by more than `least`. A value that is not finite is
+/// not a turning point.
 pub(super) fn between_turning_points(values: &[f64], rows: &Range<usize>, least: f64) -> Vec<Range<usize>> {
     let mut cut = Vec::new();
     let mut start = rows.start;
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(request_phases(&Build::new(1000, 10).finish()), []);
     }
 
-    /// Oracle: cos(2π·t) turns at every half second; what comes back by less than the least turns nothing.
+    /// Oracle: cos(2π·t) turns at every half second; a return by less than the least is not a turn.
     #[test]
     fn turning_points_are_those_of_the_request() {
         let values: Vec<f64> = (0..1600).map(|k| (TAU * f64::from(k) / 1000.0).cos()).collect();

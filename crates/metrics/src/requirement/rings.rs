@@ -1,9 +1,9 @@
-//! `rings`: what swings after a motion dies out as the linear loop says.
+//! `rings`: swings after a motion die out as the linear loop predicts.
 //!
-//! From the end of a motion to the next one, the motor must not go on to swing by more than twice the window: its decay is at least
+//! From the end of a motion to the next one, the motor must not continue to swing by more than twice the window: its decay is at least
 //! [`SHARE`] of that of the pole that oscillates and fades last, or of the slowest one where none does. Where poles are not known, the
 //! last quarter of the time from the first swing on must not swing by [`SAME`] of the quarter before. A load that a loop with known poles
-//! lets ring dies out as its damping says: that is for limits.
+//! lets ring dies out by its damping: limits judge that.
 use super::Rules;
 use super::arrival::arrival_window;
 use super::calm::{Calm, calm};
@@ -15,13 +15,13 @@ use servobench_trace::Recording;
 
 /// The least part of the decay of the slowest pole that oscillates.
 const SHARE: f64 = 0.5;
-/// What is left from quarter to quarter of something that does not die out.
+/// Ratio from quarter to quarter of a swing that does not die out.
 const SAME: f64 = 0.98;
-/// Swings on either side of a comparison: three periods, and half of that where the poles say what to expect.
+/// Swings on either side of a comparison: three periods, and half of that where poles predict the decay.
 const SWINGS: usize = 6;
 const SWINGS_OF_POLE: usize = 3;
 
-/// What goes on to swing after a motion; `None` where the axis comes to rest nowhere, or no loop is closed.
+/// Swings that continue after a motion; `None` if the axis never comes to rest, or no loop is closed.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
     if rules.driven != Driven::ByLoops {
         return None;
@@ -42,7 +42,7 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
     let all = swings(&position[rows.clone()], rows.start, least, 0.0);
     let period = recording.rate.period();
     let (earlier, later) = if let Some(decay) = decay(rules) {
-        // The beginning may fade faster, with poles of its own.
+        // The beginning may fade faster, with separate poles.
         let (earlier, later) = halves(&all[all.len() / 4..])?;
         let predicted = decay * (middle(later) - middle(earlier)) * period;
         // Half of it has to be visible.
@@ -52,7 +52,7 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
         }
         (earlier, later)
     } else {
-        // What begins to swing in the middle of a rest is not compared with what was before.
+        // A swing that begins in the middle of a rest is not compared with the time before.
         let quarter = (rows.end - all.first()?.end) / 4;
         let (before, from) = (rows.end - 2 * quarter, rows.end - quarter);
         let third = all.iter().position(|swing| swing.end >= before)?;
@@ -88,7 +88,7 @@ fn mean(swings: &[Swing]) -> f64 {
     swings.iter().map(|swing| swing.size).sum::<f64>() / swings.len() as f64
 }
 
-/// Of a beginning that fades, or begins later, it takes little.
+/// Median of the sizes, which a beginning that fades, or a later start, changes little.
 fn median(swings: &[Swing]) -> f64 {
     let mut sizes: Vec<f64> = swings.iter().map(|swing| swing.size).collect();
     sizes.sort_unstable_by(f64::total_cmp);
@@ -127,7 +127,7 @@ mod tests {
         Rules { linear_loop: LinearLoop::NotAnalysed, window: Some(1e-5), ..rules() }
     }
 
-    /// Half of the decay that the poles explain is the least. A window that is larger than the swing has nothing to say.
+    /// Half of the decay that the poles predict is the least. A window larger than the swing is never exceeded.
     #[test]
     fn what_dies_out_as_the_poles_say_does_not_ring() {
         for (decay, rings) in [(2.0, false), (1.2, false), (0.8, true), (0.0, true), (-0.3, true)] {
@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    /// A load without damping has a pole that explains that it swings for ever.
+    /// A load without damping has a pole that explains endless swings.
     #[test]
     fn a_load_that_is_not_damped_does_not_ring() {
         let recording = moved(|t| 1e-3 * (TAU * 20.0 * t).sin());

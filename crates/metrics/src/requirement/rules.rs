@@ -1,78 +1,78 @@
-//! What a judgement needs to know besides the recording.
+//! Data for judging requirements besides the recording.
 use super::deflection::Deflection;
 use super::servo::Servo;
 use super::{Expectation, Requirement};
 use servobench_base::HeldMode;
 use servobench_signals::Signal;
 
-/// What a judgement of requirements needs to know besides the recording.
+/// Data that the judgement of requirements needs besides the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules<'a> {
     /// Requirements that the scenario lifts.
     pub lifted: &'a [Requirement],
     /// Faults and incidents that belong to the run.
     pub expected: &'a [Expectation],
-    /// Half width of the window around a target in which the axis has arrived (axis unit); `None`: as
-    /// [`arrival_window`](super::arrival_window) says.
+    /// Half width of the window around a target in which the axis has arrived (axis unit); `None`: that of
+    /// [`arrival_window`](super::arrival_window).
     pub window: Option<f64>,
-    /// Where homing has to put the zero of the task, as the engine has it (axis unit); `None`: nobody says.
+    /// Correct position of the zero of the task after homing, in the coordinate of the engine (axis unit); `None`: not given.
     pub home_at: Option<f64>,
     /// One increment of the encoder that closes the position loop or, if that is wider, the error of its signals within a period (axis
     /// unit); 0 for an ideal one.
     pub increment: f64,
     /// Noise of its readings (axis unit, effective).
     pub noise: f64,
-    /// The same of the encoder at the motor, which closes the velocity loop; it may be the same one.
+    /// The same of the encoder at the motor, which closes the velocity loop; both may be the same encoder.
     pub motor: Readings,
-    /// Efforts that the scenario orders, which explain that the axis swings.
+    /// Efforts that the scenario orders, which explain swings of the axis.
     pub disturbances: Vec<Disturbance>,
-    /// Channels in which an FMU excites the axis, each with the factor that makes it an effort of the motor.
+    /// Channels in which an FMU excites the axis, each with the factor that converts it to an effort of the motor.
     pub excited: Vec<(Signal, f64)>,
     /// Axis coordinate per motor coordinate.
     pub transmission: f64,
     /// One unit of the positions on the bus (axis unit); 0 without a bus.
     pub bus_unit: f64,
-    /// The linear rigid loop, where there is one that is known.
+    /// The linear rigid loop, if it is known.
     pub servo: Option<Servo>,
-    /// The modes in which the load follows the motor; none of a rigid axis, or one whose mechanics are not known.
+    /// The modes in which the load follows the motor; empty for a rigid axis, or if the mechanics are not known.
     pub held_modes: Vec<HeldMode>,
-    /// By how much efforts displace the axis.
+    /// Displacement of the axis by efforts.
     pub deflection: Deflection,
-    /// How far off what is requested the axis may be.
+    /// Largest deviations of the axis from the request.
     pub tolerances: Tolerances,
-    /// What moves the axis.
+    /// Means by which the axis moves.
     pub driven: Driven,
-    /// What the analysis of the linear loop found.
+    /// Result of the analysis of the linear loop.
     pub linear_loop: LinearLoop,
     /// Poles of the linear loop, as far as it was analysed.
     pub poles: Option<Poles>,
-    /// What of the loops is not in that, and why: there the run alone is judged.
+    /// Part of the loops that this analysis lacks, with the reason: there the run alone is judged.
     pub not_analysed: Option<String>,
-    /// Why the run ended before its end, if it did.
+    /// Reason why the run ended early, if it did.
     pub ended: Option<EarlyEnd>,
-    /// Highest temperature that the winding bears (°C); `None` where it does not warm up.
+    /// Highest permissible temperature of the winding (°C); `None` if it does not warm up.
     pub winding_limit: Option<f64>,
 }
 
 /// Resolution and noise of an encoder's positions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Readings {
-    /// One increment, or the error of its signals within a period if that is wider (axis unit); 0 of an ideal one.
+    /// One increment, or the error of its signals within a period if that is wider (axis unit); 0 for an ideal one.
     pub increment: f64,
     /// Noise (axis unit, effective).
     pub noise: f64,
 }
 
-/// How far off what is requested the axis may be, as shares.
+/// Largest deviations of the axis from the request, as shares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
-    /// Of the way of the response: how far from it the load may be.
+    /// Distance of the load from the response, as a share of the distance that the response covers.
     pub follows: f64,
-    /// Of the way to a target: the largest window around it.
+    /// Largest window around a target, as a share of the distance to it.
     pub arrives: f64,
-    /// Of a velocity that is held.
+    /// Error of a held velocity, as a share of that velocity.
     pub velocity: f64,
-    /// Of an effort.
+    /// Error of an effort, as a share of that effort.
     pub effort: f64,
 }
 
@@ -85,44 +85,44 @@ impl Default for Tolerances {
 /// An effort that the scenario orders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disturbance {
-    /// From when on it acts (s).
+    /// Start (s).
     pub start: f64,
-    /// Until when (s); infinite: to the end of the run.
+    /// End (s); infinite: the end of the run.
     pub end: f64,
     /// Its amplitude as an effort of the motor (N·m or N, motor coordinate).
     pub effort: f64,
-    /// Of a sine that begins at zero (Hz); `None` for a constant one.
+    /// Frequency of a sine that begins at zero (Hz); `None` for a constant one.
     pub frequency: Option<f64>,
 }
 
-/// What moves the axis.
+/// Means by which an axis moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Driven {
     /// A drive with closed loops.
     ByLoops,
-    /// The motor follows the set-point exactly: there is no loop, and it is the motor that arrives.
+    /// The motor follows the set-point exactly: there is no loop, and arrival is judged at the motor.
     Exactly,
     /// Nothing: the drive is off.
     Not,
 }
 
-/// What the analysis of the linear loop found.
+/// Result of the analysis of the linear loop.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LinearLoop {
     /// No pole outside the unit circle.
     Stable,
-    /// There is one: which, in words.
+    /// A pole is outside, described in words.
     Unstable(String),
-    /// It could not be analysed, or there is no loop.
+    /// The loop could not be analysed, or there is none.
     NotAnalysed,
 }
 
 /// The poles of a linear loop that fade last.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Poles {
-    /// Of those that oscillate, with a damping ratio below 1/√2.
+    /// The slowest pair that oscillates, with a damping ratio below 1/√2.
     pub oscillating: Option<Oscillation>,
-    /// Decay of the slowest one that does not oscillate (1/s).
+    /// Decay of the slowest pole that does not oscillate (1/s).
     pub slowest_real: Option<f64>,
 }
 
@@ -135,23 +135,23 @@ pub struct Oscillation {
     pub decay: f64,
 }
 
-/// Why a run ended before its end.
+/// Reason why a run ended early.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EarlyEnd {
-    /// A state left the finite numbers: when (s), and what the engine says.
+    /// A state left the finite numbers.
     Diverged {
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// In the engine's words.
+        /// Reason in the engine's words.
         reason: String,
     },
-    /// The program gave up: why.
+    /// The program gave up, for this reason.
     GaveUp(String),
 }
 
-/// The encoder sees a swing that is larger than so many of its increments,
+/// An encoder sees a swing larger than this number of its increments,
 const INCREMENTS: f64 = 4.0;
-/// and than so many times the noise of its readings.
+/// and than this multiple of the noise of its readings.
 const NOISE: f64 = 5.0;
 
 impl Rules<'_> {
@@ -165,7 +165,7 @@ impl Rules<'_> {
         self.increment.max(self.bus_unit)
     }
 
-    /// The largest swing of the motor that an encoder does not tell from none (axis unit).
+    /// Largest swing of the motor that an encoder does not distinguish from rest (axis unit).
     pub(super) const fn unseen(&self) -> f64 {
         let increment = self.increment.max(self.motor.increment);
         (INCREMENTS * increment).max(NOISE * self.noise.max(self.motor.noise))

@@ -29,22 +29,22 @@ pub struct Servo {
     pub inertia_feedforward: f64,
     /// Viscous friction by inertia, B/M (1/s).
     pub viscous: f64,
-    /// That which is fed forward (1/s).
+    /// Viscous friction that is fed forward, by inertia (1/s).
     pub viscous_feedforward: f64,
-    /// True where the load's own encoder closes the position loop, and not the motor's.
+    /// True if the load's own encoder closes the position loop, and not the motor's.
     pub is_closed_at_the_load: bool,
 }
 
 impl Servo {
-    /// The slower of its loops (1/s): that of the position where there is one.
+    /// The slower of its loops (1/s): the position loop if there is one.
     pub(super) fn slowest_rate(&self) -> f64 {
         if self.gain > 0.0 { self.gain.min(self.bandwidth) } else { self.bandwidth }
     }
 }
 
-/// Most of the way to the request that a row makes: a gain beyond it follows at once.
+/// Largest share of the distance to the request that a row covers: a gain beyond it follows at once.
 const MOST_PER_ROW: f64 = 0.5;
-/// An integral gathers within a row no more than this share of itself.
+/// Largest share of itself that an integral gathers within a row.
 const MOST_GATHERED: f64 = 0.5;
 
 /// A [`Servo`] discretised, with its state.
@@ -53,7 +53,7 @@ pub(super) struct Response {
     servo: Servo,
     h: f64,
     gain: f64,
-    /// φ, and the velocity that a constant input of one gives.
+    /// φ, and the velocity gained from a constant input of one.
     keeps: f64,
     gives: f64,
     /// Shares that the integrals gather in a row.
@@ -87,12 +87,12 @@ impl Response {
         }
     }
 
-    /// Where it is.
+    /// Position of the response.
     pub(super) const fn position(&self) -> f64 {
         self.position
     }
 
-    /// Puts it at `position` with `velocity`. Where it `goes_on`, the integrals keep what they hold.
+    /// Puts the response at `position` with `velocity`. If it `goes_on`, the integrals keep their values.
     pub(super) fn put(&mut self, position: f64, velocity: f64, goes_on: bool) {
         (self.position, self.velocity) = (position, velocity);
         if !goes_on {
@@ -100,13 +100,13 @@ impl Response {
         }
     }
 
-    /// True where the load's own encoder closes the position loop.
+    /// True if the load's own encoder closes the position loop.
     pub(super) const fn is_closed_at_the_load(&self) -> bool {
         self.servo.is_closed_at_the_load
     }
 
-    /// To the next row: `x` and `v` are requested now, `gained` is what the requested velocity gains until then; the position loop
-    /// measures `measured`.
+    /// Steps to the next row: `x` and `v` are the requested values now, `gained` is the change of the requested velocity until then; the
+    /// position loop measures `measured`.
     pub(super) fn step(&mut self, x: f64, v: f64, gained: f64, measured: f64) {
         let Servo {
             bandwidth, reference_weight, velocity_feedforward, inertia_feedforward, viscous_feedforward, ..
@@ -140,7 +140,7 @@ mod tests {
         is_closed_at_the_load: false,
     };
 
-    /// Where the response is after `end` (s) of a request that moves at `v(t)`.
+    /// Request and response after `end` (s) of a request that moves at `v(t)`.
     fn after(servo: Servo, h: f64, end: f64, v: impl Fn(f64) -> f64) -> (f64, f64) {
         let mut response = Response::new(servo, h);
         let (mut x, mut t) = (0.0, 0.0);
@@ -152,7 +152,7 @@ mod tests {
         (x, response.position())
     }
 
-    /// Oracle: a P loop follows a ramp v/K late, less by what is fed forward; an integral leaves nothing; viscous friction in a loop
+    /// Oracle: a P loop follows a ramp v/K late, reduced by the feedforward; an integral leaves no lag; viscous friction in a loop
     /// without integral adds β·v/(ω_v·K).
     #[test]
     fn the_lag_behind_a_ramp_is_that_of_the_textbook() {

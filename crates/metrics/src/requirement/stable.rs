@@ -5,7 +5,7 @@ use super::rules::{Driven, LinearLoop};
 use super::swings::between_limits;
 use servobench_trace::Recording;
 
-/// Why the axis is not stable; `None` where no loop is closed.
+/// Reasons why the axis is not stable; `None` where no loop is closed.
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
     if rules.driven != Driven::ByLoops {
         return None;

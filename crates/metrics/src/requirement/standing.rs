@@ -1,24 +1,24 @@
-//! `stands`: before its first motion the axis stands where it was.
+//! `stands`: before its first motion, the axis stays at its place.
 use super::excitation::disturbed;
 use super::rules::Driven;
 use super::task::Task;
 use servobench_base::RequestKind;
 use servobench_signals::Signal;
 
-/// Times the deflection that is explained.
+/// Multiple of the explained deflection that is allowed.
 const TIMES: f64 = 3.0;
-/// Times the stroke within which friction holds the load.
+/// Multiple of the stroke within which friction holds the load.
 const STICK: f64 = 1.5;
-/// Resolutions within which it stands.
+/// Resolutions within which the axis stands.
 const RESOLUTIONS: f64 = 10.0;
-/// Times the deviation from which it starts, and the way in which the loop brakes a load that moves at the beginning.
+/// Multiple of the initial deviation, and of the distance in which the loop brakes a load that moves at the beginning.
 const INITIAL: f64 = 2.0;
-/// The least of the explained deflection that is left at any time: what integrators of increments and friction never take away.
+/// Least share of the explained deflection that is allowed at any time: integrators of increments and friction never remove it.
 const LEFT: f64 = 0.01;
-/// In which the velocity at the beginning is read (s).
+/// Time in which the velocity at the beginning is read (s).
 const FIRST: f64 = 1e-3;
 
-/// Why the axis does not stand; `None` where it is not asked to, before it moves.
+/// Reasons why the axis does not stand; `None` where it need not stand before it moves.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let rows = task.rows.as_ref()?;
     let servo = task.rules.servo.filter(|_| task.rules.driven == Driven::ByLoops)?;
@@ -42,7 +42,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         (at(Signal::DisturbanceMotor), at(Signal::DisturbanceLoad))
     };
     let window = rules.window.unwrap_or(0.0).max(RESOLUTIONS * rules.resolution());
-    // What an FMU does because the load moves does not explain that it does.
+    // The response of an FMU to the load's motion does not explain that motion.
     let steps = disturbed(task.recording, rules);
     let mut reasons = Vec::new();
     for phase in standing {
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(broken(&Task::of(&recording, &rules, &[])).unwrap().len(), 1);
     }
 
-    /// Homing ends while the load still runs to where its drive has stopped: 5 mm/s at 50 1/s are 0.1 mm.
+    /// Homing ends while the load still moves to where its drive has stopped: 5 mm/s at 50 1/s are 0.1 mm.
     #[test]
     fn a_load_that_moves_at_the_beginning_is_braked() {
         let rules = Rules { servo: Some(SERVO), window: Some(1e-6), ..rules() };

@@ -1,4 +1,4 @@
-//! `stopped`: an axis that is stopped comes to rest in the time that its profile and its loops take.
+//! `stopped`: a stop brings the axis to rest in the time that its profile and its loops take.
 use super::phases::{RequestPhase, between_turning_points};
 use super::rules::Driven;
 use super::stretch::Rows;
@@ -9,24 +9,24 @@ use servobench_base::RequestKind;
 use servobench_signals::Signal;
 use std::ops::Range;
 
-/// What is left of the velocity at the beginning.
+/// Largest remainder of the velocity at the beginning, as a share.
 const LEFT: f64 = 0.01;
-/// Least share of the largest requested velocity that counts.
+/// Least velocity that counts, as a share of the largest requested one.
 const OF_LARGEST: f64 = 1e-3;
-/// Times the planned time.
+/// Multiple of the planned time that is allowed.
 const TIMES: usize = 2;
-/// The velocity is a mean over this time at least (s): of a load that rings, over a period.
+/// Least time for the mean of the velocity (s): for a load that rings, a period.
 const MEAN: f64 = 0.02;
-/// Least share of its way after the stop by which a load swings.
+/// Least swing of a load that rings, as a share of its distance after the stop.
 const OF_SWING: f64 = 0.05;
-/// The motor swings by at most so much of it,
+/// Largest swing of the motor, as a share of that of the load,
 const OF_LOAD: f64 = 0.5;
-/// or what is left of the first swing is at most that.
+/// or largest remainder of the first swing, as a share.
 const DIED_OUT: f64 = 0.5;
-/// Resolutions that an axis at rest moves in it.
+/// Largest motion of an axis at rest in that time, in resolutions.
 const RESOLUTIONS: f64 = 4.0;
 
-/// Why the axis has not stopped; `None` where it is not asked to.
+/// Reasons why the axis has not stopped; `None` where no stop is requested.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let rows = task.rows.as_ref()?;
     if task.rules.driven != Driven::ByLoops {
@@ -49,7 +49,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     is_asked.then_some(reasons)
 }
 
-/// Rows of `stop` until the set-point of the drive stands; in cyclic velocity the master's loop moves it as long as the motor swings.
+/// Rows of `stop` until the set-point of the drive stands; in cyclic velocity, the master's loop moves it as long as the motor swings.
 fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
     let setpoint = task.recording.channel(Signal::SetpointPosition).map(|values| &values[stop.clone()]);
     let Some(setpoint) = setpoint else { return 0 };
@@ -58,7 +58,7 @@ fn planned(task: &Task<'_>, stop: &Range<usize>, h: f64) -> usize {
     setpoint.windows(2).rposition(|pair| (pair[1] - pair[0]).abs() > least).map_or(0, |last| last + 1)
 }
 
-/// The axis that was asked to move up to the row `moved_to` still moves after a `stop`, right behind it or behind a silence of the task.
+/// The axis that was to move up to the row `moved_to` still moves after a `stop`, right behind it or behind a silence of the task.
 fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase, moved_to: usize) -> Option<String> {
     let row = |time: f64| task.recording.index_at(time);
     let mean = task.rules.oscillation().map_or(MEAN, |slowest| slowest.frequency.recip().max(MEAN));
@@ -67,7 +67,7 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase, moved_to: 
     let requested = rows.request_velocity[moved_to.saturating_sub(1)];
     let planned = planned(task, &stop.rows, rows.h);
     let settling = task.rules.servo.map_or(MEAN, |servo| {
-        // With the velocity fed forward the loop of the position has little to do.
+        // With velocity feedforward, the position loop has little to do.
         let rate = if servo.velocity_feedforward < 1.0 { servo.slowest_rate() } else { servo.bandwidth };
         TIME_CONSTANTS / rate
     });
@@ -103,17 +103,17 @@ fn still_moves(task: &Task<'_>, rows: &Rows<'_>, stop: &RequestPhase, moved_to: 
 }
 
 /// The last whole cycles of a load that rings in the time `after` a stop, up to its end: the last one where the swings die out, otherwise
-/// those of the second half. How far it swings says that half: the first one may have the way that it still went, in `planned` rows.
+/// those of the second half. That half gives their size: the first one may include the remaining motion, in `planned` rows.
 ///
-/// A load rings where it swings farther than its motor, or where the swings of both die out, or are small beside the way of the stop; a
-/// motor that goes on to swing has not stopped.
+/// A load rings if it swings farther than its motor, if the swings of both die out, or if they are small beside the distance of the
+/// stop; a motor that continues to swing has not stopped.
 fn last_cycles(task: &Task<'_>, rows: &Rows<'_>, after: &Range<usize>, planned: usize) -> Option<Range<usize>> {
     let size = |values: &[f64], rows: Range<usize>| span_of(&values[rows]);
     let middle = usize::midpoint(after.start, after.end);
     let least = (RESOLUTIONS * task.rules.resolution()).max(OF_SWING * size(rows.load, middle..after.end));
     let turns = between_turning_points(rows.load, after, least);
     let [_, earliest, .., first, second, last] = turns.as_slice() else { return None };
-    // What comes after the last turn is half of a cycle, and of the next what it takes to be one.
+    // The time after the last turn is half of a cycle, and the part of the next that makes it one.
     if 2 * last.len() > 3 * first.len().max(second.len()) {
         return None;
     }
@@ -133,7 +133,7 @@ mod tests {
     use crate::requirement::tests::rules;
     use crate::synthetic::Build;
 
-    /// 1 m/s, stopped at 1 s, in 0.1 s as the set-point has it; the load slows down with `slows` (m/s²).
+    /// 1 m/s, stopped at 1 s, in 0.1 s by the set-point; the load slows down with `slows` (m/s²).
     fn found(slows: f64, next: f64) -> Vec<String> {
         let load = move |t: f64| {
             let since = (t - 1.0).clamp(0.0, 1.0 / slows);
@@ -151,7 +151,7 @@ mod tests {
         broken(&Task::of(&recording, &rules(), &[])).unwrap()
     }
 
-    /// A load on a soft coupling swings about where it stopped, at 6 Hz; one that drifts by 3 % of the velocity besides has not stopped.
+    /// A load on a soft coupling swings at 6 Hz about its stop; one that also drifts by 3 % of the velocity has not stopped.
     #[test]
     fn a_load_that_swings_has_stopped() {
         let found = |drift: f64, decay: f64, of_motor: f64| {
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(found(0.0, 1.5, 1.0), [""; 0], "both die out");
     }
 
-    /// One on a softer coupling still goes 0.2 m, while its swings die out.
+    /// One on a softer coupling still moves 0.2 m, while its swings die out.
     #[test]
     fn a_load_that_swings_less_than_it_went_on_has_stopped() {
         let load = |t: f64| {

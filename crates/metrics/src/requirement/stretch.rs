@@ -1,4 +1,4 @@
-//! Stretches of a run, and how load, request and the response of the loop compare in them: one pass over the rows.
+//! Stretches of a run, and the comparison of load, request and response of the loop in them: one pass over the rows.
 use super::Rules;
 use super::held_modes::FlexibleLoad;
 use super::phases::RequestPhase;
@@ -9,7 +9,7 @@ use servobench_signals::Signal;
 use servobench_trace::Recording;
 use std::ops::Range;
 
-/// Rows of one phase, and what is measured over them.
+/// Rows of one phase, and their measured values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stretch {
     /// Its rows, at least one.
@@ -39,7 +39,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Those of `recording`; `None` where it lacks one.
+    /// The channels of `recording`; `None` if it lacks one.
     pub(super) fn of(recording: &'a Recording) -> Option<Self> {
         Some(Self {
             request: recording.channel(Signal::RequestPosition)?,
@@ -49,14 +49,14 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Velocity of the load between the rows `from` and `to`; 0 where there is no time between them.
+    /// Velocity of the load between the rows `from` and `to`; 0 if there is no time between them.
     pub(super) fn load_velocity(&self, from: usize, to: usize) -> f64 {
         if to <= from { 0.0 } else { (self.load[to] - self.load[from]) / ((to - from) as f64 * self.h) }
     }
 }
 
 impl Stretch {
-    /// Of these rows, with nothing measured yet.
+    /// A stretch of these rows, not measured yet.
     pub(super) const fn new(rows: Range<usize>) -> Self {
         Self {
             response: (f64::INFINITY, f64::NEG_INFINITY),
@@ -70,7 +70,7 @@ impl Stretch {
         }
     }
 
-    /// How far the response goes.
+    /// Span of the response.
     pub(super) fn span(&self) -> f64 {
         self.response.1 - self.response.0
     }
@@ -78,10 +78,10 @@ impl Stretch {
     fn take(&mut self, row: usize, load: f64, request: f64, response: f64) {
         self.response = (self.response.0.min(response), self.response.1.max(response));
         let (of_response, of_request) = (load - response, load - request);
-        // Nearer to the request than the linear loop, an axis follows all the better.
+        // An axis nearer to the request than the linear loop follows even better.
         let is_between = of_response * of_request <= 0.0;
         let off = if is_between { 0.0 } else { of_response.abs().min(of_request.abs()) };
-        // What is not a number is as far off as can be.
+        // A not-a-number value is infinitely far off.
         if off > self.worst.0 || off.is_nan() && self.worst.0.is_finite() {
             self.worst = (if off.is_nan() { f64::INFINITY } else { off }, row);
         }
@@ -102,7 +102,7 @@ impl Stretch {
     }
 }
 
-/// Measures `stretches`, which are in order, do not overlap and are each within phases that want a position, or one that wants a
+/// Measures `stretches`, which are in order, do not overlap and are each within phases that request a position, or one that requests a
 /// velocity.
 pub(super) fn measure(rows: &Rows<'_>, phases: &[RequestPhase], rules: &Rules<'_>, stretches: &mut [Stretch]) {
     let mut follower = Follower::new(rules, rows.h);
@@ -129,7 +129,7 @@ pub(super) fn measure(rows: &Rows<'_>, phases: &[RequestPhase], rules: &Rules<'_
     }
 }
 
-/// The response of motor and load, and the position that is wanted of them.
+/// The response of motor and load, and their requested position.
 struct Follower {
     motor: Option<Response>,
     load: FlexibleLoad,
@@ -143,7 +143,7 @@ impl Follower {
         Self { motor, load: FlexibleLoad::new(if is_known { &rules.held_modes } else { &[] }, h), wanted: 0.0 }
     }
 
-    /// Where a request for a position or a velocity begins, the response is where the load is.
+    /// At the beginning of a request for a position or a velocity, the response starts at the position of the load.
     fn begin(&mut self, rows: &Rows<'_>, phase: &RequestPhase, before: RequestKind) {
         let row = phase.rows.start;
         let wants = |kind| matches!(kind, RequestKind::Follow | RequestKind::Rest);
@@ -166,7 +166,7 @@ impl Follower {
         if kind != RequestKind::Velocity {
             self.wanted = rows.request[row];
         }
-        // A loop that is not stable has no response: the load is held to the request.
+        // A loop that is not stable has no response: the load is judged by the request.
         let response = Some(self.load.position()).filter(|position| position.is_finite());
         (self.wanted, response.unwrap_or(self.wanted))
     }

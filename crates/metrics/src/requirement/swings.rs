@@ -1,10 +1,9 @@
-//! Swinging between limits: a limited quantity goes from its positive to its negative limit and back.
+//! Swinging between limits: a limited quantity moves from its positive to its negative limit and back.
 //!
-//! A stretch is from one start of a motion to the next. In each of them alternations are counted that task and disturbances
-//! ([`excitation`](super::excitation)) do not explain, over every part of it: more than [`MOST`] are an oscillation. An alternation
-//! counts where the motor's error over [`NINE`] of them swings as often by more than the encoder sees: what an edge of the encoder,
-//! noise or a peak of one tick sends from limit to limit does not move the motor, or comes now and then. A part that is over stays what
-//! it is, so that a longer run has at least as many.
+//! A stretch lasts from one start of a motion to the next. Each part of it is checked for alternations that task and disturbances
+//! ([`excitation`](super::excitation)) do not explain: more than [`MOST`] are an oscillation. An alternation counts if the motor's error
+//! over [`NINE`] of them swings as often by more than the encoder sees: alternations caused by an edge of the encoder, noise or a peak of
+//! one tick do not move the motor, or are sporadic. A part that is over does not change, so that a longer run has at least as many.
 use super::Rules;
 use super::excitation::turns;
 use super::turning_points::{ROUNDING, swings};
@@ -13,16 +12,16 @@ use servobench_signals::Signal;
 use servobench_trace::{LimitReversals, Recording};
 use std::ops::RangeInclusive;
 
-/// Alternations beyond those that are explained, at most.
+/// Maximum number of unexplained alternations.
 pub(super) const MOST: usize = 8;
 /// Alternations over which the motor's error has to swing.
 const NINE: usize = 9;
 /// Swings of that error among them: about one from each to the next. A motion makes fewer, and a torque ripple more.
 const SWINGS: RangeInclusive<usize> = 5..=9;
-/// They are as large as each other: the largest is so many times the smallest, at most. Those of a motor that noise shakes are not.
+/// Maximum ratio of the largest of these swings to the smallest. The ratio is larger for a motor that noise shakes.
 const EQUAL: f64 = 1.6;
-/// An oscillation is regular: of the times from one of the nine to the next but one, its periods, the longest is so many times the
-/// shortest, at most.
+/// Maximum ratio of the longest period of an oscillation to the shortest, a period being the time from one of the nine to the next
+/// but one.
 const REGULAR: usize = 2;
 
 /// The worst swinging between limits, in words.
@@ -44,7 +43,7 @@ pub(super) fn between_limits(recording: &Recording, rules: &Rules<'_>) -> Option
     Some(format!("it goes from one {limit} to the other {times} times from {first} to {last}"))
 }
 
-/// Where there are more alternations than are kept, and the last one that is kept counts, nobody can say that the others are explained.
+/// Reason if there are more alternations than are kept, and the last one that is kept counts: the others may be unexplained.
 fn words_of_unknown(limit: &str, times: &[f64], counting: &[f64]) -> Option<String> {
     let last = times.get(LimitReversals::MOST - 1).filter(|last| counting.last() == Some(*last))?;
     let (most, last) = (LimitReversals::MOST, Quantity::new(*last, "s"));
@@ -54,14 +53,14 @@ fn words_of_unknown(limit: &str, times: &[f64], counting: &[f64]) -> Option<Stri
 /// A part of a run in which a quantity swings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Swinging {
-    /// Alternations more than are explained.
+    /// Number of unexplained alternations.
     excess: usize,
     times: usize,
     first: f64,
     last: f64,
 }
 
-/// The part with the most of `alternations` beyond `turns`, if those are too many; it does not go across `starts`. All in order.
+/// The part with the most of `alternations` beyond `turns`, if those are too many; it does not extend across `starts`. All in order.
 fn unexplained(alternations: &[f64], turns: &[f64], starts: &[f64]) -> Option<Swinging> {
     let mut worst: Option<Swinging> = None;
     let mut now: Option<Swinging> = None;
@@ -99,13 +98,13 @@ fn counting(recording: &Recording, error: &[f64], times: &[f64], rules: &Rules<'
     times.iter().zip(counts).filter_map(|(time, counts)| counts.then_some(*time)).collect()
 }
 
-/// True where `rows` come as regularly as those of an oscillation.
+/// True if `rows` are as regular as those of an oscillation.
 fn is_regular(rows: &[usize]) -> bool {
     let periods = || rows.windows(3).map(|three| three[2] - three[0]);
     periods().max() <= periods().min().map(|shortest| REGULAR * shortest)
 }
 
-/// True where the error swings by more than `unseen` from the first of `rows` to the last, as often and each time as far; without the
+/// True if the error swings by more than `unseen` from the first of `rows` to the last, as often and each time as far, not counting the
 /// drift between them.
 fn swings_along(error: &[f64], rows: &[usize], unseen: f64) -> bool {
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return false };
@@ -119,7 +118,7 @@ fn swings_along(error: &[f64], rows: &[usize], unseen: f64) -> bool {
     SWINGS.contains(&all.len()) && largest <= EQUAL * smallest
 }
 
-/// The way that is requested less that of the motor, at each row (axis unit).
+/// Requested motion less that of the motor, at each row (axis unit).
 fn error(recording: &Recording) -> Option<Vec<f64>> {
     let position = recording.channel(Signal::MotorPosition)?;
     let velocity = recording.channel(Signal::RequestVelocity)?;
@@ -199,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Peaks that come now and then while the motor is off for another reason are no oscillation; one that is not symmetric is.
+    /// Sporadic peaks while the motor is off for another reason are not an oscillation; an asymmetric oscillation is one.
     #[test]
     fn an_oscillation_is_regular() {
         let mut recording = reversing(0, 1e-3, |_| 0.0);

@@ -1,7 +1,7 @@
-//! The task of a run as its rules judge it: ways, rests, and holds of a velocity, each measured against the response of the loop.
+//! The task of a run as its rules judge it: motions, rests, and holds of a velocity, each measured against the response of the loop.
 //!
-//! Phases that want a position follow each other without a gap: their ways lead from one rest to the next. A rest shorter than
-//! [`Task::least_rest`] belongs to the way that passes it, unless the run ends in it.
+//! Phases that request a position follow each other without a gap: their motions lead from one rest to the next. A rest shorter than
+//! [`Task::least_rest`] belongs to the motion that passes it, unless the run ends in it.
 use super::phases::{RequestPhase, between_turning_points, request_phases};
 use super::stretch::{Rows, Stretch, measure};
 use super::{Expected, Rules, arrival_window};
@@ -12,28 +12,28 @@ use servobench_signals::{PerLimit, Signal};
 use servobench_trace::Recording;
 use std::ops::Range;
 
-/// Turns of the request closer than so many increments, or units of the bus, are none.
+/// Least distance between turns of the request, in increments or units of the bus; closer ones do not count.
 const TURNS: f64 = 20.0;
-/// So are those closer than this share of the farthest way: an interpolation overshoots by less.
+/// The same as a share of the farthest motion: an interpolation overshoots by less.
 pub(super) const OF_FARTHEST: f64 = 1e-3;
-/// Differences of positions say nothing about so small a part of them.
+/// Share of positions below which their differences are rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// Shortest rest and shortest hold that is judged (s).
 const SHORTEST: f64 = 0.02;
-/// The loop has come to rest after so many of its time constants.
+/// Time constants after which the loop has come to rest.
 pub(super) const TIME_CONSTANTS: f64 = 5.0;
-/// A rest is judged from so many periods of the slowest oscillation on.
+/// Shortest rest that is judged, in periods of the slowest oscillation.
 const PERIODS: f64 = 2.0;
-/// A fault is seen so much later (s) than the request of the task ends, or earlier.
+/// Largest time (s) between a fault and the end of the request of the task, either way.
 const SEEN_WITHIN: f64 = 0.02;
-/// Increments, as which swings of the load do not count, and the same as a share of the window.
+/// Swings of the load that do not count: in increments, and as a share of the window.
 const SWING: (f64, f64) = (4.0, 1e-3);
-/// Over so many cycles at the end of a rest the load is averaged, where the first one in its second half is so many times the last one.
+/// Cycles at the end of a rest over which the load is averaged, if the first one in its second half exceeds the last by [`DIES_OUT`].
 const CYCLES: usize = 2;
 const DIES_OUT: f64 = 2.0;
-/// What goes so many times as far as the last swing does not swing any more.
+/// Ratio to the last swing beyond which a motion is no longer a swing.
 const GROWS: f64 = 2.0;
-/// Least rows of a hold, and how equal its velocities are.
+/// Least rows of a hold, and tolerance of equal velocities.
 const HOLD: (usize, f64) = (20, 1e-9);
 
 /// A piece of the task.
@@ -41,9 +41,9 @@ const HOLD: (usize, f64) = (20, 1e-9);
 pub(super) enum Piece {
     /// From one turning point of the request to the next.
     Way,
-    /// At a target, after a way over this distance; whether it is too short for the loop to come to rest.
+    /// At a target, after a motion over the distance `way`; `is_short`: too short for the loop to come to rest.
     Rest { way: f64, is_short: bool },
-    /// At this velocity, the second half of the time.
+    /// At this velocity, in the second half of the time.
     Hold(f64),
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Task<'a> {
     pub(super) rules: &'a Rules<'a>,
     pub(super) expected: &'a [Expected],
     pub(super) phases: Vec<RequestPhase>,
-    /// `None`: the recording lacks what it takes.
+    /// `None`: the recording lacks a channel.
     pub(super) rows: Option<Rows<'a>>,
     pub(super) pieces: Vec<(Piece, Stretch)>,
     /// Largest disturbance of motor and load, both as efforts of the motor, and that of the load in its own coordinate.
@@ -87,7 +87,7 @@ impl<'a> Task<'a> {
         task
     }
 
-    /// Half width of the window around a target after a way of `distance`.
+    /// Half width of the window around a target after a motion over `distance`.
     pub(super) fn window(&self, distance: f64) -> f64 {
         self.rules.window.unwrap_or_else(|| arrival_window(distance, self.rules.resolution()))
     }
@@ -99,27 +99,27 @@ impl<'a> Task<'a> {
         of_loop.max(of_swing).max(SHORTEST)
     }
 
-    /// True where an expected fault comes in `rows`, or where they end.
+    /// True if an expected fault occurs in `rows`, or where they end.
     pub(super) fn is_excused(&self, rows: &Range<usize>) -> bool {
         let (start, end) = (self.recording.time_of(rows.start), self.recording.time_of(rows.end));
         self.expected.iter().filter_map(|one| one.met).any(|at| (start - SEEN_WITHIN..end + SEEN_WITHIN).contains(&at))
     }
 
-    /// The move that is made at `row`, in words: `, in "move to 0.2 m"`.
+    /// The move at `row`, in words: `, in "move to 0.2 m"`.
     pub(super) fn within(&self, row: usize) -> String {
         let time = self.recording.time_of(row);
         let made = self.recording.moves.iter().rfind(|made| made.start <= time);
         made.map_or_else(String::new, |made| format!(" in `{}`", made.label))
     }
 
-    /// The row at which the move that is made at `row` began.
+    /// The row at which the move at `row` began.
     pub(super) fn begun(&self, row: usize) -> usize {
         let time = self.recording.time_of(row);
         let made = self.recording.moves.iter().rfind(|made| made.start <= time);
         made.map_or(row, |made| self.recording.index_at(made.start)).min(row)
     }
 
-    /// How far the request goes at a velocity right before and behind a way: a ramp is a part of that motion.
+    /// Distance that the request covers at a velocity right before and behind a motion: a ramp is a part of that motion.
     pub(super) fn beside(&self, way: &Range<usize>) -> f64 {
         let Some(rows) = self.rows else { return 0.0 };
         let touches = |phase: &&RequestPhase| phase.rows.end == way.start || phase.rows.start == way.end;
@@ -158,7 +158,7 @@ impl<'a> Task<'a> {
         let mut way: Option<Range<usize>> = None;
         let mut left: Option<usize> = None;
         let mut is_interrupted = false;
-        // Where the motion began that a silence has broken off.
+        // Beginning of a motion that a silence has broken off.
         let mut broken_off: Option<usize> = None;
         let least = self.least_rest();
         let least_way = self.least_way(rows);
@@ -176,7 +176,7 @@ impl<'a> Task<'a> {
             }
             match phase.kind {
                 RequestKind::Follow => {
-                    // The link catches up with a task that has gone on in the meantime.
+                    // The link catches up with a task that has continued in the meantime.
                     is_interrupted |= way.is_none() && is_silence(before);
                     way = Some(way.map_or(phase.rows.start, |way| way.start)..phase.rows.end);
                 }
@@ -191,7 +191,7 @@ impl<'a> Task<'a> {
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
                     } else if let Some(from) = broken_off.take() {
-                        // The task has gone on to its target meanwhile.
+                        // The task has continued to its target meanwhile.
                         let distance = (rows.request[phase.rows.start] - rows.request[from]).abs();
                         let piece = Piece::Rest { way: distance, is_short };
                         pieces.push((piece, Stretch::new(self.settled(rows, &phase.rows, distance))));
@@ -213,14 +213,14 @@ impl<'a> Task<'a> {
         pieces
     }
 
-    /// How far the request goes at least where it turns.
+    /// Least distance of the request between turning points.
     fn least_way(&self, rows: &Rows<'_>) -> f64 {
         let follows = self.phases.iter().filter(|phase| phase.kind == RequestKind::Follow);
         let farthest = follows.map(|phase| span_of(&rows.request[phase.rows.clone()])).fold(0.0, f64::max);
         (TURNS * self.rules.resolution()).max(OF_FARTHEST * farthest)
     }
 
-    /// The ways of the request in `all`; that on which a link recovers from an interruption is none.
+    /// The motions of the request in `all`, except one on which a link recovers from an interruption.
     fn ways(rows: &Rows<'_>, all: Range<usize>, least: f64, is_interrupted: bool, pieces: &mut Vec<(Piece, Stretch)>) {
         let request = &rows.request[all.clone()];
         let rounding = ROUNDING * request[0].abs().max(request[request.len() - 1].abs());
@@ -233,16 +233,16 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The rows of a rest over which the load is averaged: whole cycles where it swings to its end, the whole rest where too few of
-    /// them are there, otherwise its last tenth.
+    /// Rows of a rest over which the load is averaged: whole cycles if it swings to its end, the whole rest if there are too few of
+    /// them, otherwise its last tenth.
     fn settled(&self, rows: &Rows<'_>, rest: &Range<usize>, way: f64) -> Range<usize> {
         const REST: usize = 10;
         let hysteresis = (SWING.0 * self.rules.increment).max(SWING.1 * self.window(way));
         let pieces = between_turning_points(rows.load, rest, hysteresis.max(ROUNDING * rows.load[rest.start].abs()));
         let turns: Vec<usize> = pieces.iter().skip(1).map(|piece| piece.start).collect();
         let middle = rest.start + rest.len() / 2;
-        // One turn is the end of a creeping approach. What still swings at the end turns again after half a cycle, and a little later that
-        // is seen; it goes no farther than before.
+        // One turn is the end of a creeping approach. A swing that continues at the end turns again after half a cycle, and a little later
+        // that is seen; it is not larger than before.
         let goes_on = match turns[..] {
             [.., before, last] => {
                 let (swing, rest_of_it) = (span_of(&rows.load[before..last]), span_of(&rows.load[last..rest.end]));
@@ -253,7 +253,7 @@ impl<'a> Task<'a> {
         if let [.., one, _, last] = turns[..]
             && goes_on
         {
-            // Where they die out the last ones: those before still come nearer.
+            // If they die out, only the last ones: those before still come nearer.
             let half: Vec<usize> = turns.iter().rev().step_by(2).copied().take_while(|turn| *turn >= middle).collect();
             let sizes = || half.windows(2).map(|cycle| span_of(&rows.load[cycle[1]..cycle[0]]));
             let dies_out = sizes().next_back() > sizes().next().map(|size| DIES_OUT * size);
@@ -265,8 +265,8 @@ impl<'a> Task<'a> {
     }
 }
 
-/// True where the request jumps in `way` or where it meets others of `all`, by more than `least` beyond what it moves: a task that
-/// stood still for a while goes on where it was.
+/// True if the request jumps in `way` or where it meets others of `all`, by more than `least` beyond its velocity: a task that
+/// stood still for a while continues from its position.
 fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) -> bool {
     let (first, last) = (way.start.saturating_sub(1).max(all.start), way.end.min(all.end - 1));
     (first..last).any(|row| {
@@ -275,7 +275,7 @@ fn jumps(rows: &Rows<'_>, all: &Range<usize>, way: &Range<usize>, least: f64) ->
     })
 }
 
-/// True where a motion was broken off by a silence of the task.
+/// True if a motion was broken off by a silence of the task.
 fn is_silence(before: &[RequestPhase]) -> bool {
     matches!(before, [moved, silent] if moved.kind == RequestKind::Follow && silent.kind == RequestKind::Nothing)
 }

@@ -1,9 +1,9 @@
 //! Turning points of a signal, and the swings from one to the next.
 //!
-//! A turning point is confirmed once the signal has come back from it by more than a hysteresis. What comes later in a signal does
+//! A turning point is confirmed once the signal has come back from it by more than a hysteresis. Later values of a signal do
 //! not change the turning points before: a longer recording has those of a shorter one, and more.
 
-/// Differences of values say nothing about so small a part of the largest one before.
+/// Share of the largest value before below which differences of values are rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 
 /// From one turning point to the next.
@@ -11,26 +11,26 @@ pub(super) const ROUNDING: f64 = 1e-12;
 pub(super) struct Swing {
     /// Row at which it ends.
     pub(super) end: usize,
-    /// From the one to the other, a magnitude.
+    /// Difference between the two, a magnitude.
     pub(super) size: f64,
 }
 
-/// Finds turning points in one value after the other.
+/// Finds turning points, value by value.
 #[derive(Debug, Clone)]
 pub(super) struct TurningPoints {
     low: (usize, f64),
     high: (usize, f64),
-    /// True where the signal rises to the next turning point, once there was one.
+    /// True if the signal rises to the next turning point, once there was one.
     rises: Option<bool>,
 }
 
 impl TurningPoints {
-    /// From the value of `row` on.
+    /// A search that starts from the value of `row`.
     pub(super) const fn new(row: usize, value: f64) -> Self {
         Self { low: (row, value), high: (row, value), rises: None }
     }
 
-    /// Takes the value of `row`; gives the turning point that it confirms, row and value.
+    /// Takes the value of `row`; returns the turning point that it confirms, row and value.
     pub(super) fn next(&mut self, row: usize, value: f64, hysteresis: f64) -> Option<(usize, f64)> {
         if value > self.high.1 {
             self.high = (row, value);
@@ -44,7 +44,7 @@ impl TurningPoints {
             Some(false) | None if climbs => (self.low, true),
             _ => return None,
         };
-        // The first one may be where the signal began, which is none.
+        // The first one may be the beginning of the signal, which is not a turning point.
         let is_first = self.rises.replace(rises).is_none();
         (self.low, self.high) = ((row, value), (row, value));
         (!is_first).then_some(turned)
@@ -113,7 +113,7 @@ mod tests {
         let ripple: Vec<f64> = drift.iter().enumerate().map(|(k, x)| (TAU * x).sin() + 0.05 * (k % 2) as f64).collect();
         let found = swings(&ripple, 0, 1e-9, 0.125);
         let large = found.iter().filter(|swing| swing.size > 1.0).count();
-        // Before the first swing nothing is known that the ripple could be small beside: a quarter of a period, 25 rows.
+        // Before the first swing there is no size to which the ripple could be compared: a quarter of a period, 25 rows.
         assert!(found.len() <= large + 25, "{} of {}", large, found.len());
         assert!(swings(&[0.0, 1.0, f64::NAN, 0.0, 1.0, 0.0], 0, 0.1, 0.0).is_empty());
     }

@@ -1,14 +1,14 @@
-//! `velocity`: where a velocity is requested and held, the load has it.
+//! `velocity`: the load has a velocity that is requested and held.
 use super::stretch::Stretch;
 use super::task::{Piece, TIME_CONSTANTS, Task};
 use crate::quantity::Quantity;
 
-/// The most that droop explains, of the velocity.
+/// Largest error that droop explains, as a share of the velocity.
 const OF_VELOCITY: f64 = 0.5;
-/// A hold at zero is measured by the largest velocity of the request so.
+/// Share of the largest requested velocity by which a hold at zero is judged.
 const AT_ZERO: f64 = 0.2;
 
-/// Why a velocity is not reached; `None` where none is requested for long enough.
+/// Reasons why a velocity is not reached; `None` where none is requested for long enough.
 pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     let holds: Vec<_> = task
         .pieces
@@ -43,7 +43,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
     Some(missed.collect())
 }
 
-/// Velocity error that bias, friction and disturbances explain. A loop of the position, where there is one, takes it away in time, but for
+/// Velocity error that bias, friction and disturbances explain. A position loop, if there is one, removes it in time, except for
 /// that of a disturbance, which may have come late.
 fn droop(task: &Task<'_>, hold: &Stretch) -> f64 {
     let deflection = &task.rules.deflection;
@@ -64,7 +64,7 @@ mod tests {
     use crate::synthetic::Build;
     use servobench_signals::Signal;
 
-    /// A second at 0.4 m/s, of which the load does `share`.
+    /// A second at 0.4 m/s, of which the load reaches `share`.
     fn found(rules: &Rules<'_>, share: f64) -> Vec<String> {
         let recording = Build::new(1000, 1001)
             .channel(Signal::RequestPosition, "m", |t| share * 0.4 * t)
