@@ -34,7 +34,7 @@ servobench_config::parameters! {
 pub struct Body {
     /// Name for recordings and models: `motor`, `table`, `load`.
     pub name: &'static str,
-    /// Whether its own coordinate is a length or an angle.
+    /// Kind of its own coordinate: a length or an angle.
     pub coordinate: Coordinate,
     /// Mass (kg) or inertia (kg·m²) in its own coordinate.
     pub inertia: f64,
@@ -77,7 +77,7 @@ impl Chain {
     }
 
     /// # Errors
-    /// As [`new`](Self::new), of one whose bodies or links were changed since.
+    /// As [`new`](Self::new), after bodies or links were changed.
     pub fn check(&self) -> Result<(), ParamError> {
         let Self { bodies, links } = self;
         if bodies.is_empty() || bodies.len() > Self::MAX_BODIES {
@@ -111,13 +111,13 @@ impl Chain {
         &self.links
     }
 
-    /// The bodies, to change what they are.
+    /// The bodies, for changes.
     #[must_use]
     pub fn bodies_mut(&mut self) -> &mut [Body] {
         &mut self.bodies
     }
 
-    /// The links, to change what they are.
+    /// The links, for changes.
     #[must_use]
     pub fn links_mut(&mut self) -> &mut [Link] {
         &mut self.links

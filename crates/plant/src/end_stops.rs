@@ -13,9 +13,9 @@ use servobench_config::quantities::{POSITION, STIFFNESS, VISCOUS};
 use servobench_config::{Parameter, ParameterError, any, not_negative, positive};
 use thiserror::Error;
 
-/// A load is in a stop for half a period of the oscillation that it has with it: that is to last so many ticks.
+/// Minimum number of ticks in a stop: half a period of the oscillation of the load on the stop.
 const TICKS_IN_A_STOP: f64 = 10.0;
-/// A tick takes at most this part of the velocity that a load has in a stop.
+/// Largest share of its velocity that a load in a stop may lose in a tick.
 const MOST_DAMPED: f64 = 0.5;
 
 servobench_config::parameters! {
@@ -32,12 +32,12 @@ servobench_config::parameters! {
     }
 }
 
-/// Where the stops are and what they are like; constant during a run.
+/// Positions and parameters of the stops; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndStops {
-    /// Where the one at the negative end begins (axis coordinate).
+    /// Beginning of the stop at the negative end (axis coordinate).
     pub negative: Option<f64>,
-    /// Where the one at the positive end begins (axis coordinate).
+    /// Beginning of the stop at the positive end (axis coordinate).
     pub positive: Option<f64>,
     /// Stiffness of both, `k` (N/m or N·m/rad).
     pub stiffness: f64,
@@ -45,20 +45,20 @@ pub struct EndStops {
     pub damping: f64,
 }
 
-/// Stops that cannot be, or not with this load in ticks of this length.
+/// Errors of stops that are impossible, or too fast with this load for ticks of this length.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum EndStopError {
     /// A parameter is out of its bound.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// What happens in a stop is too fast for the ticks.
+    /// The motion in a stop is too fast for the ticks.
     #[error("`{name}` must be at most {most:.4e} with a load of {inertia} in ticks of {step} s, got {value:e}")]
     TooFast {
-        /// Which parameter.
+        /// The parameter.
         name: &'static Parameter,
         /// Its value.
         value: f64,
-        /// The largest one that goes with the ticks.
+        /// Largest value for these ticks.
         most: f64,
         /// Mass or inertia of the load (axis coordinate).
         inertia: f64,
@@ -68,7 +68,7 @@ pub enum EndStopError {
 }
 
 impl EndStopError {
-    /// The parameter that is wrong.
+    /// The wrong parameter.
     #[must_use]
     pub const fn parameter(&self) -> &'static Parameter {
         match self {
@@ -79,8 +79,8 @@ impl EndStopError {
 }
 
 impl EndStops {
-    /// Checks the parameters, and that ticks of `step` (s) resolve what a load of `inertia` (axis coordinate) does in a stop; of an
-    /// inertia that nobody knows nothing is said.
+    /// Checks the parameters, and that ticks of `step` (s) resolve the motion of a load of `inertia` (axis coordinate) in a stop; without
+    /// an inertia, the parameters alone.
     ///
     /// # Errors
     /// [`EndStopError`] names the first parameter out of its bound.
@@ -105,7 +105,7 @@ impl EndStops {
         Ok(())
     }
 
-    /// Force or torque on a load that is at `load` when a tick of `step` (s) begins (axis coordinate), to be held over the tick.
+    /// Force or torque (axis coordinate) on a load with the state `load` at the beginning of a tick of `step` (s), held over the tick.
     #[inline]
     #[must_use]
     pub fn effort(&self, load: BodyState, step: f64) -> f64 {
@@ -126,8 +126,8 @@ mod tests {
 
     const MASS: f64 = 12.0;
 
-    /// A free load that meets a stop with `speed` (m/s), from just before it until it is out of it again: how fast it leaves, and
-    /// the deepest it was in it.
+    /// A free load that meets a stop with `speed` (m/s), from just before the contact until just after it: its velocity at the end, and
+    /// its largest depth in the stop.
     fn bounce(stops: &EndStops, end: f64, direction: f64, speed: f64, step: f64) -> (f64, f64) {
         let mut load = BodyState { position: end - direction * 0.3 * speed * step, velocity: direction * speed };
         let mut deepest: f64 = 0.0;
@@ -175,8 +175,8 @@ mod tests {
     }
 
     proptest! {
-        /// In the coarsest ticks that are taken, wherever in a tick it comes, a load does not leave faster than it came but for what
-        /// a tick that is half inside does, and it is pushed outwards only.
+        /// In the coarsest permitted ticks, wherever in a tick it comes, a load does not leave faster than it came, except for the effect
+        /// of a tick that is half inside, and it is pushed outwards only.
         #[test]
         fn a_stop_adds_no_energy_and_does_not_pull(
             share in 0.05..1.0_f64, damped in 0.0..1.0_f64, speed in 1e-3..2.0_f64, depth in -1e-3..1e-3_f64,

@@ -1,4 +1,4 @@
-//! The engines: their one list, and what makes mechanics of a model.
+//! The engines: their list, and the trait that builds mechanics from a model.
 use crate::integration::Integrator;
 use crate::mechanics::{Mechanics, MechanicsError, MechanicsSetup, ModelKind};
 use servobench_config::{Choice as _, choices};
@@ -18,18 +18,18 @@ choices! {
     }
 }
 
-/// What an engine can do, whether or not a build has it: scenarios are checked and previewed on engines that the build lacks.
+/// Capabilities of an engine, whether or not a build has it: scenarios are checked and previewed on engines that the build lacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capabilities {
-    /// What it simulates; everything else is refused.
+    /// Kinds of models that it simulates; all others are refused.
     pub models: &'static [ModelKind],
-    /// Kinds of models with which it can end the process that it runs in, or not come back: they run in worker processes.
+    /// Kinds of models with which it can end its process, or not return: they run in worker processes.
     pub in_worker: &'static [ModelKind],
-    /// How it goes from tick to tick; `None` where that is the model's own business.
+    /// Method of integration from tick to tick; `None` where the model decides.
     pub integrator: Option<Integrator>,
-    /// Whether a joint of a user's MJCF file slides slowly under an effort below its dry friction.
+    /// True if a joint of a user's MJCF file slides slowly under an effort below its dry friction.
     pub creeps: bool,
-    /// About what a tick of the closed loop with its recording and measures takes on a chain, and on an MJCF file (ns); `None`
+    /// Approximate time of a tick of the closed loop with its recording and measures on a chain, and on an MJCF file (ns); `None`
     /// where the model decides. Processor time of `servobench run` for 30 s of current control at 16 kHz on two bodies with every
     /// channel recorded, and of `own-mjcf.toml`, on a shared machine of two cores. Right to a factor of two or three, and the same on
     /// every machine, so that a preview is.
@@ -37,7 +37,7 @@ pub struct Capabilities {
 }
 
 impl EngineName {
-    /// What this engine can do.
+    /// Capabilities of this engine.
     #[must_use]
     pub const fn capabilities(self) -> Capabilities {
         match self {
@@ -48,7 +48,7 @@ impl EngineName {
                 creeps: false,
                 tick_time: Some([450.0, 450.0]),
             },
-            // Its loader reads a file of somebody else.
+            // Its loader reads a foreign file.
             Self::Rapier => Capabilities {
                 models: &[ModelKind::Chain, ModelKind::Mjcf],
                 in_worker: &[ModelKind::Mjcf],
@@ -56,7 +56,7 @@ impl EngineName {
                 creeps: false,
                 tick_time: Some([2_000.0, 3_500.0]),
             },
-            // It answers errors by ending the process; the friction of its joints is a soft constraint.
+            // It ends the process on errors; the friction of its joints is a soft constraint.
             Self::Mujoco => Capabilities {
                 models: &[ModelKind::Chain, ModelKind::Mjcf],
                 in_worker: &[ModelKind::Chain, ModelKind::Mjcf],
@@ -64,7 +64,7 @@ impl EngineName {
                 creeps: true,
                 tick_time: Some([3_700.0, 4_800.0]),
             },
-            // FMUs run in processes of their own, so the engine needs none.
+            // FMUs run in separate processes, so the engine needs none.
             Self::Fmu => Capabilities {
                 models: &[ModelKind::Fmu],
                 in_worker: &[],
@@ -75,35 +75,35 @@ impl EngineName {
         }
     }
 
-    /// Whether a model of this kind runs in a worker process.
+    /// True if a model of this kind runs in a worker process.
     #[must_use]
     pub fn runs_in_worker(self, kind: ModelKind) -> bool {
         self.capabilities().in_worker.contains(&kind)
     }
 
-    /// Whether it simulates models of this kind.
+    /// True if it simulates models of this kind.
     #[must_use]
     pub fn simulates(self, kind: ModelKind) -> bool {
         self.capabilities().models.contains(&kind)
     }
 }
 
-/// The name as scenario files write it.
+/// The name as in scenario files.
 impl Display for EngineName {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
 }
 
-/// Makes mechanics of the kinds of models that the [`Capabilities`] of its name list.
+/// An engine: builds mechanics from the kinds of models in the [`Capabilities`] of its name.
 pub trait Engine: Sync {
-    /// Which engine it is.
+    /// Name of the engine.
     fn name(&self) -> EngineName;
 
     /// Builds the mechanics at tick 0.
     ///
     /// # Errors
-    /// [`MechanicsError`] when the model is wrong or needs what the engine does not have; for a kind of model that it does not
+    /// [`MechanicsError`] when the model is wrong or needs more than the engine has; for a kind of model that it does not
     /// simulate [`MechanicsError::not_simulated`].
     fn build(&self, setup: &MechanicsSetup) -> Result<Box<dyn Mechanics>, MechanicsError>;
 }

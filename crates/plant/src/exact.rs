@@ -75,7 +75,7 @@ struct ExactChain<const W: usize> {
     states: usize,
     /// One entry for each set of stuck bodies, body i being bit i; only those that dry friction can reach are there.
     holds: Arc<[Option<Hold<W>>]>,
-    /// What the columns are multiplied by: y, and behind it the efforts of the tick under way.
+    /// Factors of the columns: y, and behind it the efforts of the current tick.
     factors: [f64; COLUMNS],
     bodies: Vec<BodyState>,
     terms: [Terms; MAX_BODIES],
@@ -83,7 +83,7 @@ struct ExactChain<const W: usize> {
     identity: Identity,
 }
 
-/// What a tick needs of a body.
+/// Data of a body for a tick.
 #[derive(Clone, Copy, Default)]
 struct Terms {
     bias: f64,
@@ -124,7 +124,7 @@ impl<const W: usize> ExactChain<W> {
         Self { chain, prescribed, step: setup.step, states, holds, factors, bodies, terms, friction, identity }
     }
 
-    /// Efforts that are constant over the tick, dry friction still missing.
+    /// Efforts that are constant over the tick, without dry friction.
     #[inline(always)]
     fn efforts(&self, input: &Input) -> [f64; MAX_BODIES] {
         let mut u = self.terms.map(|terms| -terms.bias);
@@ -170,7 +170,7 @@ impl<const W: usize> ExactChain<W> {
             });
         };
 
-        // All that there may be: those that no body has are not multiplied.
+        // All possible efforts: those that no body has are not multiplied.
         for (factor, effort) in self.factors[self.states..].iter_mut().zip(&u) {
             *factor = *effort;
         }
@@ -220,8 +220,8 @@ impl<const W: usize> ExactChain<W> {
     }
 }
 
-/// Stretches, velocities, derivatives of the base and the position of the motor are the state; the bodies are derived from them, but
-/// for the roundings on the way, which is why they are saved.
+/// Stretches, velocities, derivatives of the base and the position of the motor are the state; the bodies are derived from them, except
+/// for accumulated roundings, which is why they are saved.
 impl<const W: usize> Stateful for ExactChain<W> {
     fn save(&self, to: &mut dyn Writer) {
         let Self { identity, factors, bodies, friction, states, chain: _, prescribed: _, step: _, holds: _, terms: _ } =
@@ -361,7 +361,7 @@ mod tests {
         Body { name: "body", coordinate, inertia, transmission: 1.0, friction, bias: 0.1 }
     }
 
-    /// Numbers that nobody moved derive the bodies that were saved with them, but for roundings.
+    /// Unchanged numbers give the bodies that were saved with them, except for roundings.
     #[test]
     fn bodies_follow_from_the_moved_numbers() {
         let bodies =
@@ -390,8 +390,7 @@ mod tests {
         }
     }
 
-    /// One to four bodies, with dry friction and without: what a processor with wide registers gives and what any other gives are the
-    /// same bits.
+    /// One to four bodies, with dry friction and without: processors with and without wide registers give the same bits.
     #[test]
     fn both_kinds_of_processors_give_the_same_bits() {
         fn compare<const W: usize>(chain: Chain, setup: &MechanicsSetup) {

@@ -6,7 +6,7 @@
 //! ```
 //! Source: Armstrong-Hélouvry, Dupont, Canudas de Wit, *Automatica* 30(7), 1994, eq. (4).
 //!
-//! [`Friction`] is all that engines, previews and estimates know of it. The part that is proportional to the velocity belongs to the
+//! [`Friction`] is the whole interface for engines, previews and estimates. The part that is proportional to the velocity belongs to the
 //! linear chain and is integrated with it ([`Friction::linear`]). The rest acts tick by tick ([`GroundFriction`](crate::GroundFriction)):
 //! [`Friction::grip`] decides before a tick, a held body is locked for the tick, a sliding one gets a constant force;
 //! [`Friction::settle`] sees the new velocity after it, and takes the [`Memory`] of the friction to the next tick. A body whose velocity
@@ -51,11 +51,11 @@ pub struct DryFriction {
     pub stribeck_velocity: f64,
 }
 
-/// What the friction of a body remembers from tick to tick: nothing, its force follows from velocity and effort.
+/// Memory of the friction of a body from tick to tick: empty, its force follows from velocity and effort.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub(crate) struct Memory {}
 
-/// What friction does to a body during one tick.
+/// Effect of friction on a body during one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Grip {
     /// Holds it: neither position nor velocity changes.
@@ -88,20 +88,20 @@ impl Friction {
         self.viscous
     }
 
-    /// Whether there is no more than the linear part: it then never holds the body, and adds nothing to that part.
+    /// True if friction is linear only: it then never holds the body, and adds nothing to that part.
     #[must_use]
     #[inline]
     pub fn is_linear(&self) -> bool {
         self.dry.is_none()
     }
 
-    /// Whether a body can be [held](Grip::Held).
+    /// True if a body can be [held](Grip::Held).
     #[inline]
     pub(crate) fn holds(&self) -> bool {
         !self.is_linear()
     }
 
-    /// What all but the linear part does in the coming tick of `step` (s), given the velocity and the effort of everything else at its
+    /// Effect of the non-linear part in the coming tick of `step` (s), given the velocity and the effort of everything else at its
     /// start.
     #[inline(always)]
     pub(crate) fn grip(&self, _memory: &Memory, velocity: f64, effort: f64, _step: f64) -> Grip {
@@ -114,14 +114,14 @@ impl Friction {
         }
     }
 
-    /// Takes the memory over the tick of `step` (s) that has passed, from the velocity `before` to the one `after` it. Whether the body came
+    /// Takes the memory over the past tick of `step` (s), from the velocity `before` to the one `after` it. True if the body came
     /// to rest within the tick; its velocity is then to be set to zero.
     #[inline(always)]
     pub(crate) fn settle(&self, _memory: &mut Memory, before: f64, after: f64, _step: f64) -> bool {
         self.holds() && before * after < 0.0
     }
 
-    /// Magnitude of all but the linear part while the body slides with `velocity` (N or N·m).
+    /// Magnitude of the non-linear part while the body slides with `velocity` (N or N·m).
     #[must_use]
     #[inline]
     pub fn sliding(&self, velocity: f64) -> f64 {
@@ -141,7 +141,7 @@ impl Friction {
         self.dry.coulomb
     }
 
-    /// The same friction as a coordinate feels it that moves this one by `ratio`.
+    /// The same friction, in a coordinate x for which this one is `ratio`·x.
     #[must_use]
     pub fn carried(&self, ratio: f64) -> Self {
         let DryFriction { coulomb, breakaway, stribeck_velocity } = self.dry;
@@ -155,7 +155,7 @@ impl Friction {
         }
     }
 
-    /// The friction of two bodies that are coupled rigidly, in one coordinate; `None` where there is no such sum, because they
+    /// The friction of two rigidly coupled bodies, in one coordinate; `None` if they
     /// differ in Stribeck velocity: two curves of different width do not add up to a third.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Option<Self> {

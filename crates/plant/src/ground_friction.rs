@@ -1,20 +1,20 @@
-//! Friction of the bodies of a chain against the ground, tick by tick: the one loop of all engines.
+//! Friction of the bodies of a chain against the ground, tick by tick: one loop for all engines.
 //!
 //! ```text
 //! before the tick   velocities, efforts of everything else → bodies that friction holds, its force on the others
 //! after the tick    velocities → bodies that came to rest within it
 //! ```
-//! [`Friction`] is the law of one body; which bodies feel it, what each remembers and what a tick needs of its start is here.
+//! [`Friction`] is the law of one body; this module has the bodies with friction, their memories and the velocities at the start of a tick.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::chain::Chain;
 use crate::friction::{Friction, Grip, Memory};
 use crate::mechanics::Drive;
 use servobench_base::Stateful;
 
-/// Friction of up to `N` bodies, the linear part apart ([`Friction::linear`]): that is integrated with the chain.
+/// Friction of up to `N` bodies, without the linear part ([`Friction::linear`]), which is integrated with the chain.
 #[derive(Debug, Clone, Stateful)]
 pub struct GroundFriction<const N: usize> {
-    /// [`Friction::NONE`] where a body feels none.
+    /// [`Friction::NONE`] for a body without friction.
     #[state(constant)]
     laws: [Friction; N],
     memories: [Memory; N],
@@ -29,17 +29,17 @@ pub struct GroundFriction<const N: usize> {
     before: [f64; N],
 }
 
-/// Friction in a tick, the linear part apart.
+/// Friction in a tick, without the linear part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grips<const N: usize> {
-    /// Bodies that it holds, body i being bit i: neither their position nor their velocity changes.
+    /// Held bodies, body i being bit i: neither their position nor their velocity changes.
     pub held: usize,
-    /// Force on each of the others, constant over the tick (N or N·m); 0 on those that are held.
+    /// Force on each of the others, constant over the tick (N or N·m); 0 on held ones.
     pub forces: [f64; N],
 }
 
 impl<const N: usize> GroundFriction<N> {
-    /// Friction of `chain`, at most `N` bodies, in ticks of `step` (s). A prescribed base goes where it is put and feels none.
+    /// Friction of `chain`, at most `N` bodies, in ticks of `step` (s). A prescribed base follows its set-point and has none.
     #[must_use]
     pub fn new(chain: &Chain, drive: Drive, step: f64) -> Self {
         let first = usize::from(drive == Drive::Prescribed);
@@ -50,7 +50,7 @@ impl<const N: usize> GroundFriction<N> {
         Self { laws, memories, felt, step, before: [0.0; N] }
     }
 
-    /// Whether there is no more than linear friction: then the rest need not be called.
+    /// True if there is only linear friction: then the rest need not be called.
     #[must_use]
     #[inline(always)]
     pub const fn is_linear(&self) -> bool {
@@ -94,7 +94,7 @@ impl<const N: usize> GroundFriction<N> {
     }
 }
 
-/// The bodies whose law `is` so, body i being bit i.
+/// The bodies whose law satisfies `is`, body i being bit i.
 fn set<const N: usize>(laws: &[Friction; N], is: impl Fn(&Friction) -> bool) -> usize {
     laws.iter().enumerate().filter(|(_, law)| is(law)).fold(0, |set, (i, _)| set | 1 << i)
 }

@@ -1,21 +1,21 @@
-//! Names the mechanics that a saved state belongs to.
+//! Identity of the mechanics to which a saved state belongs.
 use crate::engine::EngineName;
 use crate::mechanics::MechanicsSetup;
 use servobench_base::Stateful;
 use servobench_base::state::{Damaged, Reader, Writer};
 use std::fmt::{self, Write};
 
-/// Engine, model, actuation and tick of mechanics as one number, the first one of each of their states: it is restored into no other.
+/// Digest of engine, model, actuation and tick of mechanics, the first number in each of their states: only the same mechanics restore it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Identity(u64);
 
 impl Identity {
-    /// Of the mechanics that `engine` builds by `setup`; states at tick 0 may differ.
+    /// Identity of the mechanics that `engine` builds by `setup`; states at tick 0 may differ.
     #[must_use]
     pub fn new(engine: EngineName, setup: &MechanicsSetup) -> Self {
         let MechanicsSetup { model, drive, step, initial: _ } = setup;
         let mut digest = Fnv(0xcbf2_9ce4_8422_2325);
-        // Debug writes each number with all its digits, and `Fnv` takes every text.
+        // Debug writes each number with all its digits, and `Fnv` accepts every text.
         let _ = write!(digest, "{engine:?} {model:?} {drive:?} {step:?}");
         Self(digest.0)
     }

@@ -1,4 +1,4 @@
-//! What a method of integration does to a mode: it rings at another frequency, and dies away by the method's own damping.
+//! Distortion of a mode by a method of integration: a shifted frequency, and added damping.
 //!
 //! ```text
 //! half kick – drift – half kick    ω'·h = 2·asin(ω·h/2)           shift (ω·h)²/24, no damping, up to ω·h = 2
@@ -9,7 +9,7 @@
 //! Differential Equations II*, §IV.2.
 use nalgebra::Complex;
 
-/// How mechanics go from tick to tick.
+/// Method of integration of mechanics from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Integrator {
     /// By the matrix exponential: no error.
@@ -20,17 +20,17 @@ pub enum Integrator {
     Rk4,
 }
 
-/// What becomes of an undamped mode.
+/// Distortion of an undamped mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distortion {
     /// Damping ratio that the method adds.
     pub damping: f64,
-    /// Share by which the mode rings too fast; negative: too slowly.
+    /// Relative increase of the frequency; negative for a decrease.
     pub shift: f64,
 }
 
 impl Integrator {
-    /// Largest ω·h of an undamped mode; infinite where there is none.
+    /// Largest ω·h of an undamped mode; infinite without a bound.
     #[must_use]
     pub const fn stable_below(self) -> f64 {
         match self {
@@ -40,7 +40,7 @@ impl Integrator {
         }
     }
 
-    /// What a tick of `h` (s) does to an undamped mode of `omega` (rad/s); `None` when it grows without bound.
+    /// Distortion of an undamped mode of `omega` (rad/s) in ticks of `h` (s); `None` when it grows without bound.
     #[must_use]
     pub fn distortion(self, omega: f64, h: f64) -> Option<Distortion> {
         let angle = omega * h;
@@ -55,7 +55,7 @@ impl Integrator {
         }
     }
 
-    /// By how much a step `h` (s) of RK4 multiplies a motion e^(λt), |R(λ·h)|: above one it grows.
+    /// Factor |R(λ·h)| by which a step `h` (s) of RK4 multiplies a motion e^(λt): above one it grows.
     #[must_use]
     pub fn rk4_gain(eigenvalue: Complex<f64>, h: f64) -> f64 {
         rk4_factor(eigenvalue * h).norm()
@@ -68,7 +68,7 @@ fn rk4_factor(z: Complex<f64>) -> Complex<f64> {
     one + z * (one + z / 2.0 * (one + z / 3.0 * (one + z / 4.0)))
 }
 
-/// Of an undamped mode of ω·h = `angle`. |R|² = 1 − (ω·h)⁶/72 + (ω·h)⁸/576 without the cancellation of its definition.
+/// Distortion of a mode of ω·h = `angle`. |R|² = 1 − (ω·h)⁶/72 + (ω·h)⁸/576 without the cancellation of its definition.
 fn rk4(angle: f64) -> Distortion {
     let squared = angle * angle;
     let growth = 0.5 * (squared.powi(3) * (squared / 576.0 - 1.0 / 72.0)).ln_1p();

@@ -1,11 +1,11 @@
-//! Inverter. An ideal one, averaged over its carrier, gives the voltage it is asked for, up to what the DC link allows.
+//! Inverter. An ideal one, averaged over its carrier, gives the requested voltage, up to the limit of the DC link.
 //!
 //! ```text
 //! |u| ≤ U_dc/√3      (linear range of space-vector modulation)
 //! ```
 //! Source: Holmes & Lipo, *Pulse Width Modulation for Power Converters*, §6.3.
 //!
-//! What a real one does beside that has a file each; [`Params`] switches it on.
+//! The effects of a real inverter have a file each; [`Params`] switches them on.
 mod averaged;
 mod held;
 mod legs;
@@ -33,7 +33,7 @@ pub fn voltage_limit(u_dc: f64) -> f64 {
     u_dc / SQRT_3
 }
 
-/// The voltage that comes out when `wanted` is asked for: shortened to the limit, direction kept.
+/// Output voltage when `wanted` is requested: shortened to the limit, direction kept.
 #[must_use]
 pub fn output(wanted: AlphaBeta, u_dc: f64) -> AlphaBeta {
     let (limit, squared) = (voltage_limit(u_dc), wanted.alpha * wanted.alpha + wanted.beta * wanted.beta);
@@ -44,7 +44,7 @@ pub fn output(wanted: AlphaBeta, u_dc: f64) -> AlphaBeta {
     AlphaBeta { alpha: wanted.alpha * ratio, beta: wanted.beta * ratio }
 }
 
-/// Whether `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
+/// True if `given` falls short of `wanted`, by more than the rounding of a drive that keeps to the limit itself.
 pub(crate) fn falls_short(given: AlphaBeta, wanted: AlphaBeta) -> bool {
     let squared = |u: AlphaBeta| u.alpha * u.alpha + u.beta * u.beta;
     given != wanted && squared(given) < (1.0 - 1e-9) * squared(wanted)

@@ -1,8 +1,8 @@
-//! Physics of a servo axis: motor, inverter, sensors, friction, mechanics. Knows nothing of controllers.
+//! Physics of a servo axis: motor, inverter, sensors, friction, mechanics. Independent of controllers.
 //!
-//! Each block is `Params` (constant in a run), `State` (what a tick leaves to the next one), an input and a step.
-//! Mechanics is a trait, because it has several engines; the engine [`Exact`] lives here, the others in crates of
-//! their own.
+//! Each block has `Params` (constant in a run), `State` (kept from tick to tick), an input and a step.
+//! Mechanics is a trait, because it has several engines; the engine [`Exact`] is in this crate, the others in separate
+//! crates.
 
 mod chain;
 mod end_stops;

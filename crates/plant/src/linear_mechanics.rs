@@ -184,7 +184,7 @@ impl Differences {
 
 /// The shortest x that minimises |M·x − b|.
 fn shortest(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    // A column of its own unit each.
+    // Columns scaled to unit length, since their units differ.
     let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
     let inverse = |length: &f64| if *length > 0.0 { 1.0 / length } else { 0.0 };
     let scales = DVector::from_iterator(lengths.len(), lengths.iter().map(inverse));

@@ -1,6 +1,6 @@
-//! The plant as a linear one around a standstill: each part says what is linear in it, sensors and inverter beside their parameters.
+//! Linearisation of the plant around a standstill: each part gives its linear part, sensors and inverter beside their parameters.
 //!
-//! Every field is named here, so that a new one does not compile before somebody has said whether it stays.
+//! Every field is named here, so that a new one does not compile until its treatment is decided.
 use crate::pmsm::{self, Effects};
 use crate::{Body, Chain, Friction, IdealSource};
 
@@ -27,7 +27,7 @@ impl Chain {
 }
 
 impl IdealSource {
-    /// Without a limit.
+    /// The source without its limit.
     #[must_use]
     pub const fn linearised(&self) -> Self {
         let Self { gain, output, limit: _ } = *self;
@@ -36,7 +36,7 @@ impl IdealSource {
 }
 
 impl Effects {
-    /// The motor with the data `p` as the loop around a standstill has it: at the temperatures of the beginning. Cogging, harmonics,
+    /// The motor with the data `p` in the loop around a standstill: at the initial temperatures. Cogging, harmonics,
     /// saturation, losses in the iron and unequal phases are left out.
     #[must_use]
     pub fn linearised(&self, p: &pmsm::Params) -> pmsm::Params {

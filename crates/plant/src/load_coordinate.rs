@@ -1,25 +1,25 @@
 //! Position of the load in a user's own MJCF file.
 //!
-//! A joint's coordinate says how far its body has moved on the body that carries it. Where the motor moves that body too,
-//! this is the deflection, and the load's position takes in the joints below:
+//! A joint's coordinate is the motion of its body on the body that carries it. Where the motor moves that body too,
+//! this is the deflection, and the load's position includes the joints below:
 //!
 //! ```text
 //! x = Σ c_i·q_i      c_i = a_i·a_load
 //! Q_i = c_i·f        so that the effort f on the load has the power f·ẋ
 //! ```
-//! over the load joint and the joints of its kind (slides, or hinges) that it stands on, down to the body that carries
+//! over the load joint and the joints of its kind (slides, or hinges) below it, down to the body that carries
 //! both motor joint and load joint. a_i are unit axes in the reference pose: c is 1 for the load joint itself, ±1 for
 //! a parallel one, 0 for one at right angles to it. A scale along the load joint's axis reads this when it is fixed to
 //! the body that carries both; for hinges an encoder does, exactly so when they are parallel.
 use servobench_base::Coordinate;
 
-/// Cosines that are this close to 0, 1 or −1 are: rotations in floating point leave some 1e-16 each.
+/// Distance from 0, 1 or −1 within which cosines have that value: rotations in floating point leave some 1e-16 each.
 const ROUNDING: f64 = 1e-12;
 
 /// A joint with one degree of freedom, in the reference pose of its model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PosedJoint {
-    /// The engine's number of it.
+    /// Number of the joint in the engine.
     pub number: usize,
     /// Slide or hinge.
     pub kind: Coordinate,
@@ -31,12 +31,12 @@ pub struct PosedJoint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadCoordinate {
     joint: usize,
-    /// Joints that it stands on.
+    /// Joints below it, with their factors.
     below: Vec<(usize, f64)>,
 }
 
 impl LoadCoordinate {
-    /// Of the joint `load` that stands on the joints `below_load`, for a motor joint that stands on `below_motor`; both
+    /// Coordinate of the joint `load` on the joints `below_load`, for a motor joint on the joints `below_motor`; both
     /// lists go from the world upwards.
     #[must_use]
     pub fn new(load: PosedJoint, below_load: &[PosedJoint], below_motor: &[PosedJoint]) -> Self {
@@ -57,17 +57,17 @@ impl LoadCoordinate {
         self.joint
     }
 
-    /// Joints that the load's position is a sum of, and what each counts.
+    /// Joints in the sum for the load's position, with their factors.
     pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
         self.below.iter().copied().chain([(self.joint, 1.0)])
     }
 
-    /// The load's position (m or rad) from those of the joints; velocity from velocities.
+    /// The load's position (m or rad) from those of the joints; its velocity from their velocities.
     pub fn of(&self, joint: impl Fn(usize) -> f64) -> f64 {
         self.terms().map(|(number, share)| share * joint(number)).sum()
     }
 
-    /// The load joint's own position that puts the load at `position`, the other joints being where they are; its
+    /// The load joint's own position that puts the load at `position`, with the other joints as they are; its
     /// velocity likewise.
     pub fn own(&self, position: f64, joint: impl Fn(usize) -> f64) -> f64 {
         self.below.iter().fold(position, |rest, &(number, share)| rest - share * joint(number))

@@ -8,8 +8,8 @@ use crate::mechanics::Drive;
 use servobench_base::Coordinate;
 use std::fmt::Write as _;
 
-/// The chain as MJCF text. Joints are named after the bodies, the actuator is `motor_effort`, tendons are
-/// `link_0`, `link_1`, … With [`Drive::Prescribed`] there is no body 0: the world is the moving base.
+/// Writes the chain as MJCF text. Joints are named after the bodies, the actuator is `motor_effort`, tendons are
+/// `link_0`, `link_1`, … With [`Drive::Prescribed`] there is no body 0, and the world is the moving base.
 ///
 /// `step` is the tick length (s). The integrator is RK4: the axis is smooth and its efforts are held, so each
 /// tick is accurate to fifth order.

@@ -1,24 +1,24 @@
-//! What a user's own MJCF file has to fit: the axis and the drive that the scenario describes.
+//! Requirements on a user's own MJCF file: the axis and the drive that the scenario describes.
 //!
-//! A joint's coordinate is taken for the motor's, or the load's, as it is. A hinge where metres are meant would show its
+//! A joint's coordinate is taken for the motor's, or the load's, as it is. A hinge in place of a slide would show its
 //! radians as metres.
 use crate::mechanics::MjcfModel;
 use crate::refusal::{Refusal, RefusedAt};
 use servobench_base::Coordinate;
 
-/// The axis that a file is to be.
+/// The axis that a file must describe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MjcfAxis {
     /// Coordinate of the motor.
     pub motor: Coordinate,
     /// Coordinate of the load.
     pub load: Coordinate,
-    /// Largest effort that the drive asks for, in the motor's coordinate (N·m or N); infinite where nothing bounds it.
+    /// Largest requested effort of the drive, in the motor's coordinate (N·m or N); infinite without a bound.
     pub max_effort: f64,
 }
 
 impl MjcfModel {
-    /// What does not fit when motor joint and load joint are of these kinds; nothing where nobody says what they are to be.
+    /// Mismatches if motor joint and load joint are of these kinds; none if no axis is required.
     #[must_use]
     pub fn misfits(&self, motor: Coordinate, load: Coordinate) -> Vec<Refusal> {
         let Some(axis) = self.axis else { return Vec::new() };
@@ -26,13 +26,13 @@ impl MjcfModel {
             (&self.motor_joint, axis.motor, motor, motor_help(axis)),
             (&self.load_joint, axis.load, load, load_help(axis)),
         ];
-        // One joint that is both has the motor's coordinate, which the transmission makes that of the load.
+        // A single joint for both has the motor's coordinate, which the transmission converts to that of the load.
         let checked = if self.motor_joint == self.load_joint { 1 } else { 2 };
         let wrong = joints.into_iter().enumerate().take(checked).filter(|(_, (_, wanted, found, _))| wanted != found);
         wrong.map(|(i, (name, wanted, _, help))| misfit(name, i == 0, wanted, help)).collect()
     }
 
-    /// That the drive asks for more than the actuator gives within `range` (N·m or N on the joint).
+    /// Refusal if the drive requests more than the actuator gives within `range` (N·m or N on the joint).
     #[must_use]
     pub fn too_strong(&self, range: [f64; 2]) -> Option<Refusal> {
         // Equal values may differ by the rounding of a product.
@@ -70,7 +70,7 @@ fn misfit(name: &str, is_motor: bool, wanted: Coordinate, help: &str) -> Refusal
     Refusal { place: RefusedAt::Joint { name: name.to_owned(), is_motor }, message }
 }
 
-/// What makes the motor joint fit.
+/// Advice on a motor joint that does not fit.
 const fn motor_help(axis: MjcfAxis) -> &'static str {
     match (axis.motor, axis.load) {
         (Coordinate::Linear, _) => "name a slide, or give the axis a `lead` and a motor that turns",
@@ -81,7 +81,7 @@ const fn motor_help(axis: MjcfAxis) -> &'static str {
     }
 }
 
-/// What makes the load joint fit.
+/// Advice on a load joint that does not fit.
 const fn load_help(axis: MjcfAxis) -> &'static str {
     match axis.load {
         Coordinate::Linear => "name a slide, or write `motion = \"rotary\"` in `[axis]` with a motor that turns",

@@ -1,4 +1,4 @@
-//! Modes of a chain: at which frequencies it rings, and how each dies away.
+//! Modes of a chain: their frequencies and damping.
 //!
 //! ```text
 //! M·ẍ + D·ẋ + K·x = 0                        x axis coordinates, M_i = m_i/r_i², dry friction left out
@@ -6,8 +6,8 @@
 //! s' = V·v,  v' = −M⁻¹·(Vᵀ·C·s + D·v)        s link stretches: eigenvalues λ of the damped chain
 //! ζ = −Re λ/|λ|
 //! ```
-//! In stretches the free chain has no double eigenvalue of zero, which no numerical method likes. A mode whose damped
-//! eigenvalues are real, or cannot be told apart, has the damping of its own shape, ζ = φᵀ·D·φ/(2ω). Source: Meirovitch,
+//! In stretches the free chain has no double zero eigenvalue, which numerical methods handle badly. A mode whose damped
+//! eigenvalues are real, or ambiguous, has the damping of its own shape, ζ = φᵀ·D·φ/(2ω). Source: Meirovitch,
 //! *Fundamentals of Vibrations*, §7.
 use crate::chain::Chain;
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
@@ -18,16 +18,16 @@ use servobench_base::HeldMode;
 pub struct Mode {
     /// Undamped frequency ω (rad/s).
     pub omega: f64,
-    /// Damping ratio ζ; 1 and above does not ring.
+    /// Damping ratio ζ; a mode of 1 and above does not ring.
     pub damping: f64,
 }
 
-/// Turns of the QR iteration for an eigenvalue; what has not converged by then does not.
+/// Maximum iterations of the QR method for an eigenvalue; if it has not converged by then, it does not.
 const MOST_TURNS: usize = 1000;
 /// A frequency below this share of the highest is that of the free chain as a whole: zero.
 const AT_REST: f64 = 1e-6;
 
-/// Masses, dampers and springs, without the bodies that are held.
+/// Masses, dampers and springs, without held bodies.
 struct Matrices {
     /// M^(−½)·K·M^(−½) and M^(−½)·D·M^(−½).
     stiffness: DMatrix<f64>,
@@ -85,7 +85,7 @@ impl Chain {
         modes.collect()
     }
 
-    /// The eigenvalues λ of the damped chain (1/s): of velocities and stretches, so that the position of the whole is none of
+    /// The eigenvalues λ of the damped chain (1/s): of velocities and stretches, so that the position of the whole is not one of
     /// them. Empty when the iteration does not converge.
     #[must_use]
     pub fn eigenvalues(&self, held: bool) -> Vec<Complex<f64>> {
@@ -191,7 +191,7 @@ mod tests {
         assert!((trace / -lost - 1.0).abs() < 1e-11, "{trace} {lost}");
     }
 
-    /// Oracles: at rest the load is where the motor is; from any place it is accelerated by the coupling to the body before it,
+    /// Oracles: at rest, load and motor have the same position; at any position the coupling to the body before it accelerates it,
     /// Σ weight·ω² = 0 where that is not the motor; one load has the coefficients of its equation of motion.
     #[test]
     fn a_load_follows_the_motor_in_its_modes() {

@@ -11,7 +11,7 @@
 //! The inverter holds its voltage in the stator frame, so in the rotor frame it turns backwards during a tick. At constant
 //! speed the equations are linear with that input, and a tick is solved exactly, to the rounding: currents at its end,
 //! mean torque, and the means of products that are its powers ([`step_with_power`]), for every tick, however large ω·h and
-//! R·h/L are. Where the speed changes in a tick, its mean takes its place: second order.
+//! R·h/L are. If the speed changes in a tick, its mean is used: second order.
 //!
 //! ```text
 //! P_electrical = 3/2·mean(u_d·i_d + u_q·i_q)    P_copper = 3/2·R·mean(i_d² + i_q²)    P_air-gap = ω/p·mean(T)
@@ -91,7 +91,7 @@ pub struct State {
     pub current: Dq,
 }
 
-/// What acts on the motor from tick k to k+1.
+/// Inputs of the motor from tick k to k+1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
     /// Stator voltage, held over the tick (V, peak, phase to neutral).
@@ -104,7 +104,7 @@ pub struct Input {
 
 impl Params {
     /// # Errors
-    /// [`ParamError`] names the first parameter that is out of its bound; so is a flux linkage of 0 where no saliency makes torque.
+    /// [`ParamError`] names the first parameter out of its bound, also a flux linkage of 0 without saliency, which leaves no torque.
     pub fn check(&self) -> Result<(), ParamError> {
         Parameter::ELECTRICAL_RATIO.check_in_words(self.electrical_ratio)?;
         Parameter::RESISTANCE.check_in_words(self.resistance)?;
@@ -118,7 +118,7 @@ impl Params {
         Ok(())
     }
 
-    /// True where neither magnets nor a difference of the inductances make torque.
+    /// True if neither magnets nor a difference of the inductances make torque.
     #[must_use]
     pub fn has_no_torque(&self) -> bool {
         self.flux_linkage == 0.0 && self.inductance.d - self.inductance.q == 0.0
@@ -144,7 +144,7 @@ impl Params {
         0.75 * (self.inductance.d * current.d * current.d + self.inductance.q * current.q * current.q)
     }
 
-    /// Voltage at which `current` stays what it is at the electrical speed `omega_e` (V).
+    /// Voltage that keeps `current` constant at the electrical speed `omega_e` (V).
     #[must_use]
     pub fn steady_voltage(&self, current: Dq, omega_e: f64) -> Dq {
         let Self { resistance, inductance, flux_linkage, .. } = self;
@@ -156,7 +156,7 @@ impl Params {
 }
 
 impl Input {
-    /// The voltage as the rotor meets it in the middle of a tick of `h` (s). Its mean over the tick is shorter by
+    /// The voltage in the frame of the rotor in the middle of a tick of `h` (s). Its mean over the tick is shorter by
     /// sin(ωh/2)/(ωh/2).
     #[inline(always)]
     #[must_use]
@@ -176,7 +176,7 @@ pub struct Power {
     pub iron: f64,
     /// Into the field of the inductances, and with cogging of the magnets.
     pub stored: f64,
-    /// Over the air gap: torque times the speed that the motor's equations used.
+    /// Over the air gap: torque times the speed in the motor's equations.
     pub air_gap: f64,
 }
 
@@ -189,7 +189,7 @@ pub struct Output {
     pub power: Power,
 }
 
-/// A motor whose tick is always as long: what does not depend on the speed is worked out once.
+/// A motor with ticks of constant length: terms that do not depend on the speed are computed once.
 #[derive(Debug, Clone)]
 pub struct Ticks {
     params: Params,
@@ -230,7 +230,7 @@ impl Ticks {
         self.params.torque_factor() * solution.means.torque
     }
 
-    /// The same with the powers, which go to `power`: a copy would have to wait until they are stored.
+    /// The same with the powers, which are written to `power`: a copy would have to wait until they are stored.
     #[inline]
     pub fn step_with_power(&self, x: &mut State, u: &Input, power: &mut Power) -> f64 {
         wide_registers!(self.solved_with_power(x, u, power), Self::in_wide_registers, self, x, u, power)
@@ -264,14 +264,14 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> f64 {
     step_with_power(p, x, u, h).torque
 }
 
-/// The same with the powers: mean input, losses and change of what is stored, each by itself.
+/// The same with the powers: mean input, losses and change of the stored energy, each computed separately.
 pub fn step_with_power(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     let (solution, before) = (solve(p, x.current, &u, h), x.current);
     x.current = moved(before, solution.change);
     p.output(&solution, before, x.current, u.omega_e, h)
 }
 
-/// As numbers, so that a solution of the tables stays in registers.
+/// Returns numbers, so that a solution of the tables stays in registers.
 #[cold]
 fn solve_in_numbers(p: &Params, i: Dq, u: &Input, h: f64) -> [f64; 5] {
     let Solution { change: Dq { d, q }, means: Forms { torque, square, input } } = solve(p, i, u, h);

@@ -10,7 +10,7 @@ use crate::{inverter, pmsm};
 use servobench_base::{AlphaBeta, Divider, Dq, KnownRotation, ParamError, PowerCommand, Stateful};
 use synchronous::Synchronous;
 
-/// What stands between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
+/// Link between the drive and the mechanics: an inverter with a synchronous motor, an ideal source, or nothing.
 #[derive(Debug, Clone, Stateful)]
 #[state(fixed)]
 pub struct PowerStage(Stage);
@@ -50,7 +50,7 @@ impl PowerStage {
         Ok(Self(Stage::Synchronous(Synchronous::new(motor, dc_link, speed, h)?)))
     }
 
-    /// The same, in ticks of `h` (s), with a motor that has `effects`; a stage without one stays as it is.
+    /// Adds `effects` to the motor, in ticks of `h` (s); a stage without a motor stays as it is.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -61,7 +61,7 @@ impl PowerStage {
         })
     }
 
-    /// The same with sensors that err, for a current loop that turns every `every` ticks of `h` (s).
+    /// Adds sensors with errors, for a current loop that runs every `every` ticks of `h` (s).
     ///
     /// # Errors
     /// [`ParamError`] names the parameter of the sensors that is out of its bound.
@@ -72,7 +72,7 @@ impl PowerStage {
         Ok(self)
     }
 
-    /// With an inverter, and a link, that are like this, in ticks of `h` (s); without a motor there are none.
+    /// Sets the parameters of inverter and link, in ticks of `h` (s); a stage without a motor has none.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter of them that is out of its bound.
@@ -88,7 +88,7 @@ impl PowerStage {
         Ok(self)
     }
 
-    /// With a motor that is connected like this; without a motor nothing is.
+    /// Sets the wiring of the motor; a stage without a motor has none.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter of the wiring that is out of its bound.
@@ -99,7 +99,7 @@ impl PowerStage {
         Ok(self)
     }
 
-    /// Stator current as the drive's sensors see it with the motor at `motor` (A, peak).
+    /// Stator current measured by the drive's sensors with the motor at `motor` (A, peak).
     #[inline(always)]
     pub fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         match &mut self.0 {
@@ -108,14 +108,14 @@ impl PowerStage {
         }
     }
 
-    /// The rotation of the rotor when the current was measured last.
+    /// The rotation of the rotor at the last measurement of the current.
     #[inline(always)]
     #[must_use]
     pub fn rotation(&self) -> KnownRotation {
         self.synchronous().map_or_else(KnownRotation::default, Synchronous::rotor)
     }
 
-    /// A voltage in the rotor's frame (V, peak) in the stator's, with the motor at `motor`.
+    /// Converts a voltage in the rotor's frame (V, peak) to the stator's, with the motor at `motor`.
     #[inline]
     #[must_use]
     pub fn in_the_stator(&mut self, voltage: Dq, motor: BodyState) -> AlphaBeta {
@@ -142,56 +142,56 @@ impl PowerStage {
         }
     }
 
-    /// Whether the inverter gave less voltage than it was asked for at the last tick.
+    /// True if the inverter gave less voltage than requested at the last tick.
     #[inline(always)]
     #[must_use]
     pub fn shortens_voltage(&self) -> bool {
         self.synchronous().is_some_and(Synchronous::shortens)
     }
 
-    /// What the inverter gives over the last tick that was advanced, as the rotor meets it in the middle of that tick (V).
+    /// Voltage of the inverter over the last tick that was advanced, in the frame of the rotor in the middle of that tick (V).
     #[inline(always)]
     #[must_use]
     pub fn voltage(&self) -> Dq {
         self.synchronous().map_or_else(Dq::default, Synchronous::voltage)
     }
 
-    /// Mean powers of the motor over that tick (W); zero where nobody wants them.
+    /// Mean powers of the motor over that tick (W); zero if they are left out.
     #[inline(always)]
     #[must_use]
     pub fn power(&self) -> pmsm::Power {
         self.synchronous().map_or_else(pmsm::Power::default, Synchronous::power)
     }
 
-    /// Temperatures of the motor at this tick (°C); zero where nothing warms up.
+    /// Temperatures of the motor at this tick (°C); zero without warming.
     #[inline(always)]
     #[must_use]
     pub fn temperatures(&self) -> pmsm::Temperatures {
         self.synchronous().map_or_else(pmsm::Temperatures::default, Synchronous::temperatures)
     }
 
-    /// Mean loss of the inverter over that tick (W); zero where nobody wants it, or where it has none.
+    /// Mean loss of the inverter over that tick (W); zero if left out, or without a loss.
     #[inline(always)]
     #[must_use]
     pub fn inverter_loss(&self) -> f64 {
         self.synchronous().map_or(0.0, Synchronous::inverter_loss)
     }
 
-    /// Length of the current vector over that tick, the ripple of an inverter that switches included (A); zero where none does.
+    /// Length of the current vector over that tick, including the ripple of a switching inverter (A); zero with any other.
     #[inline(always)]
     #[must_use]
     pub fn ripple(&self) -> inverter::Ripple {
         self.synchronous().map_or_else(inverter::Ripple::default, Synchronous::ripple)
     }
 
-    /// Voltage of the DC link (V), and its mean powers over that tick (W); zero where there is none.
+    /// Voltage of the DC link (V), and its mean powers over that tick (W); zero without one.
     #[inline(always)]
     #[must_use]
     pub fn link(&self) -> (f64, inverter::LinkPower) {
         self.synchronous().map_or_else(Default::default, Synchronous::link)
     }
 
-    /// Whether the DC link has less than half of its voltage without load.
+    /// True if the DC link has less than half of its voltage without load.
     #[inline(always)]
     #[must_use]
     pub fn link_has_collapsed(&self) -> bool {
@@ -206,7 +206,7 @@ impl PowerStage {
         }
     }
 
-    /// Goes from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
+    /// Advances from tick k to k+1 (`h` s) and returns the mean effort over it (N·m or N).
     #[inline(always)]
     pub fn advance(&mut self, command: PowerCommand, motor: BodyState, h: f64) -> f64 {
         let output = self.output(command);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     /// Oracle: in the stator frame the back-EMF of a motor at constant speed, ψ·ω_e·[−sin θ, cos θ], averaged over the
-    /// tick in closed form; a motor on that voltage takes no current.
+    /// tick in closed form; a motor on that voltage has no current.
     #[test]
     fn a_motor_on_its_own_back_emf_takes_no_current_from_its_first_tick_on() {
         let speed = 100.0;
@@ -281,7 +281,7 @@ mod tests {
         let (rotor, omega_e) = (Rotation::default(), 3.0 * velocity(1.5));
         let mut state = pmsm::State::default();
         let expected = pmsm::step(&MOTOR, &mut state, pmsm::Input { voltage, rotor, omega_e }, H);
-        // Two roundings of the speed, and a dozen of the motor's tick, which is solved in another way.
+        // Two roundings of the speed, and a dozen of the motor's tick, which is solved by another method.
         assert!((effort / expected - 1.0).abs() < 1e-13, "{effort} {expected}");
         assert!((stage.current().q / state.current.q - 1.0).abs() < 1e-13);
     }
@@ -297,7 +297,7 @@ mod tests {
         assert!(alpha.abs() < 1e-14 && (beta + 2.0).abs() < 1e-14, "{alpha} {beta}");
     }
 
-    /// A drive that keeps to the limit itself meets it to a rounding or two, which is no cut.
+    /// A drive that keeps to the limit itself meets it to a rounding or two, which is not a cut.
     #[test]
     fn a_voltage_beyond_the_dc_link_is_known() {
         let limit = 540.0 / 3.0_f64.sqrt();

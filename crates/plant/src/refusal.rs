@@ -1,16 +1,16 @@
-//! What an engine refuses in a user's own MJCF file, and where to look.
+//! Refusals of an engine in a user's own MJCF file, and their places.
 use std::fmt::{self, Display, Formatter};
 
-/// One thing in a user's own MJCF file, or in what is said of it, that an engine does not simulate.
+/// A feature of a user's own MJCF file, or of its use, that an engine does not simulate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// Where to look.
+    /// Place of the refusal.
     pub place: RefusedAt,
-    /// What it is, in words.
+    /// The refusal, in words.
     pub message: String,
 }
 
-/// Where to look for what is refused.
+/// Place of a refused feature.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RefusedAt {
     /// On this line of the file, from 1.
@@ -21,7 +21,7 @@ pub enum RefusedAt {
     Joint {
         /// The name.
         name: String,
-        /// Whether it is that of the motor.
+        /// True for the motor joint.
         is_motor: bool,
     },
     /// In the file as a whole.

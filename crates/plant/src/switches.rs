@@ -1,51 +1,51 @@
 //! Limit and home switches along the axis, and the index pulse of the motor's encoder.
 //!
-//! A switch is active or not at the position of the load. Wired normally open it closes its input while it is active, wired
-//! normally closed it opens it then; an input without a switch is open. The index pulse comes once per revolution of the motor and its
-//! position is latched where it comes, between two ticks too: an encoder's hardware does that.
+//! A switch is active or not by the position of the load. Wired normally open, it closes its input while active; wired
+//! normally closed, it opens the input then; an input without a switch is open. The index pulse comes once per revolution of the motor and
+//! its position is latched, between two ticks too, as in an encoder's hardware.
 use core::f64::consts::TAU;
 use core::fmt::{self, Display, Formatter};
 use core::ops::RangeInclusive;
 use servobench_base::{ParamError, finite};
 
-/// Where the switches are, and how they are wired; constant during a run.
+/// Positions and wiring of the switches; constant during a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Switches {
     /// The negative end: active at and below it (axis coordinate).
     pub negative: Option<f64>,
     /// The positive end: active at and above it (axis coordinate).
     pub positive: Option<f64>,
-    /// Where the home switch is active (axis coordinate).
+    /// Range in which the home switch is active (axis coordinate).
     pub home: Option<RangeInclusive<f64>>,
     /// Angle of the motor at which the index pulse comes (rad); `None` for a motor without one.
     pub index: Option<f64>,
-    /// Whether the switches are wired normally closed.
+    /// True if the switches are wired normally closed.
     pub normally_closed: bool,
 }
 
-/// What the inputs for the switches are at a tick.
+/// Inputs from the switches at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SwitchReading {
-    /// Whether the input for the switch of the negative end is closed.
+    /// True if the input for the switch of the negative end is closed.
     pub negative: bool,
-    /// Whether the input for the switch of the positive end is closed.
+    /// True if the input for the switch of the positive end is closed.
     pub positive: bool,
-    /// Whether the input for the home switch is closed.
+    /// True if the input for the home switch is closed.
     pub home: bool,
     /// Position of the motor at the last index pulse since the tick before (rad); `None` without one.
     pub index: Option<f64>,
 }
 
 impl SwitchReading {
-    /// The inputs of a drive that counts in this `direction` of the axis, −1 or 1: the ends are the other way round for one that counts
-    /// against it.
+    /// The inputs of a drive that counts in this `direction` of the axis, −1 or 1: for −1, negative and positive end are
+    /// exchanged.
     #[must_use]
     pub const fn in_direction(self, direction: f64) -> Self {
         if direction < 0.0 { Self { negative: self.positive, positive: self.negative, ..self } } else { self }
     }
 }
 
-/// A point of the axis at which a switch, or the index pulse, is.
+/// A point of the axis with a switch, or the index pulse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SwitchPoint {
     /// [`Switches::negative`].
@@ -94,7 +94,7 @@ impl Switches {
         Ok(())
     }
 
-    /// The inputs with the load at `load` (axis coordinate), and of the motor's way from `before` to `now` (rad).
+    /// The inputs with the load at `load` (axis coordinate), and a motion of the motor from `before` to `now` (rad).
     #[must_use]
     pub fn read(&self, load: f64, before: f64, now: f64) -> SwitchReading {
         let is_closed = |is_active: bool| is_active != self.normally_closed;
@@ -107,8 +107,8 @@ impl Switches {
     }
 }
 
-/// The last angle `index` + n·2π on the way from `before` to `now`, both ends of the way in the half-open interval that
-/// leaves out `before`: two ways one after the other meet each pulse once.
+/// The last angle `index` + n·2π in the motion from `before` to `now`, in the half-open interval that
+/// excludes `before`: two consecutive motions meet each pulse once.
 fn last_pulse(index: f64, before: f64, now: f64) -> Option<f64> {
     let turns = |angle: f64| (angle - index) / TAU;
     if now > before {
@@ -124,8 +124,8 @@ fn last_pulse(index: f64, before: f64, now: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Oracle: a motor that turns ten times passes its index ten times, each a whole number of turns from the next, on
-    /// whatever ticks.
+    /// Oracle: a motor that turns ten times passes its index ten times, each a whole number of turns from the next, at
+    /// any ticks.
     #[test]
     fn each_pulse_comes_once() {
         let switches = Switches { index: Some(0.3), ..Switches::default() };

@@ -1,12 +1,12 @@
-//! The cable between inverter and motor: two of its wires swapped, a phase that is lost.
+//! The cable between inverter and motor: two swapped wires, a lost phase.
 //!
 //! ```text
-//! swapped    u_motor = M·u_legs      i_legs = M·i_motor      M = [ cos 2φ   sin 2φ ]      φ: axis of the phase that is right
+//! swapped    u_motor = M·u_legs      i_legs = M·i_motor      M = [ cos 2φ   sin 2φ ]      φ: axis of the unchanged phase
 //!                                                                [ sin 2φ  −cos 2φ ]
-//! lost       i_x = 0: what is left of the current is one of two phases in series, s along n, at right angles to the axis of phase x
+//! lost       i_x = 0: the remaining current is one of two phases in series, s along n, at right angles to the axis of phase x
 //! ```
 //! M exchanges two phases and is its own inverse; currents are measured at the legs, so that the drive sees the mirror image of its motor.
-//! The legs of an inverter are alike, so the mirror image of what it is asked for stands for the mirror image of what it gives.
+//! The legs of an inverter are alike, so the mirror image of the request replaces the mirror image of the output.
 //!
 //! A phase that opens while it has a current draws an arc. The flux linkage of the other two is continuous,
 //!
@@ -53,19 +53,19 @@ servobench_config::choices! {
     }
 }
 
-/// How a motor is connected; constant during a run.
+/// Connection of a motor; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Wiring {
     /// Phases that are exchanged.
     pub swapped: Option<Swap>,
-    /// A phase of the motor that is lost, and from when on (s).
+    /// A lost phase of the motor, and the time of the loss (s).
     pub open: Option<(Phase, f64)>,
 }
 
 const HALF_SQRT_3: f64 = 0.866_025_403_784_438_6;
 
 impl Swap {
-    /// Twice the angle of the phase that stays.
+    /// Twice the angle of the unchanged phase.
     const fn twice(self) -> Rotation {
         match self {
             Self::Ab => Rotation { sin: HALF_SQRT_3, cos: -0.5 },
@@ -81,7 +81,7 @@ impl Swap {
 }
 
 impl Phase {
-    /// Direction of a current that this phase has no part in.
+    /// Direction of a current that does not flow through this phase.
     const fn across(self) -> AlphaBeta {
         match self {
             Self::A => AlphaBeta { alpha: 0.0, beta: 1.0 },
@@ -92,7 +92,7 @@ impl Phase {
 }
 
 impl Wiring {
-    /// Whether it is as it should be.
+    /// True if the wiring is correct.
     #[must_use]
     pub const fn is_right(&self) -> bool {
         self.swapped.is_none() && self.open.is_none()
@@ -123,12 +123,12 @@ impl Cable {
         Ok(Self { wiring, tick: 0, is_open: false })
     }
 
-    /// A vector of the legs at the motor, or one of the motor at the legs.
+    /// Converts a vector of the legs to the motor, or of the motor to the legs.
     pub(crate) fn across(&self, of: AlphaBeta) -> AlphaBeta {
         self.wiring.swapped.map_or(of, |swap| swap.mirror(of))
     }
 
-    /// What sensors at the legs see of the `current` of a rotor at `angle`: a current, and the rotor that it belongs to.
+    /// Current at the legs from the `current` of a rotor at `angle`: that current, and its rotor.
     pub(crate) fn at_the_legs(
         &self,
         current: Dq,
@@ -151,7 +151,7 @@ impl Cable {
         self.wiring.open.and_then(|(phase, _)| self.is_open.then(|| phase.across()))
     }
 
-    /// The current of a rotor that has come to `rotor`: where a phase is lost it stands in the stator.
+    /// The current of a rotor at `rotor`: with a lost phase its direction is fixed in the stator.
     pub(crate) fn settled(&self, current: Dq, rotor: Rotation) -> Dq {
         self.line().map_or(current, |line| {
             let n = line.to_dq(rotor);
@@ -160,7 +160,7 @@ impl Cable {
         })
     }
 
-    /// A tick of `h` (s) begins with `current` in the motor `params`, the rotor being at `rotor`. The energy of an arc is returned (J).
+    /// Begins a tick of `h` (s) with `current` in the motor `params` and the rotor at `rotor`. Returns the energy of an arc (J).
     pub(crate) fn begin(&mut self, params: &pmsm::Params, current: &mut Dq, rotor: Rotation, h: f64) -> f64 {
         let opens = !self.is_open && self.wiring.open.is_some_and(|(_, at)| self.tick as f64 * h >= at);
         self.tick += 1;
@@ -178,7 +178,7 @@ impl Cable {
         0.75 * (l.d * i.d * i.d + l.q * i.q * i.q - inductance * s * s)
     }
 
-    /// A tick passes without current.
+    /// Advances by a tick without current.
     pub(crate) const fn rest(&mut self) {
         self.tick += 1;
     }

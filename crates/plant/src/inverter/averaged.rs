@@ -1,24 +1,25 @@
-//! What dead time and devices take from the voltage, averaged over the carrier.
+//! Voltage loss by dead time and devices, averaged over the carrier.
 //!
 //! ```text
 //! ū_x = ū_x,ideal − E·sgn(i_x) − r·i_x        E = t_d·f_carrier·U_dc + U_T        x = a, b, c
 //! ```
-//! A leg whose devices are both off is at the rail that its diodes lead the current to: with i_x > 0, out of the leg, the lower one. That
+//! A leg whose devices are both off is at the rail to which its diodes lead the current: with i_x > 0, out of the leg, the lower one. That
 //! takes t_d of the upper rail once in a period; with i_x < 0 it adds as much. Transistor and diode have the same threshold U_T and the
 //! same resistance r. With one leg against two, the space vector of the error is 4/3·E long and turns in steps of 60°; its fundamental is
-//! 4/π·E. Source: Holmes & Lipo, *Pulse Width Modulation for Power Converters* (the pulse that is lost); Jeong & Park, *IEEE
+//! 4/π·E. Source: Holmes & Lipo, *Pulse Width Modulation for Power Converters* (the lost pulse); Jeong & Park, *IEEE
 //! Transactions on Industrial Electronics* 38(2), 1991 (the mean over a period).
 //!
 //! # A tick
 //!
-//! r is in series with the winding, whose equations have it; so it acts on the current that flows, however short L/R is. As long as no
-//! current changes its sign, E·sgn(i_x) is a voltage that stands still, on which the winding is as exact as on any. Where a current comes
-//! to zero within a tick, the tick ends there, and another one begins.
+//! r is in series with the winding and part of its equations; so it acts on the actual current, however short L/R is. As long as no
+//! current changes its sign, E·sgn(i_x) is a stationary voltage, on which the winding is as exact as on any. Where a current reaches
+//! zero within a tick, the tick ends there, and another one begins.
 //!
 //! A current that the error would reverse is held at zero (zero-current clamping): with both devices off and no current, the diodes block,
-//! and the leg goes where the motor takes it. So E·sgn(0) is whatever holds the current, up to E. From a zero on, what is held and what
-//! goes through it is solved by the winding's own [response](super::held) to a voltage over what is left of the tick: currents at its end
-//! have the sign that their error is against, and a second zero in one tick is at its end. A motor on less than 4/3·E along a phase takes no current at all.
+//! and the motor determines the potential of the leg. So E·sgn(0) is whatever holds the current, up to E. From a zero on, held and
+//! non-zero currents are solved by the winding's own [response](super::held) to a voltage over the rest of the tick: currents at its end
+//! have the sign that their error opposes, and a second zero in one tick is at its end. Below 4/3·E along a phase, a motor takes no
+//! current at all.
 use super::held::{self, Response, changed};
 use super::legs::{Legs, legs, vector};
 use super::params::Params;
@@ -26,20 +27,20 @@ use super::tick::{Input, Tick};
 use crate::pmsm::{self, Equations, Span, Sums, Winding};
 use servobench_base::{AlphaBeta, Dq, Rotation};
 
-/// A current is no longer followed to its zero when it is as near to it, as a part of what it goes in that time; nor is one that is there
-/// after this part of the time.
+/// Precision of a zero: relative to the change of the current in the remaining time, and least time to it, relative to the same
+/// time.
 const AT_ZERO: f64 = 1e-9;
-/// A leg has no current when it is so much smaller than that of the largest one: the sum of the three has roundings.
+/// Share of the largest current below which a leg has none: the sum of the three has roundings.
 const NO_CURRENT: f64 = 1e-12;
-/// Steps towards a zero; the false position with halved ends takes six of a decay as long as its time.
+/// Maximum steps towards a zero; the false position with halved ends takes six for a decay over its own time constant.
 const MOST_STEPS: u32 = 24;
-/// Solutions of a winding that saturates: each takes the response of the one before along.
+/// Maximum solutions of a winding that saturates: each corrects the free current by the error of the one before.
 const MOST_TRIALS: u32 = 8;
-/// Largest difference of the current from what the response says, as a part of what the error changes: a winding without saturation has
-/// the rounding.
+/// Largest deviation of the current from the response, relative to the effect of the error: without saturation it is only
+/// rounding.
 const AS_SAID: f64 = 1e-9;
 
-/// What an averaged inverter takes of each leg.
+/// Voltage error of each leg of an averaged inverter.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Averaged {
     equations: Equations,
@@ -54,7 +55,7 @@ pub(crate) struct Averaged {
 }
 
 impl Averaged {
-    /// Of `motor`, in ticks of `h` (s).
+    /// The errors for `motor`, in ticks of `h` (s).
     pub(crate) fn new(p: &Params, motor: &pmsm::Params, h: f64) -> Self {
         Self {
             equations: Equations::new(motor, p.on_resistance),
@@ -65,7 +66,7 @@ impl Averaged {
         }
     }
 
-    /// Whether it takes nothing.
+    /// True if there is no error.
     pub(crate) fn is_ideal(&self) -> bool {
         self.dead + self.drop + self.resistance == 0.0
     }
@@ -80,8 +81,8 @@ impl Averaged {
         self.resistance
     }
 
-    /// Goes from tick k to k+1 with this winding, in whose resistance that of the devices is; without `POWER` the powers and the loss are
-    /// left out.
+    /// Advances from tick k to k+1 with this winding, whose resistance includes that of the devices; without `POWER` the powers and the
+    /// loss are left out.
     pub(crate) fn step<const POWER: bool, W: Winding>(&self, winding: &W, current: &mut Dq, u: &Input) -> Tick {
         let (before, ideal) = (*current, super::output(u.wanted, u.u_dc));
         let most = self.drop + self.dead * u.u_dc;
@@ -112,16 +113,16 @@ impl Averaged {
     }
 }
 
-/// On the way through a tick.
+/// State within a tick.
 struct Way<'a, const POWER: bool, W> {
     winding: &'a W,
     ideal: AlphaBeta,
     omega: f64,
-    /// Of the threshold in the error.
+    /// Share of the threshold in the error.
     share: f64,
     i: Dq,
     rotor: Rotation,
-    /// What is left of the tick (s).
+    /// Remaining time of the tick (s).
     left: f64,
     sums: Sums,
     /// ∫ e dt (V·s).
@@ -129,7 +130,7 @@ struct Way<'a, const POWER: bool, W> {
 }
 
 impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
-    /// To the end of the tick, with an error of `most` (V) of a leg.
+    /// Advances to the end of the tick, with an error of `most` (V) per leg.
     fn go(&mut self, most: f64) {
         if most == 0.0 {
             self.take(AlphaBeta::default(), self.left);
@@ -179,7 +180,8 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         self.taken.beta += time * error.beta;
     }
 
-    /// To where the current of `leg`, which is at these `ends` of the time, is zero: by false position, an end that stays being halved.
+    /// Advances to the zero of the current of `leg`, which has these values at the `ends` of the time: by false position; an end that
+    /// stays is halved.
     fn follow_to_zero(&mut self, error: AlphaBeta, leg: usize, ends: [f64; 2]) {
         let ([mut low, mut high], [mut at_low, mut at_high]) = ([0.0, self.left], ends);
         let enough = AT_ZERO * (ends[0] - ends[1]).abs();
@@ -204,7 +206,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         self.take(error, time);
     }
 
-    /// What is left of the tick, with a leg that has no current.
+    /// Solves the rest of the tick, with a leg that has no current.
     fn finish_from_zero(&mut self, most: f64) {
         let time = self.left;
         let end_of = |way: &Self, error: AlphaBeta| {
@@ -225,7 +227,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
             let end = self.winding.advance::<POWER>(self.i, &self.over(error, time), &mut sums);
             let off = less(end.to_alpha_beta(self.rotor.ahead(self.omega * time)), less(free, changed(&m, error)));
             trials += 1;
-            // What is not a number is not repeated.
+            // A not-a-number result is not repeated.
             let is_off = off.alpha.abs().max(off.beta.abs()) > AS_SAID * size;
             if !is_off || trials == MOST_TRIALS {
                 self.accept(end, &sums, error, time);
@@ -236,7 +238,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
     }
 }
 
-/// The leg whose current changes its sign first, and after which part of the time it does if it falls evenly.
+/// The leg whose current changes its sign first, and the share of the time until then if it falls evenly.
 fn first_zero(before: Legs, after: Legs) -> Option<(usize, f64)> {
     let zeros = (0..3).filter(|x| before[*x] * after[*x] < 0.0).map(|x| (x, before[x] / (before[x] - after[x])));
     zeros.min_by(|a, b| a.1.total_cmp(&b.1))

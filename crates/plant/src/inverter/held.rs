@@ -3,17 +3,17 @@
 //! ```text
 //! i = i_free − M·e      e = 2/3·Σ E_x·c_x      E_x = E·sgn(i_x), for i_x = 0 whatever holds it, |E_x| ≤ E      i_x = c_x·i
 //! ```
-//! i is the current at the end of that time, M what a held voltage changes of it, c_x the axis of the phase x. These are three dry
-//! frictions on a body of two coordinates. M grows with e (it is positive definite, but where the rotor turns not symmetric), so that
-//! there is one answer: all three flow (six patterns of signs), one is held and the others flow (six edges between two of them), or all
-//! are held. Which one it is shows by trying. Source: Facchinei and Pang, *Finite-Dimensional Variational Inequalities*, ch. 2.
+//! i is the current at the end of that time, M its change per held voltage, c_x the axis of the phase x. These are three dry
+//! frictions on a body of two coordinates. M grows with e (it is positive definite, but not symmetric if the rotor turns), so that
+//! there is one solution: all three flow (six patterns of signs), one is held and the others flow (six edges between two of them), or all
+//! are held. Trying finds it. Source: Facchinei and Pang, *Finite-Dimensional Variational Inequalities*, ch. 2.
 use super::legs::{Legs, legs, vector};
 use servobench_base::AlphaBeta;
 
 /// Change of the current (A) by a voltage (V): rows and columns α, β.
 pub(super) type Response = [[f64; 2]; 2];
 
-/// A response that is so much smaller across than along has one line for its current: a phase is lost.
+/// Ratio of the response across to that along below which the current has a single line: a phase is lost.
 const ONE_LINE: f64 = 1e-9;
 
 /// M·e.
@@ -21,7 +21,7 @@ pub(super) fn changed(m: &Response, e: AlphaBeta) -> AlphaBeta {
     AlphaBeta { alpha: m[0][0] * e.alpha + m[0][1] * e.beta, beta: m[1][0] * e.alpha + m[1][1] * e.beta }
 }
 
-/// The best of the answers that were tried, and by how much it is off (A).
+/// The best of the solutions that were tried, and its error (A).
 struct Best {
     error: AlphaBeta,
     off: f64,
@@ -35,7 +35,7 @@ impl Best {
     }
 }
 
-/// The voltage e (V) that legs of an error of `most` (V) take of currents that would be `free` (A) without it.
+/// The voltage e (V) that legs with an error of `most` (V) take if their currents would be `free` (A) without it.
 pub(super) fn error(free: AlphaBeta, m: &Response, most: f64) -> AlphaBeta {
     let gain = m[0][0] + m[1][1];
     let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
@@ -78,13 +78,13 @@ pub(super) fn error(free: AlphaBeta, m: &Response, most: f64) -> AlphaBeta {
     best.error
 }
 
-/// Currents of the legs on that error.
+/// Currents of the legs with that error.
 fn flowing(free: AlphaBeta, m: &Response, error: AlphaBeta) -> Legs {
     let by = changed(m, error);
     legs(AlphaBeta { alpha: free.alpha - by.alpha, beta: free.beta - by.beta })
 }
 
-/// Where two legs are in series: s = s_free − g·e along n, held below 2/3·E·Σ|n_x|.
+/// Solution for two legs in series: s = s_free − g·e along n, held below 2/3·E·Σ|n_x|.
 fn along_a_line(free: AlphaBeta, m: &Response, most: f64) -> AlphaBeta {
     let gain = m[0][0] + m[1][1];
     let column = if m[0][0] > m[1][1] { [m[0][0], m[1][0]] } else { [m[0][1], m[1][1]] };
@@ -134,7 +134,7 @@ mod tests {
     }
 
     proptest! {
-        /// Oracle: what makes a step against friction the right one (Karush, Kuhn and Tucker): each error within ±E, at its end where
+        /// Oracle: the conditions of a correct step against friction (Karush, Kuhn and Tucker): each error within ±E, at its end where
         /// the current flows, against it; and no current is reversed. For salient motors that turn, whose response is not symmetric.
         #[test]
         fn each_leg_is_held_or_braked(
@@ -150,7 +150,7 @@ mod tests {
             let found = error(free, &m, E);
             let i = flowing(free, &m, found);
             let of_legs = legs(found);
-            // The star point is free: legs may have something in common.
+            // The star point is free: legs may have a common component.
             let (low, high) = of_legs.iter().fold((f64::MAX, f64::MIN), |(low, high), leg| (low.min(*leg), high.max(*leg)));
             prop_assert!(high - low <= 2.0 * E * (1.0 + 1e-12));
             for x in 0..3 {

@@ -1,9 +1,9 @@
-//! The three legs of a bridge, and what stands between them and the space vector.
+//! The three legs of a bridge, and their conversion to and from the space vector.
 //!
 //! ```text
 //! a = α    b = −α/2 + √3/2·β    c = −α/2 − √3/2·β        α = (2a − b − c)/3    β = (b − c)/√3
 //! ```
-//! A star point that is not connected takes what is common to all legs, so no vector shows it. Source: Krause, *Analysis of Electric
+//! A star point that is not connected takes the common component of the legs, so no vector shows it. Source: Krause, *Analysis of Electric
 //! Machinery*, ch. 3.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::AlphaBeta;
@@ -14,7 +14,7 @@ const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// One value for each leg: currents out of it, or voltages of it.
 pub(crate) type Legs = [f64; 3];
 
-/// The legs of a vector, which have nothing in common.
+/// The legs of a vector, without a common component.
 #[inline(always)]
 pub(crate) fn legs(of: AlphaBeta) -> Legs {
     let (half, quadrature) = (-0.5 * of.alpha, HALF_SQRT_3 * of.beta);

@@ -3,8 +3,9 @@
 //! ```text
 //! C·du/dt = max(0, U_s − u)/R_s − P/u − u/R_b·(brake is on)        U_s = U·(1 − sag)·cos φ,  |φ| ≤ π/6, six pulses in a period of the mains
 //! ```
-//! P is what inverter and motor take, devices included; below zero they give it back, and no diode takes it to the mains. Without a mains
-//! frequency the source is stiff, cos φ = 1. The brake goes on above one voltage and off below another, at the beginning of a tick.
+//! P is the power of inverter and motor, devices included; below zero they give it back, and the diodes block it from the mains. Without
+//! a mains frequency the source is stiff, cos φ = 1. The brake switches on above one voltage and off below another, at the beginning of
+//! a tick.
 //!
 //! A tick is the implicit midpoint rule: with u_m = (u(k) + u(k+1))/2 for every u on the right it is a quadratic equation of u_m, solved in
 //! closed form, of second order and stable for every R_s·C. It closes the energy of the capacitor to the rounding,
@@ -12,7 +13,7 @@
 //! ```text
 //! C/2·(u(k+1)² − u(k)²) = h·(P_source − P − P_brake)        P_source = u_m·max(0, U_s − u_m)/R_s        P_brake = u_m²/R_b
 //! ```
-//! and with P alone it is exact: u² falls in a line. Inverter and motor have u(k) during the tick. Source: Mohan, Undeland & Robbins, *Power
+//! and with P alone it is exact: u² falls linearly. Inverter and motor have u(k) during the tick. Source: Mohan, Undeland & Robbins, *Power
 //! Electronics*, ch. 5 (rectifier with a capacitor), ch. 14 (dissipation of regenerated energy).
 use servobench_base::{ParamError, Stateful};
 use servobench_config::Kind::Plain;
@@ -46,7 +47,7 @@ servobench_config::parameters! {
 /// A link; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkParams {
-    /// Voltage of the rectified mains without load, the crest of their pulses, and of the capacitor at first (V).
+    /// Voltage of the rectified mains without load, the crest of their pulses, and initial voltage of the capacitor (V).
     pub voltage: f64,
     /// Capacitance (F).
     pub capacitance: f64,
@@ -60,14 +61,14 @@ pub struct LinkParams {
     pub brake: Option<Brake>,
 }
 
-/// The mains have less voltage for a time.
+/// A temporary sag of the mains voltage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sag {
-    /// From when on (s).
+    /// Start (s).
     pub start: f64,
-    /// For how long (s).
+    /// Duration (s).
     pub duration: f64,
-    /// By which share, 0 to 1.
+    /// Share of the voltage that is missing, 0 to 1.
     pub depth: f64,
 }
 
@@ -76,9 +77,9 @@ pub struct Sag {
 pub struct Brake {
     /// Resistance (Ω).
     pub resistance: f64,
-    /// On above (V).
+    /// Voltage above which it switches on (V).
     pub on: f64,
-    /// Off below (V).
+    /// Voltage below which it switches off (V).
     pub off: f64,
 }
 
@@ -87,7 +88,7 @@ pub struct Brake {
 pub struct LinkState {
     /// Voltage of the capacitor (V).
     pub voltage: f64,
-    /// Whether the brake resistor is on.
+    /// True if the brake resistor is on.
     pub is_braking: bool,
     /// Ticks since the beginning.
     tick: u64,
@@ -143,7 +144,7 @@ impl LinkParams {
         self.voltage * (1.0 - sag) * pulse
     }
 
-    /// Goes on by a tick of `h` (s) in which inverter and motor take `power` (W).
+    /// Advances by a tick of `h` (s) in which inverter and motor take `power` (W).
     pub fn step(&self, x: &mut LinkState, power: f64, h: f64) -> LinkPower {
         let source = self.source((x.tick as f64 + 0.5) * h);
         x.tick += 1;
@@ -152,7 +153,7 @@ impl LinkParams {
             x.is_braking = switches;
             if switches { 1.0 / brake.resistance } else { 0.0 }
         });
-        // (2C/h + G)·u_m² − (2C/h·u(k) + I)·u_m + P = 0, with diodes that block, or lead.
+        // (2C/h + G)·u_m² − (2C/h·u(k) + I)·u_m + P = 0, with diodes that block, or conduct.
         let per_tick = 2.0 * self.capacitance / h;
         let middle = |conductance: f64, current: f64| {
             let (a, b) = (per_tick + conductance, per_tick * x.voltage + current);
@@ -183,7 +184,7 @@ mod tests {
     };
 
     proptest! {
-        /// Oracle: the energy of the capacitor, with mains that lead and block, a brake on and off, taken and given back.
+        /// Oracle: the energy of the capacitor, with mains that conduct and block, a brake on and off, taken and given back.
         #[test]
         fn the_energy_of_the_capacitor_closes(power in -3000.0..3000.0_f64, voltage in 200.0..420.0_f64, is_braking: bool) {
             let (h, mut x) = (62.5e-6, LinkState { voltage, is_braking, tick: 0 });
@@ -211,7 +212,7 @@ mod tests {
         }
     }
 
-    /// Oracle: e^(−t/R_s·C) of the way to the mains, and of second order in the tick; under load u = (U + √(U² − 4·R_s·P))/2.
+    /// Oracle: the difference from the mains falls as e^(−t/R_s·C), of second order in the tick; under load u = (U + √(U² − 4·R_s·P))/2.
     #[test]
     fn the_mains_fill_the_capacitor_and_sag_under_load() {
         let tau: f64 = 0.7 * 470e-6;
@@ -232,7 +233,7 @@ mod tests {
         assert!((x.voltage - expected).abs() < 1e-9, "{} {expected}", x.voltage);
     }
 
-    /// Oracle: what a motor gives back and the resistor takes, between its two voltages; nothing goes to the mains.
+    /// Oracle: the motor gives power back and the resistor takes it, between its two voltages; nothing flows to the mains.
     #[test]
     fn the_brake_takes_what_comes_back() {
         let (h, mut x, mut taken) = (62.5e-6, LINK.at_first(), 0.0);
@@ -252,7 +253,7 @@ mod tests {
         assert!(low > 375.0 - late && low < 375.0 && high > 390.0 && high < 390.0 + late, "{low} {high}");
     }
 
-    /// Oracle: the mean of the crests of six pulses, 3/π, with a capacitor that is next to nothing; and a sag.
+    /// Oracle: the mean of the crests of six pulses, 3/π, with a negligible capacitor; and a sag.
     #[test]
     fn a_bridge_makes_six_pulses() {
         let mains = LinkParams {

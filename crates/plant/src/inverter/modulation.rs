@@ -3,7 +3,7 @@
 //! ```text
 //! d_x = ½ + (u_x − ½·(max u + min u))/U_dc        |max u − min u| ≤ U_dc
 //! ```
-//! Half of what no leg or all legs are up goes to either zero vector, and the pulses lie symmetrically about the middle of the carrier:
+//! Both zero vectors share the remaining time equally, and the pulses lie symmetrically about the middle of the carrier:
 //! the same as two neighbouring vectors for their times. Beyond the hexagon of the six vectors the voltage is shortened to it with its
 //! direction kept, which is overmodulation with the smallest error of the phase. Source: Holmes & Lipo, *Pulse Width Modulation for
 //! Power Converters*, ch. 6 (placement of the zero vectors), ch. 8 (overmodulation).
@@ -15,7 +15,7 @@ use servobench_base::AlphaBeta;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Duties {
     pub(crate) of: Legs,
-    /// Whether the hexagon has shortened the voltage.
+    /// True if the hexagon has shortened the voltage.
     pub(crate) shortened: bool,
 }
 
@@ -43,7 +43,7 @@ mod tests {
         vector(duties.of.map(|d| d * u_dc))
     }
 
-    /// Oracle: what goes in comes out as a mean, up to the hexagon; half of the rest is at either rail.
+    /// Oracle: the mean of the output is the input, up to the hexagon; half of the rest is at either rail.
     #[test]
     fn the_mean_is_the_voltage_and_both_zero_vectors_last_as_long() {
         for k in 0..97 {

@@ -1,4 +1,4 @@
-//! What an inverter that is not ideal is like.
+//! Parameters of an inverter that is not ideal.
 use crate::pmsm;
 use servobench_base::ParamError;
 use servobench_config::Kind::Plain;
@@ -32,10 +32,10 @@ choices! {
 /// Largest dead time in periods of the carrier: a leg then loses a tenth of the link.
 pub const MOST_DEAD: f64 = 0.1;
 
-/// What an inverter is like; constant during a run.
+/// Parameters of an inverter; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
-    /// How it makes its voltage.
+    /// Generation of its voltage.
     pub modulation: Modulation,
     /// Frequency of its carrier (Hz); without dead time an averaged inverter does not need it.
     pub carrier: f64,
@@ -54,18 +54,18 @@ impl Default for Params {
 }
 
 impl Params {
-    /// An inverter without any effect.
+    /// An inverter without effects.
     pub const IDEAL: Self =
         Self { modulation: Modulation::Averaged, carrier: 0.0, dead_time: 0.0, device_drop: 0.0, on_resistance: 0.0 };
 
-    /// The motor with the data `p` behind the devices that conduct: of the inverter their resistance alone is linear.
+    /// The motor with the data `p` behind the conducting devices: of the inverter, their resistance alone is linear.
     #[must_use]
     pub fn linearised(&self, p: &pmsm::Params) -> pmsm::Params {
         let Self { modulation: _, carrier: _, dead_time: _, device_drop: _, on_resistance } = *self;
         pmsm::Params { resistance: p.resistance + on_resistance, ..*p }
     }
 
-    /// Whether it gives just what it is asked for.
+    /// True if its output is exactly the requested voltage.
     #[must_use]
     pub fn is_ideal(&self) -> bool {
         self.modulation == Modulation::Averaged && self.dead_time + self.device_drop + self.on_resistance == 0.0

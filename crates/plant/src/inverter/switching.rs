@@ -1,4 +1,4 @@
-//! An inverter that switches, and the winding on it: from edge to edge, each time as well as the winding can be solved. That of an ideal
+//! A switching inverter, and the winding on it: solved from edge to edge, as precisely as the winding can be. That of an ideal
 //! motor is solved to the rounding.
 //!
 //! ```text
@@ -7,15 +7,16 @@
 //! between    u = U_dc·(levels) − U_T·sgn(i_x) − r·i_x, the signs of when it begins      solved by the motor's winding
 //! ```
 //! Duties come from [`modulation`](super::modulation) at every middle of the carrier, so a drive may renew its voltage twice in a period.
-//! A tick begins in a middle, or in a middle every so many ticks: there the ripple of the current is zero, and what the drive samples is its
-//! mean. A pulse shorter than the dead time is lost, or becomes longer, as on the real bridge: an edge within the dead time of the one before
-//! takes its place.
+//! A tick begins in a middle, or one tick in several does: there the ripple of the current is zero, and a sample of the drive is its
+//! mean. A pulse shorter than the dead time is lost, or becomes longer, as on the real bridge: an edge within the dead time of the one
+//! before replaces it.
 //!
-//! The [`Ripple`] of a tick is of the same segments: its mean square is the integral over each, its peak the largest length at their ends.
-//! Between two edges the current vector goes along a line that resistance and turn bend little, and a line is longest at one of its ends.
+//! The [`Ripple`] of a tick comes from the same segments: its mean square is the integral over each, its peak the largest length at their
+//! ends. Between two edges the current vector moves along a line that resistance and rotation bend little, and a line is longest at one
+//! of its ends.
 //!
-//! Left out: a current that comes to zero within a dead time blocks its diode in a real leg, and stays zero until the device turns on;
-//! here it goes on through zero for what is left of t_d, by at most t_d·U_dc/L. A threshold keeps its sign from edge to edge.
+//! Left out: a current that reaches zero within a dead time blocks its diode in a real leg, and stays zero until the device turns on;
+//! here it continues through zero for the rest of t_d, by at most t_d·U_dc/L. A threshold keeps its sign from edge to edge.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::legs::{Legs, legs, vector};
 use super::modulation::duties;
@@ -24,16 +25,16 @@ use super::tick::{Input, Ripple, Tick};
 use crate::pmsm::{self, Equations, Span, Sums, Winding};
 use servobench_base::{AlphaBeta, Dq, ParamError, Rotation, Stateful, wide_registers};
 
-/// How carrier and base tick go together.
+/// Ratio of the carrier to the base tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Meshing {
-    /// So many periods in a tick.
+    /// Periods per tick.
     Periods(u32),
-    /// So many ticks in a period, two at least.
+    /// Ticks per period, two at least.
     Ticks(u32),
 }
 
-/// What does not change in a run.
+/// Constants of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Switching {
     equations: Equations,
@@ -47,16 +48,16 @@ pub(crate) struct Switching {
     resistance: f64,
 }
 
-/// Where the bridge is; its state from tick to tick beside the current.
+/// State of the bridge from tick to tick, beside the current.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Bridge {
     /// Ticks since the period began.
     tick: u32,
-    /// Whether each leg is at the upper rail.
+    /// True for each leg at the upper rail.
     up: [bool; 3],
-    /// What each leg was told last.
+    /// Last command of each leg: true for up.
     told: [bool; 3],
-    /// When it is told otherwise, and when its new device turns on: since the half period began (s); infinite: not in this half.
+    /// Times of the next command and of the turn-on of the new device, from the start of the half period (s); infinite: not in this half.
     edge: Legs,
     on: Legs,
 }
@@ -69,9 +70,9 @@ impl Default for Bridge {
 }
 
 impl Meshing {
-    /// Of a carrier of `carrier` (Hz) with ticks of `h` (s), `None` where neither is a whole number of the other.
+    /// Ratio for a carrier of `carrier` (Hz) with ticks of `h` (s), `None` if neither is a whole multiple of the other.
     fn of(carrier: f64, h: f64) -> Option<Self> {
-        // As far apart as the rounding of a period may be.
+        // Within the rounding of a period.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to a million")]
         let whole =
             |ratio: f64| ((ratio - ratio.round()).abs() < 1e-9 * ratio && ratio < 1e6).then(|| ratio.round() as u32);
@@ -81,10 +82,10 @@ impl Meshing {
 }
 
 impl Switching {
-    /// Of `motor`, in ticks of `h` (s).
+    /// An inverter for `motor`, in ticks of `h` (s).
     ///
     /// # Errors
-    /// [`ParamError`] where carrier and ticks do not go together.
+    /// [`ParamError`] if carrier and ticks do not fit together.
     pub(crate) fn new(p: &Params, motor: &pmsm::Params, h: f64) -> Result<Self, ParamError> {
         let Some(meshing) = Meshing::of(p.carrier, h) else {
             let bound = "a whole number of times the base rate, or the base rate one of it";
@@ -115,8 +116,8 @@ impl Switching {
         self.resistance
     }
 
-    /// Goes from tick k to k+1 with this winding, in whose resistance that of the devices is; without `POWER` the powers and the loss are
-    /// left out.
+    /// Advances from tick k to k+1 with this winding, whose resistance includes that of the devices; without `POWER` the powers and the
+    /// loss are left out.
     pub(crate) fn step<const POWER: bool, W: Winding>(
         &self,
         winding: &W,
@@ -183,12 +184,12 @@ impl Switching {
         Tick { ripple, ..Tick::of::<POWER, W>(winding, &sums, stored, over, (voltage, duties.shortened)) }
     }
 
-    /// The same time without current or voltage: the carrier goes on.
+    /// Advances by the same time without current or voltage: the carrier continues.
     pub(crate) fn rest(&self, bridge: &mut Bridge) {
         *bridge = Bridge { tick: self.next(bridge.tick), ..Bridge::default() };
     }
 
-    /// Of the tick in a period that follows the one `at`.
+    /// Number, within its period, of the tick that follows `at`.
     #[inline(always)]
     const fn next(&self, at: u32) -> u32 {
         match self.meshing {
@@ -197,7 +198,7 @@ impl Switching {
         }
     }
 
-    /// How many parts of half periods the tick `at` of a period has.
+    /// Number of parts of half periods in the tick `at` of a period.
     #[inline(always)]
     const fn pieces(&self, at: u32) -> u32 {
         match self.meshing {
@@ -206,7 +207,7 @@ impl Switching {
         }
     }
 
-    /// The `k`-th of them.
+    /// The `k`-th of these parts.
     #[inline(always)]
     fn piece(&self, at: u32, k: u32) -> Piece {
         let (h, half) = (self.h, self.half);
@@ -224,8 +225,8 @@ impl Switching {
     }
 }
 
-/// A part of a half period: the first half, in which legs go down, or the second one; whether the half begins and ends with it; and from
-/// when to when in the half (s).
+/// A part of a half period: `second` is false for the half in which legs go down; `begins` and `ends` tell that the half begins and
+/// ends with it; `from` and `to` are times in the half (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
     second: bool,
@@ -235,7 +236,7 @@ struct Piece {
     to: f64,
 }
 
-/// On the way through a tick.
+/// State within a tick.
 struct Way<'a, const POWER: bool, W> {
     on: &'a Switching,
     winding: &'a W,
@@ -264,7 +265,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         }
         self.until(piece.from, piece.to);
         if piece.ends {
-            // What is to come is counted from the end of the half period on.
+            // Times to come are counted from the end of the half period.
             self.bridge.on = self.bridge.on.map(|on| on - self.on.half);
         }
     }
@@ -283,7 +284,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         }
     }
 
-    /// From `from` to `to` of a half period (s).
+    /// Advances from `from` to `to` of a half period (s).
     #[inline(always)]
     fn until(&mut self, from: f64, to: f64) {
         let mut at = from;
@@ -312,7 +313,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         }
     }
 
-    /// Leg `x` is told to go `up`, or down, at `at` (s).
+    /// Commands leg `x` to go `up`, or down, at `at` (s).
     #[inline(always)]
     fn tell(&mut self, x: usize, up: bool, at: f64) {
         self.bridge.told[x] = up;
@@ -329,7 +330,7 @@ impl<const POWER: bool, W: Winding> Way<'_, POWER, W> {
         legs(self.i.to_alpha_beta(self.rotor))
     }
 
-    /// What goes on for `time` (s) without an edge.
+    /// Advances for `time` (s) without an edge.
     #[inline(always)]
     fn segment(&mut self, time: f64) {
         let u_dc = self.u.u_dc;

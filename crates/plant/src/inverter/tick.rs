@@ -1,11 +1,11 @@
-//! A tick of an inverter and the winding on it, however its voltage is made.
+//! A tick of an inverter and the winding on it, for every kind of modulation.
 use crate::pmsm;
 use servobench_base::{AlphaBeta, Rotation, Stateful};
 
-/// What acts from tick k to k+1.
+/// Inputs from tick k to k+1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Input {
-    /// Voltage that is asked for (V).
+    /// Requested voltage (V).
     pub(crate) wanted: AlphaBeta,
     /// Voltage of the link (V).
     pub(crate) u_dc: f64,
@@ -15,7 +15,7 @@ pub(crate) struct Input {
     pub(crate) omega_e: f64,
 }
 
-/// What a tick gives beside the current.
+/// Results of a tick beside the current.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Tick {
     /// Mean torque (N·m).
@@ -24,15 +24,15 @@ pub(crate) struct Tick {
     pub(crate) power: pmsm::Power,
     /// Mean loss of the devices (W).
     pub(crate) loss: f64,
-    /// Mean voltage at the motor's terminals but for what a resistance of the devices takes (V).
+    /// Mean voltage at the motor's terminals, without the drop over the resistance of the devices (V).
     pub(crate) voltage: AlphaBeta,
-    /// Whether there was less than what was asked for.
+    /// True if the voltage was less than requested.
     pub(crate) shortened: bool,
-    /// The current between the ends of the tick, where the inverter follows it.
+    /// The current between the ends of the tick, if the inverter follows it.
     pub(crate) ripple: Ripple,
 }
 
-/// Length of the current vector over a tick, the ripple of an inverter that switches included (A); zero with one that is averaged.
+/// Length of the current vector over a tick, including the ripple of a switching inverter (A); zero with an averaged one.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Ripple {
     /// Largest at the edges of the switches and the ends of the tick.
@@ -42,7 +42,7 @@ pub struct Ripple {
 }
 
 impl Tick {
-    /// Of what happened in a tick of `h` (s) to a winding behind `resistance` (Ω), in whose field `stored` (J) went, on a mean voltage;
+    /// Result of a tick of `h` (s) of a winding behind `resistance` (Ω), whose field gained `stored` (J), on a mean voltage;
     /// without `POWER` the powers and the loss are left out.
     #[expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! Cogging: the magnets pull the teeth, whether there is current or not.
+//! Cogging: the magnets pull the teeth, with or without current.
 //!
 //! ```text
 //! F(x) = Σ F_n·sin(κ_n·x + φ_n)            κ_n = order of the harmonic per motor coordinate
@@ -6,7 +6,7 @@
 //! ```
 //! The mean is that of the energy of the magnets, −ΔW/Δ, and exact at constant speed however many teeth pass in a tick. So the
 //! cogging does no work over a revolution. Orders: least common multiple of slots and poles and its multiples for an ideal motor,
-//! slots or poles alone where it is not (Hanselman, *Brushless Permanent Magnet Motor Design*, 2nd ed.).
+//! slots or poles alone for a real one (Hanselman, *Brushless Permanent Magnet Motor Design*, 2nd ed.).
 use servobench_base::ParamError;
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{EFFORT, PHASE};
@@ -25,7 +25,7 @@ servobench_config::parameters! {
 /// One harmonic of the cogging.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cogging {
-    /// Angle of the harmonic per motor coordinate: its order per revolution (rad/rad), 2π over its period of a linear motor (rad/m).
+    /// Angle of the harmonic per motor coordinate: its order per revolution (rad/rad), or 2π over its period for a linear motor (rad/m).
     pub ratio: f64,
     /// Its amplitude (N·m or N).
     pub amplitude: f64,
@@ -43,7 +43,7 @@ impl Cogging {
         Ok(())
     }
 
-    /// Mean effort (N·m or N) on the way from `position` on by `travel` (motor coordinate).
+    /// Mean effort (N·m or N) over a motion by `travel` from `position` (motor coordinate).
     #[must_use]
     pub fn mean_effort(&self, position: f64, travel: f64) -> f64 {
         let half = self.ratio * travel / 2.0;
@@ -80,7 +80,7 @@ mod tests {
         }
     }
 
-    /// Over a revolution, in ticks that neither divide it nor a tooth, the work is zero but for the rounding of its parts.
+    /// Over a revolution, in ticks that divide neither it nor a tooth, the work is zero except for the rounding of its parts.
     #[test]
     fn a_revolution_costs_no_energy() {
         for ticks in [7, 101, 1_999] {

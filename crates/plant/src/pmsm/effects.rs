@@ -1,4 +1,4 @@
-//! What a real motor does beside the equations of [`pmsm`](super): each effect is switched on by itself.
+//! Effects of a real motor beside the equations of [`pmsm`](super): each is switched on by itself.
 use super::phases::{self, PhaseMatrix};
 use super::saturated::Saturated;
 use super::temperature::ThermalSteps;
@@ -16,11 +16,11 @@ pub struct Effects {
     pub flux_harmonics: Vec<FluxHarmonic>,
     /// Loss in the iron.
     pub iron: Option<IronLoss>,
-    /// Resistances of the phases a, b and c as parts of that of the motor.
+    /// Resistances of the phases a, b and c relative to that of the motor.
     pub phase_resistance: Option<[f64; 3]>,
     /// Temperature of winding and magnets.
     pub temperature: Option<Temperature>,
-    /// Flux linkage by the currents, where the iron saturates: in place of inductances and flux linkage.
+    /// Flux linkage by the currents, if the iron saturates: in place of inductances and flux linkage.
     pub flux_map: Option<FluxMap>,
 }
 
@@ -35,33 +35,33 @@ impl Effects {
         self.temperature.iter().try_for_each(Temperature::check)
     }
 
-    /// The motor with the data `p` at the temperatures of the beginning.
+    /// The motor with the data `p` at the initial temperatures.
     #[must_use]
     pub fn at_the_beginning(&self, p: &Params) -> Params {
         self.temperature.map_or(*p, |temperature| temperature.motor(p, temperature.start))
     }
 
-    /// Whether winding and housing warm up.
+    /// True if winding and housing warm up.
     #[must_use]
     pub fn warms_up(&self) -> bool {
         self.temperature.is_some_and(|temperature| temperature.network.is_some())
     }
 
-    /// Whether the equations change with the angle or the time.
+    /// True if the equations change with the angle or the time.
     fn vary(&self) -> bool {
         !self.flux_harmonics.is_empty() || self.phase_resistance.is_some() || self.warms_up() || self.flux_map.is_some()
     }
 
-    /// Whether there is nothing to do in a tick.
+    /// True if no effect acts in a tick.
     fn are_none(&self) -> bool {
         self.cogging.is_empty() && self.iron.is_none() && !self.vary()
     }
 }
 
-/// How the rotor goes through a tick, in the coordinate of the motor.
+/// Motion of the rotor in a tick, in the coordinate of the motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Travel {
-    /// Position when the tick begins (rad or m).
+    /// Position at the beginning of the tick (rad or m).
     pub position: f64,
     /// Mean speed over the tick (rad/s or m/s).
     pub speed: f64,
@@ -74,12 +74,12 @@ pub struct Travel {
 /// air gap  = effort·speed        iron = drag·speed        stored = of the inductances − cogging·speed
 /// electrical = copper + iron + stored + air gap
 /// ```
-/// The energy of the magnets goes into `stored`, so that what goes in is what comes out, whatever is switched on.
+/// The energy of the magnets goes into `stored`, so that the powers balance, whatever is switched on.
 #[derive(Debug, Clone, Stateful)]
 pub struct RealMotor {
     #[state(constant)]
     effects: Effects,
-    /// The motor as its data sheet has it.
+    /// The motor by its data sheet.
     #[state(constant)]
     params: Params,
     #[state(constant)]
@@ -91,7 +91,7 @@ pub struct RealMotor {
     h: f64,
 }
 
-/// Two bodies under way.
+/// State of two bodies that warm up.
 #[derive(Debug, Clone, Stateful)]
 struct Warming {
     #[state(constant)]
@@ -102,7 +102,7 @@ struct Warming {
 }
 
 impl RealMotor {
-    /// The motor with the data `params` and with `effects`, in ticks of `h` (s); `None` when there is nothing to do in a tick.
+    /// The motor with the data `params` and with `effects`, in ticks of `h` (s); `None` if no effect acts in a tick.
     #[must_use]
     pub fn new(params: &Params, effects: &Effects, h: f64) -> Option<Self> {
         if effects.are_none() {
@@ -122,31 +122,31 @@ impl RealMotor {
         })
     }
 
-    /// Temperatures at this tick; `None` where nothing warms up.
+    /// Temperatures at this tick; `None` without warming.
     #[must_use]
     pub fn temperatures(&self) -> Option<Temperatures> {
         self.warming.as_ref().map(|warming| warming.now)
     }
 
-    /// The motor as it is at this tick. `ticks` are those of the motor at the beginning.
+    /// The motor at this tick. `ticks` are those of the motor at the beginning.
     #[must_use]
     pub fn params(&self, ticks: &Ticks) -> Params {
         self.warming.as_ref().map_or(*ticks.params(), |warm| warm.model.motor(&self.params, warm.now))
     }
 
-    /// Whether the losses must be known, whoever else wants them.
+    /// True if the losses must be known, even if they are not recorded.
     #[must_use]
     pub const fn needs_losses(&self) -> bool {
         self.warming.is_some()
     }
 
-    /// Whether its inductances depend on the currents.
+    /// True if its inductances depend on the currents.
     #[must_use]
     pub const fn saturates(&self) -> bool {
         self.effects.flux_map.is_some()
     }
 
-    /// The winding of the motor that is `params` at this tick, behind `series` (Ω); `None` where its equations are those of the ideal one.
+    /// The winding of the motor that is `params` at this tick, behind `series` (Ω); `None` if its equations are those of the ideal one.
     pub(crate) fn winding<'a>(&'a self, params: &'a Params, series: f64) -> Option<RealWinding<'a>> {
         let (harmonics, phases) = (&*self.effects.flux_harmonics, &self.phases);
         if let Some(map) = &self.effects.flux_map {
@@ -165,13 +165,13 @@ impl RealMotor {
             .map_or_else(|| params.stored_energy(current), |map| map.stored(Dq::default(), current))
     }
 
-    /// What a winding of another kind has of the same.
+    /// Harmonics and phase resistances, for another kind of winding.
     pub(super) fn harmonics_and_phases(&self) -> (&[FluxHarmonic], PhaseMatrix) {
         (&self.effects.flux_harmonics, self.phases)
     }
 
-    /// What acts on the rotor over a tick with what the `winding` does in it, and the powers. The currents go from the first of `x` to the
-    /// second one.
+    /// Effort on the rotor over a tick with the result of the `winding` in it, and the powers. The currents change from the first of `x` to
+    /// the second.
     pub(crate) fn on_the_rotor(&mut self, p: &Params, winding: Output, x: [State; 2], travel: Travel) -> Output {
         let mut output = winding;
         let Travel { position, speed } = travel;
@@ -189,12 +189,12 @@ impl RealMotor {
     }
 }
 
-/// A winding whose equations are not those of the ideal one.
+/// A winding whose equations differ from those of the ideal one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum RealWinding<'a> {
     /// Its inductances are constant.
     Varying(Varying<'a>),
-    /// They depend on the currents.
+    /// Its inductances depend on the currents.
     Saturated(Saturated<'a>),
 }
 

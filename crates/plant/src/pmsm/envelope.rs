@@ -4,16 +4,16 @@
 //! largest T(i)      |i| ≤ I (circle)      |u(i, ω)| ≤ U (ellipse, resistance included)      steady state
 //! ```
 //! For a given i_d, i_q is bounded by circle and ellipse. Both sets are convex, so their upper bound h(i_d) is concave; the effort there
-//! is h times ψ + (L_d − L_q)·i_d, a product of concave positive functions, which has one maximum: golden sections find it whatever the
-//! resistance is, and whether the motor's ellipse shrinks to a point inside the circle (ψ/L_d < I) or outside.
+//! is h times ψ + (L_d − L_q)·i_d, a product of concave positive functions, which has one maximum: golden sections find it for every
+//! resistance, and whether the motor's ellipse shrinks to a point inside the circle (ψ/L_d < I) or outside.
 //! Source of circle and ellipse: Morimoto, Takeda, Hirasa and Taniguchi, *IEEE Transactions on Industry Applications* 26(5), 1990.
 use super::Params;
 use servobench_base::Dq;
 
-/// What bounds current and voltage.
+/// Bounds of current and voltage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Largest current (A, peak); may be infinite where the voltage bounds it.
+    /// Largest current (A, peak); may be infinite if the voltage bounds it.
     pub current: f64,
     /// Largest phase voltage (V, peak).
     pub voltage: f64,
@@ -28,23 +28,23 @@ pub struct MostEffort {
     pub effort: f64,
 }
 
-/// What is between two numbers.
+/// An interval of numbers.
 #[derive(Debug, Clone, Copy)]
 struct Interval {
     from: f64,
     to: f64,
 }
 
-/// Golden sections: what they leave of an interval is below the rounding of its ends.
+/// Golden sections: the rest of an interval is below the rounding of its ends.
 const SECTIONS: u32 = 90;
 
 impl Params {
-    /// The most effort in the direction of growing positions, at the electrical speed `omega_e` (rad/s), which is negative where the
-    /// motor brakes; `None` where it cannot turn that fast without an effort against it.
+    /// The most effort in the direction of growing positions, at the electrical speed `omega_e` (rad/s), which is negative if the
+    /// motor brakes; `None` if it cannot turn that fast without an effort against it.
     #[must_use]
     pub fn most_effort(&self, bounds: Bounds, omega_e: f64) -> Option<MostEffort> {
         let range = self.range_of_d(bounds, omega_e)?;
-        // Inside where i_q may be positive and there is any.
+        // Positive if some i_q is permitted that may be positive.
         let room = |d: f64| self.range_of_q(bounds, omega_e, d).map_or(f64::NEG_INFINITY, |q| q.to.min(q.to - q.from));
         let inside = top(range, room);
         if room(inside).is_nan() || room(inside) < 0.0 {
@@ -60,7 +60,7 @@ impl Params {
         };
         let at = |d: f64| Dq { d, q: self.range_of_q(bounds, omega_e, d).map_or(0.0, |q| q.to) };
         let d = top(Interval { from: edge(range.from), to: edge(range.to) }, |d| self.torque(at(d)));
-        // The largest torque may stand at an end, from which golden sections keep away by a rounding.
+        // The largest torque may be at an end, from which golden sections keep away by a rounding.
         let current = [d, edge(range.from), edge(range.to)]
             .map(at)
             .into_iter()
@@ -68,7 +68,7 @@ impl Params {
         Some(MostEffort { current, effort: self.torque(current) })
     }
 
-    /// The speed up to which the motor gives at least `effort`, up to `most` (electrical, rad/s).
+    /// Largest speed at which the motor gives at least `effort`, up to `most` (electrical, rad/s).
     #[must_use]
     pub fn fastest_with(&self, bounds: Bounds, effort: f64, most: f64) -> f64 {
         let gives = |omega_e: f64| self.most_effort(bounds, omega_e).is_some_and(|found| found.effort >= effort);
@@ -83,7 +83,7 @@ impl Params {
         slow
     }
 
-    /// Currents in d with which the bounds leave any in q, and with which an effort has the sign of i_q.
+    /// Currents in d for which the bounds permit some in q, and for which an effort has the sign of i_q.
     fn range_of_d(&self, Bounds { current, voltage }: Bounds, omega_e: f64) -> Option<Interval> {
         let Self { resistance: r, inductance: Dq { d: l_d, q: l_q }, flux_linkage: psi, .. } = *self;
         let (x_d, x_q, emf) = (omega_e * l_d, omega_e * l_q, omega_e * psi);
@@ -100,7 +100,7 @@ impl Params {
         (range.from <= range.to).then_some(range)
     }
 
-    /// Currents in q that the bounds leave beside `d`.
+    /// Currents in q that the bounds permit beside `d`.
     fn range_of_q(&self, Bounds { current, voltage }: Bounds, omega_e: f64, d: f64) -> Option<Interval> {
         let Self { resistance: r, inductance: Dq { d: l_d, q: l_q }, flux_linkage: psi, .. } = *self;
         // |u|² = a·i_q² + 2·b·i_q + c + U²
@@ -115,7 +115,7 @@ impl Params {
     }
 }
 
-/// Where `value`, which has one maximum, is largest in `range`.
+/// Position in `range` of the single maximum of `value`.
 fn top(Interval { mut from, mut to }: Interval, value: impl Fn(f64) -> f64) -> f64 {
     let golden = (5_f64.sqrt() - 1.0) / 2.0;
     let (mut low, mut high) = (to - golden * (to - from), from + golden * (to - from));
@@ -154,7 +154,7 @@ mod tests {
         for current in [2.3, 9.12, 31.7] {
             let expected = (psi - (psi * psi + 8.0 * (saliency * current).powi(2)).sqrt()) / (4.0 * saliency);
             let found = most(&SALIENT, Bounds { current, ..BOUNDS }, 7.0).current;
-            // A maximum is flat: its place is found to the root of the rounding.
+            // A maximum is flat: its position is found to the root of the rounding.
             assert!((found.d - expected).abs() < 1e-6 * current, "{current} A: {found:?} {expected}");
             assert!((found.d.hypot(found.q) - current).abs() < 1e-12 * current);
         }
@@ -176,7 +176,7 @@ mod tests {
             // The resistance that is left changes a part of 1e-9·I/U.
             assert!((found / expected - 1.0).abs() < 1e-9, "{part}: {found} {expected}");
         }
-        // ψ/L = 13.6 A > I: it comes to an end where the flux of the whole current in −d leaves U/ω.
+        // ψ/L = 13.6 A > I: it ends where the flux of the whole current in −d leaves U/ω.
         let last = BOUNDS.voltage / (psi - flux_of_current);
         assert!(
             round.most_effort(BOUNDS, 0.9999 * last).is_some() && round.most_effort(BOUNDS, 1.0001 * last).is_none()

@@ -31,15 +31,15 @@ servobench_config::parameters! {
 pub struct FluxHarmonic {
     /// Its order n, per electrical revolution.
     pub order: u32,
-    /// Its amplitude in the d axis, as a part of the flux linkage of the magnets.
+    /// Its amplitude in the d axis, relative to the flux linkage of the magnets.
     pub d: f64,
-    /// That in the q axis.
+    /// Its amplitude in the q axis, relative to the same.
     pub q: f64,
     /// Its angle at the electrical angle zero (rad).
     pub phase: f64,
 }
 
-/// Flux linkage of the magnets at an angle, and its derivatives by the electrical angle (V·s).
+/// Flux linkage of the magnets at an angle, and its derivatives with respect to the electrical angle (V·s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Flux {
     pub(super) d: f64,
@@ -67,7 +67,7 @@ impl FluxHarmonic {
 }
 
 impl Flux {
-    /// That of magnets with the flux linkage `psi` (V·s) and these harmonics, the rotor being at `rotor`.
+    /// Flux of magnets with the flux linkage `psi` (V·s) and these harmonics, with the rotor at `rotor`.
     pub(super) fn at(psi: f64, harmonics: &[FluxHarmonic], rotor: Rotation) -> Self {
         let mut flux = Self { d: psi, q: 0.0, slope_d: 0.0, slope_q: 0.0 };
         for FluxHarmonic { order, d, q, phase } in harmonics {
@@ -126,7 +126,7 @@ mod tests {
         }
     }
 
-    /// Oracle: three phases with a fundamental, a fifth and a seventh harmonic, brought to dq by Park's own words (2/3 of the projections).
+    /// Oracle: three phases with a fundamental, a fifth and a seventh harmonic, in dq by Park's definition (2/3 of the projections).
     #[test]
     fn fifth_and_seventh_of_a_phase_are_the_sixth_in_dq() {
         let (a5, a7) = (0.013, -0.006);

@@ -1,12 +1,12 @@
-//! The Gauss method of two stages, of fourth order: what all windings that are solved by it have in common. Source: Hairer, Lubich and
+//! The Gauss method of two stages, of fourth order: the part common to all windings that are solved by it. Source: Hairer, Lubich and
 //! Wanner, *Geometric Numerical Integration*, 2nd ed., ch. II.1.
 use super::FluxHarmonic;
 
 /// Largest turn of a harmonic in a part of a tick (rad).
 const LARGEST_TURN_OF_A_HARMONIC: f64 = 0.5;
-/// Largest turn of the rotor, and largest decay of a current.
+/// Largest turn of the rotor (rad), and largest decay of a current, in a part.
 const LARGEST_PART: f64 = 0.25;
-/// A tick has no more parts than this: a rotor so fast turns through a thousand radians in a tick.
+/// Largest number of parts of a tick: a rotor so fast turns through a thousand radians in a tick.
 pub(super) const MOST_PARTS: f64 = 4096.0;
 
 /// √3/6.
@@ -16,8 +16,8 @@ pub(super) const STAGES: [f64; 2] = [0.5 - OFF_THE_MIDDLE, 0.5 + OFF_THE_MIDDLE]
 /// a_jn.
 pub(super) const WEIGHTS: [[f64; 2]; 2] = [[0.25, 0.25 - OFF_THE_MIDDLE], [0.25 + OFF_THE_MIDDLE, 0.25]];
 
-/// Parts of some time in which a current decays by `decay`, the rotor turns by `turn` (rad) past these harmonics, or what else has to be
-/// resolved takes `others`.
+/// Number of parts of a time in which a current decays by `decay`, the rotor turns by `turn` (rad) past these harmonics, and other changes
+/// need `others` parts.
 pub(super) fn parts(decay: f64, turn: f64, harmonics: &[FluxHarmonic], others: f64) -> u32 {
     let order = harmonics.iter().map(|harmonic| harmonic.order).max().unwrap_or(0);
     let of_harmonics = f64::from(order) * turn.abs() / LARGEST_TURN_OF_A_HARMONIC;
@@ -27,7 +27,7 @@ pub(super) fn parts(decay: f64, turn: f64, harmonics: &[FluxHarmonic], others: f
     whole.max(1)
 }
 
-/// Gauss's elimination with the largest pivot of each column.
+/// Gaussian elimination with the largest pivot of each column.
 pub(super) fn solved(mut system: [[f64; 5]; 4]) -> [f64; 4] {
     for column in 0..4 {
         let mut largest = column;

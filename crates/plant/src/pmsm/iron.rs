@@ -1,4 +1,4 @@
-//! Loss in the iron: the field turns through it, and the rotor is braked.
+//! Loss in the iron: the field turns through it, which brakes the rotor.
 //!
 //! ```text
 //! P = (P_h·|v|/v_n·s + P_e·(v/v_n)²)·(λ/ψ)²         λ² = (L_d·i_d + ψ)² + (L_q·i_q)²
@@ -6,10 +6,10 @@
 //! ```
 //! P_h hysteresis and P_e eddy currents at the speed v_n without current. Steinmetz with the exponent 2 of the flux: Krishnan, *Permanent
 //! Magnet Synchronous and Brushless DC Motor Drives*, 2010. As a drag the loss costs torque and not current:
-//! what a resistance beside the inductances would change in the currents is left out.
+//! the effect on the currents of a resistance parallel to the inductances is left out.
 //!
 //! s takes the hysteresis torque through zero: below a hundredth of v_n it falls instead of holding the rotor, since the iron has then
-//! not gone through a whole loop (assumed: no data sheet says how much of one). What holds a rotor at rest is friction.
+//! not passed a whole loop (assumed: data sheets do not give the part). Friction holds a rotor at rest.
 use super::{FluxMap, Params, State};
 use servobench_base::{Dq, ParamError};
 use servobench_config::Kind::{Motor, Plain};
@@ -39,7 +39,7 @@ pub struct IronLoss {
     pub eddy: f64,
 }
 
-/// Below this part of the given speed the hysteresis torque falls.
+/// Share of the given speed below which the hysteresis torque falls.
 const SMOOTHED: f64 = 0.01;
 
 impl IronLoss {
@@ -61,7 +61,7 @@ impl IronLoss {
     }
 }
 
-/// Square of the flux linkage of stator and magnets over that of the magnets as the data sheet has it, ψ (V·s).
+/// Square of the flux linkage of stator and magnets relative to that of the magnets by the data sheet, ψ (V·s).
 pub(super) fn relative_flux(p: &Params, psi: f64, map: Option<&FluxMap>, [before, after]: [State; 2]) -> f64 {
     let [d, q] = [before.current.d + after.current.d, before.current.q + after.current.q].map(|sum| sum / 2.0);
     let (along, across) = if let Some(map) = map {

@@ -1,4 +1,4 @@
-//! What a tick does with the currents, solved exactly: a small part of it by its Taylor series, doubled until it is the
+//! Exact solution of the currents over a tick: a small part of it by its Taylor series, doubled until it is the
 //! tick.
 //!
 //! ```text
@@ -10,7 +10,7 @@
 //! w(τ + δ) = w(τ) + D(δ)·w(τ)          mean over δ of a quadratic form of w = wᵀ·S(δ)·w
 //! D(2δ) = 2·D + D·D                    S(2δ) = S + (S·D + (S·D)ᵀ + Dᵀ·S·D)/2
 //! ```
-//! Torque, losses and input are quadratic forms of w, so the doubling takes their exact means along. It is done on D, not
+//! Torque, losses and input are quadratic forms of w, so the doubling includes their exact means. It is done on D, not
 //! on 1 + D, so that a slow motor keeps its digits. Scaling and squaring: Moler and Van Loan, *SIAM Review* 45(1), 2003,
 //! method 3; the integrals of forms: Van Loan, *IEEE Transactions on Automatic Control* 23(3), 1978.
 //!
@@ -22,10 +22,10 @@ use core::ops::{Add, Mul};
 
 /// Numbers, or polynomials of the speed: see [`table`](super::table).
 pub(super) trait Scalar: Copy + From<f64> + Add<Output = Self> + Mul<Output = Self> {
-    /// `factor` times as much.
+    /// Multiple by `factor`.
     fn times(self, factor: f64) -> Self;
 
-    /// Times the angle `turn`.
+    /// Product with the angle `turn`.
     fn times_turn(self, turn: Self) -> Self;
 }
 
@@ -43,12 +43,12 @@ impl Scalar for f64 {
 pub(super) const N: usize = 5;
 /// Terms of a series.
 const M: usize = 20;
-/// Largest change in a part, relative to what changes.
+/// Largest relative change in a part.
 const LARGEST_PART: f64 = 0.76;
 
 pub(super) type Matrix<T> = [[T; N]; N];
 
-/// Quadratic forms of which the means are wanted.
+/// Quadratic forms whose means are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forms<T> {
     /// ψ·i_q + (L_d − L_q)·i_d·i_q.
@@ -73,7 +73,7 @@ pub(super) struct Maps<T> {
     pub(super) forms: Forms<Matrix<T>>,
 }
 
-/// How often a part is to be doubled to give a tick of `h` (s) in which the rotor turns by at most `turn` (rad).
+/// Number of doublings of a part that give a tick of `h` (s) in which the rotor turns by at most `turn` (rad).
 pub(super) fn doublings(p: &Params, turn: f64, h: f64) -> i32 {
     let decay = h * p.resistance / p.inductance.d.min(p.inductance.q);
     let (mut doublings, mut change) = (0, decay + turn.abs());
@@ -127,7 +127,7 @@ fn forms<T: Scalar>(p: &Params) -> Forms<Matrix<T>> {
 
 /// dw/dτ by w.
 struct Slope<T> {
-    /// Entries that are not zero: row, column, what stands there, and whether it is per turn.
+    /// Non-zero entries: row, column, value, and true if it is per turn.
     entries: [(usize, usize, f64, bool); 9],
     turn: T,
 }

@@ -1,18 +1,18 @@
-//! A winding of which a phase is lost: the other two are in series, and one current says all.
+//! A winding with a lost phase: the other two are in series, and have a single current.
 //!
 //! ```text
 //! i = s·n      n = [cos γ, sin γ] in the rotor frame, γ = θ_n − θ      θ_n: at right angles to the axis of the lost phase, in the stator
 //! u_n = R_n·s + d(ℓ·s)/dt + ω·nᵀ·e      ℓ = nᵀ·L·n = L_d·cos²γ + L_q·sin²γ      R_n = nᵀ·R·n
 //! T = 3/2·p·(nᵀ·e·s + (L_d − L_q)·sin γ·cos γ·s²)                              e = [ψ_d′ − ψ_q, ψ_q′ + ψ_d]
 //! ```
-//! These are the equations of the motor along n; across it the voltage at the open terminal is whatever keeps the current of that phase at
+//! These are the equations of the motor along n; across it, the voltage at the open terminal keeps the current of that phase at
 //! zero, and does no work. With w = √ℓ·s the energy of the field is ¾·w²,
 //!
 //! ```text
 //! dw/dt = (u_n − ω·nᵀ·e)/√ℓ − (R_n + ℓ′/2)/ℓ·w        ℓ′ = dℓ/dt = 2·ω·(L_d − L_q)·sin γ·cos γ
 //! ```
-//! solved by the Gauss method of two stages, which keeps quadratic invariants: the energies close to the rounding, as in `varying`. Its
-//! parts are as long as there. Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 4; Hairer, Lubich and Wanner, *Geometric
+//! solved by the Gauss method of two stages, which keeps quadratic invariants: the energies close to the rounding, as in `varying`, with
+//! parts of the same length. Source: Krause, *Analysis of Electric Machinery*, 3rd ed., ch. 4; Hairer, Lubich and Wanner, *Geometric
 //! Numerical Integration*, 2nd ed., ch. IV.2.
 use super::Params;
 use super::effects::RealMotor;
@@ -22,13 +22,13 @@ use super::phases::{Entries, PhaseMatrix};
 use super::winding::{Span, Sums, Winding, stored};
 use servobench_base::{AlphaBeta, Dq, Rotation};
 
-/// A winding whose current stands along a line in the stator.
+/// A winding whose current flows along a fixed line in the stator.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OpenPhase<'a> {
     params: &'a Params,
     harmonics: &'a [FluxHarmonic],
     phases: PhaseMatrix,
-    /// Resistance before each phase that is not the motor's own (Ω).
+    /// Resistance before each phase, outside the motor (Ω).
     series: f64,
     /// n in the stator frame.
     line: AlphaBeta,
@@ -36,7 +36,7 @@ pub(crate) struct OpenPhase<'a> {
 
 /// The equation at a stage.
 struct Stage {
-    /// Along the line: voltage, what devices have taken of it (V), voltage per speed (V·s), resistance of the motor (Ω), inductance (H).
+    /// Along the line: voltage, drop of the devices before it (V), voltage per speed (V·s), resistance of the motor (Ω), inductance (H).
     voltage: f64,
     drop: f64,
     per_speed: f64,
@@ -70,7 +70,7 @@ impl Winding for OpenPhase<'_> {
 }
 
 impl<'a> OpenPhase<'a> {
-    /// Of the motor that is `params` at this tick, with the effects of `real`, behind `series` (Ω), with a current along `line`.
+    /// The winding of the motor that is `params` at this tick, with the effects of `real`, behind `series` (Ω), its current along `line`.
     pub(crate) fn new(params: &'a Params, real: Option<&'a RealMotor>, series: f64, line: AlphaBeta) -> Self {
         let (harmonics, phases) = real.map_or((&[][..], PhaseMatrix::EQUAL), RealMotor::harmonics_and_phases);
         Self { params, harmonics, phases, series, line }

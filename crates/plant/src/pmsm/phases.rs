@@ -1,4 +1,4 @@
-//! Phases whose resistances differ: the star point is not connected, so that two currents say all.
+//! Phases with different resistances: the star point is not connected, so that two currents are enough.
 //!
 //! ```text
 //! R_αβ = R·[ (4·f_a + f_b + f_c)/6    (f_c − f_b)/(2·√3) ]      f = resistance of a phase over R
@@ -24,7 +24,7 @@ servobench_config::parameters! {
 
 const SQRT_12: f64 = 3.464_101_615_137_754_6;
 
-/// Resistance in the rotor frame, as parts of the resistance of the motor: symmetric.
+/// Resistance in the rotor frame, relative to the resistance of the motor: symmetric.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PhaseMatrix {
     mean: f64,
@@ -60,7 +60,7 @@ impl PhaseMatrix {
         Self { mean: (a + b + c) / 3.0, difference: (2.0 * a - b - c) / 6.0, skew: (c - b) / SQRT_12 }
     }
 
-    /// The largest that a direction may have.
+    /// Largest value in any direction.
     pub(super) fn largest(&self) -> f64 {
         self.mean + libm::hypot(self.difference, self.skew)
     }
@@ -95,7 +95,7 @@ mod tests {
             let of_phases: Vec<f64> = phases.iter().zip(factors).map(|(i, r)| r * i).collect();
             let star = of_phases.iter().sum::<f64>() / 3.0;
             let u = u.to_alpha_beta(rotor);
-            // Phase a is α, what lies between b and c √3 times β.
+            // Phase a is α, the voltage between b and c is √3 times β.
             assert!((of_phases[0] - star - u.alpha).abs() < 1e-13, "{theta}");
             assert!((of_phases[1] - of_phases[2] - 3.0_f64.sqrt() * u.beta).abs() < 1e-13, "{theta}");
         }

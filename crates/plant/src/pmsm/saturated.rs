@@ -1,20 +1,20 @@
 //! A motor whose iron saturates, by the Gauss method of two stages for the flux linkages, whose currents are corrected so that the field's
-//! energy is what went into it.
+//! energy balances.
 //!
 //! ```text
 //! dψ/dt = u(t) − e(θ) − R(θ)·i − ω·J·ψ        ψ = ψ(i) of the map        J·ψ = (−ψ_q, ψ_d)
 //! ψ(I_j) = ψ_k + h·Σ a_jn·K_n                 K_j = u_j − e_j − R_j·Ĩ_j − ω·J·ψ(I_j)           j = 1, 2
 //! ψ_{k+1} = ψ_k + h/2·(K_1 + K_2)             Ĩ_j = I_j + λ·K_j,  λ such that h/2·Σ Ĩ_j·K_j = W(ψ_{k+1}) − W(ψ_k)
 //! ```
-//! A Gauss method keeps the energy of constant inductances to the rounding. Where they change, it errs by the fifth power of h, which λ
-//! takes back: a discrete gradient (Gonzalez, *Journal of Nonlinear Science* 6, 1996) on top of a collocation, of fourth order as this
-//! (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, 2nd ed., ch. II.1 and V.5). Torque, losses and input are all of Ĩ, so
-//! that no power is lost in a tick however long it is. e is that of the magnets' harmonics and of what their temperature changes; the rest
+//! A Gauss method keeps the energy of constant inductances to the rounding. Where they change, its error is of the fifth power of h, which
+//! λ removes: a discrete gradient (Gonzalez, *Journal of Nonlinear Science* 6, 1996) on top of a collocation, and also of fourth order
+//! (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, 2nd ed., ch. II.1 and V.5). Torque, losses and input all use Ĩ, so
+//! that no power is lost in a tick however long it is. e is from the magnets' harmonics and from the effect of their temperature; the rest
 //! of their flux linkage is in the map.
 //!
-//! A part of a tick is so short that the current decays by a quarter, that the rotor turns by a quarter, that a harmonic turns by half a
-//! radian, and that the inductances change by [`LARGEST_CHANGE`] of themselves at most. Over a line of a table, where its inductances jump,
-//! a part is of second order.
+//! A part of a tick is so short that the current decays by a quarter, that the rotor turns by a quarter radian, that a harmonic turns by
+//! half a radian, and that the inductances change by [`LARGEST_CHANGE`] at most. Across a line of a table, where its inductances
+//! jump, a part is of second order.
 use super::flux_harmonics::{Flux, FluxHarmonic};
 use super::flux_map::{CONVERGED, FluxMap, FluxPoint, Inductance, MOST_STEPS};
 use super::gauss::{self, MOST_PARTS, STAGES, WEIGHTS, solved};
@@ -23,38 +23,38 @@ use super::winding::{Span, Sums, Winding};
 use super::{Params, moved};
 use servobench_base::{Dq, Rotation};
 
-/// Largest change of an inductance in a part of a tick, as a part of it.
+/// Largest relative change of an inductance in a part of a tick.
 const LARGEST_CHANGE: f64 = 0.25;
-/// So many parts are made for the sake of that.
+/// Maximum number of parts for that purpose.
 const MOST_FOR_CHANGE: f64 = 64.0;
-/// A flux linkage that changes by less than this part of itself, squared, needs no correction: the rounding is more.
+/// Relative change of a flux linkage, squared, below which it needs no correction: rounding is larger.
 const NO_CHANGE: f64 = 1e-30;
-/// Steps towards λ: each leaves a hundredth of the error or less.
+/// Maximum steps towards λ: each leaves a hundredth of the error or less.
 const MOST_CORRECTIONS: u32 = 8;
 
 /// A motor that saturates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Saturated<'a> {
-    /// With its resistance and flux linkage at this tick.
+    /// Parameters with the resistance and flux linkage at this tick.
     pub(super) params: &'a Params,
     pub(super) map: &'a FluxMap,
-    /// Flux linkage of the magnets that is in the map (V·s).
+    /// Flux linkage of the magnets in the map (V·s).
     pub(super) magnets: f64,
     pub(super) harmonics: &'a [FluxHarmonic],
     pub(super) phases: &'a PhaseMatrix,
-    /// Resistance before each phase that is not the motor's own (Ω).
+    /// Resistance before each phase, outside the motor (Ω).
     pub(super) series: f64,
 }
 
 /// The equations at an instant.
 struct Stage {
     u: Dq,
-    /// What devices have taken of it.
+    /// Drop of the devices before it.
     drop: Dq,
-    /// Of the magnets, beside what is in the map.
+    /// Flux of the magnets that is not in the map.
     flux: Flux,
     resistance: Entries,
-    /// With what is in series.
+    /// Resistance, including that in series.
     total: Entries,
     /// u − e.
     driving: Dq,

@@ -1,9 +1,9 @@
-//! A motor at constant speed on a voltage that is constant in the stator frame, over any time: what happens between two edges.
+//! A motor at constant speed on a voltage that is constant in the stator frame, over any time: the segment between two edges.
 //!
 //! ```text
 //! w = (i_d, i_q, u_d, u_q, 1)        dw/dt = A·w, with A as in [`maps`](super::maps)        w(t + δ) = Σ (δA)ⁿ/n!·w(t)
 //! ```
-//! The series is cut where what it leaves out is below the rounding. The means of i, i_d² + i_q² and ψ·i_q + (L_d − L_q)·i_d·i_q are
+//! The series is cut where the remainder is below the rounding. The means of i, i_d² + i_q² and ψ·i_q + (L_d − L_q)·i_d·i_q are
 //! taken by Gauss and Legendre's rule with four points, exact up to the seventh power of δ: of a product, which changes by 2c, it leaves
 //! out (2c)⁸·(4!)⁴/(9·(8!)³) < 2e-15 with c = [`LARGEST_PART`] of change in a part. A longer time is cut into equal parts. The mean of i
 //! is taken in the stator frame, so that the power of any voltage that is held there follows from it.
@@ -13,14 +13,14 @@ use super::winding::{Span, Sums, Winding, stored};
 use core::array::from_fn;
 use servobench_base::Dq;
 
-/// Largest change in a part, relative to what changes.
+/// Largest relative change in a part.
 const LARGEST_PART: f64 = 0.1;
-/// Up to this one, [`FEW`] terms are enough: 0.03⁸/8! < 2e-17. [`ALL`] are for a part: 0.1¹²/12! < 1e-20.
+/// Change up to which [`FEW`] terms are enough: 0.03⁸/8! < 2e-17. [`ALL`] are for a part: 0.1¹²/12! < 1e-20.
 const SMALL_PART: f64 = 0.03;
 const FEW: usize = 7;
 const ALL: usize = 11;
 
-/// So many parts are followed.
+/// Maximum number of parts.
 const MOST_PARTS: f64 = 1e6;
 
 /// Points of the rule from 0 to 1, and their weights (Abramowitz & Stegun, *Handbook of Mathematical Functions*, table 25.4).
@@ -29,7 +29,7 @@ const POINTS: [f64; 4] =
 const WEIGHTS: [f64; 4] =
     [0.173_927_422_568_726_93, 0.326_072_577_431_273_07, 0.326_072_577_431_273_07, 0.173_927_422_568_726_93];
 
-/// The motor's equations, per second, with what is in series with its resistance.
+/// The motor's equations, per second, including the resistance in series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Equations {
     electrical_ratio: f64,
@@ -46,12 +46,12 @@ pub(crate) struct Equations {
     inductance: Dq,
     /// R of the motor itself.
     resistance: f64,
-    /// What changes fastest at rest, and by the turn (relative).
+    /// Fastest relative change at rest, and by the turn.
     fastest: [f64; 2],
 }
 
 impl Equations {
-    /// Of `motor`, with `series` (Ω) before each phase.
+    /// Equations of `motor`, with `series` (Ω) before each phase.
     pub(crate) fn new(motor: &Params, series: f64) -> Self {
         let (l, r) = (motor.inductance, motor.resistance + series);
         let cross = Dq { d: l.q / l.d, q: l.d / l.q };
@@ -68,7 +68,7 @@ impl Equations {
         }
     }
 
-    /// `u` and `other` as the rotor meets them at the beginning; only `u` acts.
+    /// Advances over `time` with `u` and `other` in the frame of the rotor at the beginning; only `u` acts on the current.
     #[inline(always)]
     fn over<const POWER: bool>(&self, i: Dq, [u, other]: [Dq; 2], omega: f64, time: f64, sums: &mut Sums) -> Dq {
         let change = time * (self.fastest[0] + omega.abs() * self.fastest[1]);
@@ -85,7 +85,7 @@ impl Equations {
     fn parts<const POWER: bool>(&self, i: Dq, [u, other]: [Dq; 2], omega: f64, time: f64, sums: &mut Sums) -> Dq {
         let change = time * (self.fastest[0] + omega.abs() * self.fastest[1]);
         let parts = (change / LARGEST_PART).ceil();
-        // A motor that turns ten thousand times between two edges has diverged: its numbers are none any more.
+        // A motor that turns ten thousand times between two edges has diverged: it gets not-a-number results.
         if !(0.0..=MOST_PARTS).contains(&parts) {
             *sums = Sums::NAN;
             return Dq { d: f64::NAN, q: f64::NAN };
@@ -115,7 +115,7 @@ impl Equations {
         let per_volt = [time * self.per_volt.d, time * self.per_volt.q];
         let emf = -x * self.emf;
 
-        // The n-th terms of the series, and what they add up to at the end and at the points.
+        // The n-th terms of the series, and their sums at the end and at the points.
         let (mut d, mut q, mut v) = (i.d, i.q, u);
         let (mut end, mut at) = (i, [[i.d; 4], [i.q; 4]]);
         let mut power = POINTS;

@@ -1,10 +1,10 @@
-//! The maps of a tick as polynomials of how far the rotor turns in it, made once: a tick at any speed costs a few dozen
+//! The maps of a tick as polynomials of the turn of the rotor in it, made once: a tick at any speed costs a few dozen
 //! multiplications.
 //!
 //! A rotor that turns the other way exchanges the sign of q: each entry of the maps is even or odd in x = ω·h. So with
-//! y = x² an entry is a polynomial of y, or x times one. Of its size, `TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
-//! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made when the first one
-//! comes.
+//! y = x² an entry is a polynomial of y, or x times one. Relative to its size, `TERMS` coefficients leave out (2x)^16/17! < 1e-16 up to
+//! [`FURTHEST`]; a smaller x needs fewer. A faster rotor takes several parts of a tick, whose maps are made at the first
+//! use.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::maps::{Forms, Maps, Matrix, Scalar, doublings};
 use super::{Input, Params};
@@ -17,10 +17,10 @@ use std::sync::OnceLock;
 const TERMS: usize = 8;
 /// Largest turn for which the table holds (rad): ½·(1e-16·17!)^(1/16).
 const FURTHEST: f64 = 0.405;
-/// How often a tick is halved to give the parts that a fast rotor takes several of: a quarter and a sixteenth.
+/// Halvings of a tick into the parts of which a fast rotor takes several: quarters and sixteenths.
 const HALVINGS: [i32; 2] = [2, 4];
 
-/// For which 4, 5 and 6 are enough: ½·(1e-16·(2n + 1)!)^(1/2n).
+/// Turns up to which 4, 5 and 6 coefficients are enough: ½·(1e-16·(2n + 1)!)^(1/2n).
 const ENOUGH_FOR_4: f64 = 0.0247;
 const ENOUGH_FOR_5: f64 = 0.072;
 const ENOUGH_FOR_6: f64 = 0.151;
@@ -64,17 +64,17 @@ impl Scalar for InTurn {
         Self(self.0.map(|coefficient| factor * coefficient))
     }
 
-    /// An angle is x times something.
+    /// An angle is a multiple of x.
     fn times_turn(self, turn: Self) -> Self {
         Self(from_fn(|n| if n == 0 { 0.0 } else { turn.0[1] * self.0[n - 1] }))
     }
 }
 
-/// The maps over a part of a tick, by powers of y. Values stand side by side as a processor multiplies them.
+/// The maps over a part of a tick, by powers of y. Values are stored side by side, in the order in which a processor multiplies them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Table {
-    /// Change of i_d and i_q that is even in x: per current of the same axis, per voltage of it, and by itself; beside it that which is
-    /// odd: per current of the other axis, per voltage of it, and by itself.
+    /// Change of i_d and i_q that is even in x: per current of the same axis, per voltage of it, and constant; beside it the odd
+    /// part: per current of the other axis, per voltage of it, and constant.
     change: [[[f64; 4]; 3]; TERMS],
     /// By [`PRODUCTS`], in pairs: the torque, beside it the square.
     torque_and_square: [[[f64; 4]; PRODUCTS.len()]; TERMS],
@@ -95,7 +95,7 @@ const PRODUCTS: [[Option<(usize, usize)>; 2]; 8] = [
     [Some((0, 1)), Some((1, 4))],
 ];
 const ALIKE: usize = 5;
-/// How many of each kind have a voltage: they come first, and there is nothing else in the input.
+/// Number of products of each kind with a voltage: they come first, and the input has no others.
 const WITH_VOLTAGE: [usize; 2] = [3, 2];
 
 /// [`PRODUCTS`] at `i` and `u`.
@@ -113,7 +113,7 @@ fn products(i: Dq, u: Dq) -> [[f64; 2]; PRODUCTS.len()] {
     ]
 }
 
-/// What a part of a tick gives.
+/// Solution of a part of a tick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Solution {
     pub(super) change: Dq,
@@ -163,7 +163,7 @@ impl Table {
         }
     }
 
-    /// The part that begins with `i` and `u`, in a tick in which the rotor turns by `x`.
+    /// Solves the part that begins with `i` and `u`, in a tick in which the rotor turns by `x`.
     #[inline(always)]
     fn solve<const TERMS_USED: usize, const POWER: bool>(&self, x: f64, i: Dq, u: Dq) -> Solution {
         let y = x * x;
@@ -221,15 +221,15 @@ pub(super) struct Tables {
     params: Params,
     /// Length of a tick (s).
     h: f64,
-    /// Those of the parts of a tick, made for the first rotor that needs them.
+    /// The tables of the parts of a tick, made for the first rotor that needs them.
     parts: [OnceLock<Table>; HALVINGS.len()],
 }
 
-/// Of a part of a tick of `h` (s), which is so often halved.
+/// The table of a part of a tick of `h` (s), halved this many times.
 fn table(p: &Params, h: f64, halvings: i32) -> Table {
     let mut turn = InTurn::from(0.0);
     turn.0[1] = 1.0;
-    // The rotor may turn by as much as the table holds for in a part.
+    // In a part the rotor may turn by as much as the table covers.
     let all = doublings(p, FURTHEST * libm::scalbn(1.0, halvings), h).max(halvings);
     Table::of(&(halvings..all).fold(Maps::part(p, turn, h, all), |maps, _| maps.doubled()))
 }
@@ -239,7 +239,7 @@ impl Tables {
         Self { tick: table(p, h, 0), params: *p, h, parts: HALVINGS.map(|_| OnceLock::new()) }
     }
 
-    /// A tick from the current `i` on, if the rotor is slow enough.
+    /// Solves a tick from the current `i`, if the rotor is slow enough.
     #[inline(always)]
     pub(super) fn solve<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<Solution> {
         let turn = x.abs();
@@ -258,7 +258,7 @@ impl Tables {
         self.in_parts::<POWER>(x, i, u).map(Solution::of_numbers)
     }
 
-    /// As numbers, so that the solution of a slow rotor stays in registers.
+    /// Returns numbers, so that the solution of a slow rotor stays in registers.
     #[cold]
     fn in_parts<const POWER: bool>(&self, x: f64, i: Dq, u: &Input) -> Option<[f64; 5]> {
         let parts_of = |halvings: i32| 1_u32 << halvings;

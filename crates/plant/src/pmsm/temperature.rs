@@ -1,4 +1,4 @@
-//! Temperature of winding and magnets: what it makes of resistance and flux linkage, and two bodies that the losses heat.
+//! Temperature of winding and magnets: its effect on resistance and flux linkage, and two bodies that the losses heat.
 //!
 //! ```text
 //! R = R_ref·(1 + α_R·(T_w − T_ref))          ψ = ψ_ref·(1 + α_ψ·(T_h − T_ref))
@@ -7,8 +7,8 @@
 //! ```
 //! Copper: α_R = 0.00393 1/K at 20 °C (IEC 60028). Magnets are as warm as the housing: assumed, data sheets give no third body. The copper
 //! loss heats the winding, the iron loss the housing. The step of the model is a tick: under the mean losses of the tick both bodies are
-//! advanced exactly, and resistance and flux linkage follow at the next tick. How much later than the temperature they are, h over
-//! a thermal time constant of seconds, is below 1e-4 of what they change. What a flux linkage that changes induces is left out.
+//! advanced exactly, and resistance and flux linkage follow at the next tick. Their delay, h relative to
+//! a thermal time constant of seconds, is below 1e-4 of their change. The voltage induced by a change of the flux linkage is left out.
 use super::Params;
 use servobench_base::{ParamError, Stateful};
 use servobench_config::Bound::Within;
@@ -62,18 +62,18 @@ pub struct Temperatures {
     pub housing: f64,
 }
 
-/// What the temperature makes of a motor.
+/// Temperature of a motor and its effects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Temperature {
-    /// For which resistance and flux linkage are given (°C).
+    /// Temperature at which resistance and flux linkage are given (°C).
     pub reference: f64,
     /// Change of the resistance (1/K).
     pub resistance_coefficient: f64,
     /// Change of the flux linkage (1/K).
     pub flux_coefficient: f64,
-    /// At time 0.
+    /// Temperatures at time 0.
     pub start: Temperatures,
-    /// What the losses heat; `None` where the temperatures stay.
+    /// The heated bodies; `None` for constant temperatures.
     pub network: Option<ThermalNetwork>,
 }
 
@@ -86,11 +86,11 @@ pub struct ThermalNetwork {
     pub to_housing: f64,
     /// From housing to surroundings (K/W).
     pub to_ambient: f64,
-    /// Of the winding (J/K).
+    /// Heat capacity of the winding (J/K).
     pub winding_capacity: f64,
-    /// Of the housing (J/K).
+    /// Heat capacity of the housing (J/K).
     pub housing_capacity: f64,
-    /// Highest temperature that the winding bears (°C); it changes nothing.
+    /// Highest permissible temperature of the winding (°C); it has no effect on the motor.
     pub winding_limit: f64,
 }
 
@@ -128,7 +128,7 @@ impl Temperature {
         Ok(())
     }
 
-    /// Resistance and flux linkage at these temperatures, as parts of what is given.
+    /// Resistance and flux linkage at these temperatures, relative to the given ones.
     fn factors(&self, Temperatures { winding, housing }: Temperatures) -> [f64; 2] {
         let part = |coefficient: f64, temperature: f64| 1.0 + coefficient * (temperature - self.reference);
         [part(self.resistance_coefficient, winding), part(self.flux_coefficient, housing)]
@@ -146,7 +146,7 @@ impl Temperature {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ThermalSteps {
     ambient: f64,
-    /// Change of the temperatures above the surroundings (winding, housing) by themselves and by the powers into both (W).
+    /// Change of the temperatures above the surroundings (winding, housing) per temperature and per power into each (W).
     change: [[f64; 4]; 2],
 }
 

@@ -56,7 +56,7 @@ fn the_modelica_machine_gives_its_published_torque() {
     assert!((factor - 0.98004).abs() < 2e-4, "{factor}");
 }
 
-/// Oracle: the steady state of the equations themselves, whatever the tick: here one of 40 time constants.
+/// Oracle: the steady state of the equations themselves, for any tick: here one of 40 time constants.
 #[test]
 fn the_steady_state_is_exact_and_stable_for_a_tick_far_beyond_the_time_constant() {
     let p = Params { inductance: Dq { d: 1e-6, q: 2e-6 }, ..MOTOR };
@@ -73,14 +73,14 @@ fn motors() -> [(Params, f64); 4] {
     [(MOTOR, 1.0 / 12_000.0), (round, 1.0 / 8_000.0), (lossless, 1.0 / 20_000.0), (fast, 20e-6)]
 }
 
-/// A start that is no steady state, and a voltage about the back-EMF.
+/// A start that is not a steady state, and a voltage about the back-EMF.
 fn start(p: &Params, omega_e: f64) -> (State, Input) {
     let rotor = ElectricalAngle(0.7).rotation();
     let voltage = Dq { d: -7.0, q: 11.0 + omega_e * p.flux_linkage }.to_alpha_beta(rotor);
     (State { current: Dq { d: -1.3, q: 2.4 } }, Input { voltage, rotor, omega_e })
 }
 
-/// Oracle: the equations in the stator frame's own words by Runge and Kutta's method of order 4, with the means as
+/// Oracle: the equations in stator coordinates by Runge and Kutta's method of order 4, with the means as
 /// further states: current at the end; means of torque, copper and electrical power.
 fn by_runge_kutta(p: &Params, x: &State, u: &Input, h: f64, steps: u32) -> [f64; 5] {
     let slope = |t: f64, y: [f64; 5]| {
@@ -115,14 +115,14 @@ fn a_tick_at_constant_speed_is_exact() {
         let ticks = Ticks::new(p, h);
         for turn in TURNS {
             let (before, u) = start(&p, turn / h);
-            // What changes in a step of the oracle is below 0.005, of which it leaves out (0.005)⁴/120.
+            // The change in a step of the oracle is below 0.005, of which it leaves out (0.005)⁴/120.
             let oracle = by_runge_kutta(&p, &before, &u, h, 16_384);
             let (mut x, mut y) = (before, before);
             let ours = stepped(&ticks, &mut x, &u);
             let others = step_with_power(&p, &mut y, u, h);
             let (ours, others) = (found(&x, &ours), found(&y, &others));
             for (ours, exact) in ours.into_iter().chain(others).zip(oracle.into_iter().chain(oracle)) {
-                // Of a current that the voltage alone would make in the tick, or through the resistance.
+                // Relative to the current that the voltage alone would make in the tick, or through the resistance.
                 let through = 1.0 / (p.resistance + p.inductance.d / h);
                 let current = 3.0 + (20.0 + (turn / h * p.flux_linkage).abs()) * through;
                 let scale = exact.abs().max(current);
@@ -180,7 +180,7 @@ proptest! {
     }
 }
 
-/// A tick of 72 time constants with the powers, and at the end of a tick at rest with nothing on: exact zeros.
+/// A tick of 72 time constants with the powers, and at the end a tick at rest without inputs: exact zeros.
 #[test]
 fn nothing_in_is_nothing_out() {
     for (p, h) in motors() {
@@ -221,7 +221,7 @@ fn a_tick_in_which_the_speed_changes_is_of_second_order() {
     assert!((order - 2.0).abs() < 0.1, "observed order {order}");
 }
 
-/// Oracle: the vector that is shortened by its mean over the tick.
+/// Oracle: the vector, shortened by its mean over the tick.
 #[test]
 fn the_voltage_of_the_middle_is_the_mean_but_for_its_length() {
     let (_, u) = start(&MOTOR, 1_500.0);
@@ -238,13 +238,13 @@ fn the_voltage_of_the_middle_is_the_mean_but_for_its_length() {
     assert!((mean.d - sinc * middle.d).abs() < 1e-6 && (mean.q - sinc * middle.q).abs() < 1e-6, "{mean:?} {middle:?}");
 }
 
-/// What a processor with wide registers gives and what any other gives are the same bits, at every speed and number of terms.
+/// Processors with and without wide registers give the same bits, at every speed and number of terms.
 #[test]
 fn both_kinds_of_processors_give_the_same_bits() {
     let (ticks, mut random) = (Ticks::new(MOTOR, 1.0 / 16_000.0), servobench_testkit::Random::seeded(19));
     for k in 0..4000 {
         let mut signed = |size: f64| size * random.signed();
-        // Up to what the table holds for, and beyond.
+        // Up to the limit of the table, and beyond.
         let omega_e = signed([300.0, 1000.0, 2500.0, 6000.0, 50_000.0][k % 5]);
         let current = Dq { d: signed(20.0), q: signed(20.0) };
         let voltage = AlphaBeta { alpha: signed(300.0), beta: signed(300.0) };

@@ -7,12 +7,12 @@
 //! i_{k+1} = i_k + h/2·(K_1 + K_2)         mean of a power over the tick = (P_1 + P_2)/2
 //! ```
 //! Of fourth order at constant speed and stable for every tick. Gauss methods keep quadratic invariants: the change of ¾·iᵀ·L·i is h times
-//! the mean of the powers of the stages to the rounding, so that no power is lost in a tick however long it is. Where the speed changes
-//! in a tick its mean takes its place: second order, as for the motor without harmonics. Source: Hairer, Lubich and Wanner, *Geometric
+//! the mean of the powers of the stages to the rounding, so that no power is lost in a tick however long it is. If the speed changes
+//! in a tick, its mean is used: second order, as for the motor without harmonics. Source: Hairer, Lubich and Wanner, *Geometric
 //! Numerical Integration*, 2nd ed., ch. II.1 and IV.2.
 //!
-//! The time is divided so that a harmonic turns by at most half a radian and the current decays by at most a quarter in a part: what
-//! a part leaves out is below (1/2)⁵/4320 of a harmonic and (1/4)⁵/720 of a transient.
+//! The time is divided so that a harmonic turns by at most half a radian and the current decays by at most a quarter in a part: the
+//! error of a part is below (1/2)⁵/4320 of a harmonic and (1/4)⁵/720 of a transient.
 use super::Params;
 use super::flux_harmonics::{Flux, FluxHarmonic};
 use super::gauss::{self, STAGES, WEIGHTS, solved};
@@ -23,18 +23,18 @@ use servobench_base::{Dq, Rotation};
 /// A motor whose equations change with the angle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Varying<'a> {
-    /// With its resistance and flux linkage at this tick.
+    /// Parameters with the resistance and flux linkage at this tick.
     pub(super) params: &'a Params,
     pub(super) harmonics: &'a [FluxHarmonic],
     pub(super) phases: &'a PhaseMatrix,
-    /// Resistance before each phase that is not the motor's own (Ω).
+    /// Resistance before each phase, outside the motor (Ω).
     pub(super) series: f64,
 }
 
 /// The equations at a stage.
 struct Stage {
     u: Dq,
-    /// What devices have taken of it.
+    /// Drop of the devices before it.
     drop: Dq,
     flux: Flux,
     resistance: Entries,

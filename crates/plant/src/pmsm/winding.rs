@@ -1,15 +1,14 @@
-//! What the winding of a motor goes through between two changes of its voltage, whoever makes them: a whole tick, or from edge to edge of
-//! an inverter that switches.
+//! The winding of a motor between two changes of its voltage: over a whole tick, or from edge to edge of a switching inverter.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::{Input, Output, Power, State};
 use servobench_base::{AlphaBeta, Dq, Rotation};
 
-/// Some time at constant speed on a voltage that stands in the stator frame.
+/// A time at constant speed on a voltage that is constant in the stator frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
-    /// At the terminals (V, peak, phase to neutral).
+    /// Voltage at the terminals (V, peak, phase to neutral).
     pub(crate) voltage: AlphaBeta,
-    /// What devices have taken of it before, for its work alone (V).
+    /// Drop of the devices before the terminals, for its work alone (V).
     pub(crate) drop: AlphaBeta,
     /// Rotor at the beginning.
     pub(crate) rotor: Rotation,
@@ -19,7 +18,7 @@ pub(crate) struct Span {
     pub(crate) time: f64,
 }
 
-/// Means over some time, times that time, in amplitudes of dq; they are added up. 3/2 of each is that of the three phases.
+/// Means over a time, times that time, in amplitudes of dq; they are added up. 3/2 of each is that of the three phases.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Sums {
     /// Torque, per pole pair.
@@ -30,7 +29,7 @@ pub(crate) struct Sums {
     pub(crate) square: f64,
     /// Work of the voltage.
     pub(crate) work: f64,
-    /// Work of what the devices have taken.
+    /// Work of the drop of the devices.
     pub(crate) other: f64,
 }
 
@@ -61,15 +60,15 @@ impl Sums {
         Self { torque: f64::NAN, copper: f64::NAN, square: f64::NAN, work: f64::NAN, other: f64::NAN };
 }
 
-/// A winding that can be followed through any time.
+/// A winding that can be advanced by any time.
 pub(crate) trait Winding {
-    /// The current at the end of `over`, which begins with `i` (A, peak). What happens goes to `sums`; without `POWER` the torque alone.
+    /// The current at the end of `over`, which begins with `i` (A, peak). Results are added to `sums`; without `POWER` the torque alone.
     fn advance<const POWER: bool>(&self, i: Dq, over: &Span, sums: &mut Sums) -> Dq;
 
     /// Electrical angle per motor coordinate.
     fn electrical_ratio(&self) -> f64;
 
-    /// Energy that the field has more with the current `after` than with `before` (J).
+    /// Increase of the field energy from the current `before` to `after` (J).
     fn stored(&self, before: Dq, after: Dq) -> f64;
 
     /// Advances the currents by a tick of `h` (s) and returns mean torque and powers.
@@ -81,7 +80,7 @@ pub(crate) trait Winding {
     }
 }
 
-/// Energy (J) that the field of constant inductances `l` (H) has more with `after` than with `before`: of Δ(i²) = Δi·(i + i + Δi), which keeps
+/// Increase (J) of the field energy of constant inductances `l` (H) from `before` to `after`: by Δ(i²) = Δi·(i + i + Δi), which keeps
 /// the digits of Δi.
 #[inline(always)]
 pub(super) fn stored(l: Dq, before: Dq, after: Dq) -> f64 {

@@ -22,27 +22,27 @@ pub(super) struct Synchronous {
     state: pmsm::State,
     /// DC-link voltage (V).
     u_dc: f64,
-    /// Motor speed a tick ago (rad/s), to tell the mean over the coming tick.
+    /// Motor speed a tick ago (rad/s), for the mean over the coming tick.
     last_speed: f64,
     /// Rotor at this tick.
     #[state(derived)]
     rotor: KnownRotation,
-    /// Whether the inverter gives less voltage than it is asked for.
+    /// True if the inverter gives less voltage than requested.
     shortens: bool,
-    /// What the inverter gives over the coming tick, as the rotor meets it in the middle of the tick (V, peak).
+    /// Voltage of the inverter over the coming tick, in the frame of the rotor in the middle of the tick (V, peak).
     voltage: Dq,
-    /// Mean powers of the motor over the tick, where they are wanted.
+    /// Mean powers of the motor over the tick, unless they are left out.
     power: Option<pmsm::Power>,
-    /// What the motor does beside its equations.
+    /// Effects of the motor beside its equations.
     #[state(fixed)]
     effects: Option<Box<pmsm::RealMotor>>,
-    /// What inverter and link do beside giving the voltage that they are asked for.
+    /// Effects of inverter and link; `None` for ideal ones.
     #[state(fixed)]
     inverter: Option<Box<RealInverter>>,
-    /// The current sensors, where they err.
+    /// The current sensors, if they have errors.
     #[state(fixed)]
     sensor: Option<Box<CurrentSensorState>>,
-    /// The cable, where it is not as it should be.
+    /// The cable, if it has faults.
     #[state(fixed)]
     cable: Option<Box<Cable>>,
 }
@@ -70,7 +70,7 @@ impl Synchronous {
         })
     }
 
-    /// The same, in ticks of `h` (s), with a motor that has `effects`.
+    /// Adds `effects` to the motor, in ticks of `h` (s).
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -84,7 +84,7 @@ impl Synchronous {
         Ok(Self { motor, effects: real, ..self })
     }
 
-    /// On an inverter and a link that are like this, in ticks of `h` (s), after the motor has its effects.
+    /// Sets the parameters of inverter and link, in ticks of `h` (s), after the motor has its effects.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter of them that is out of its bound.
@@ -102,10 +102,10 @@ impl Synchronous {
         self.sensor = Some(Box::new(sensor));
     }
 
-    /// Behind a cable that is like this.
+    /// Puts the motor behind a cable with this wiring.
     ///
     /// # Errors
-    /// [`ParamError`] names the parameter of it that is out of its bound, or a phase that is lost by a motor that saturates.
+    /// [`ParamError`] names its parameter that is out of its bound, or a lost phase of a motor that saturates.
     pub(super) fn put_behind(&mut self, wiring: Wiring) -> Result<(), ParamError> {
         if let (Some((_, at)), true) = (wiring.open, self.effects.as_ref().is_some_and(|real| real.saturates())) {
             return Err(ParamError {
@@ -118,7 +118,7 @@ impl Synchronous {
         Ok(())
     }
 
-    /// Brings the rotor to `motor`, and gives its electrical angle.
+    /// Turns the rotor to `motor`, and returns its electrical angle.
     #[inline(always)]
     pub(super) fn turn_to(&mut self, motor: BodyState) -> ElectricalAngle {
         let angle = ElectricalAngle::from_mechanical(motor.position, self.motor.params().electrical_ratio);
@@ -126,7 +126,7 @@ impl Synchronous {
         angle
     }
 
-    /// Brings the rotor to `motor`, and gives the stator current as the drive's sensors see it (A, peak).
+    /// Turns the rotor to `motor`, and returns the stator current measured by the drive's sensors (A, peak).
     #[inline(always)]
     pub(super) fn measured_current(&mut self, motor: BodyState) -> AlphaBeta {
         let angle = self.turn_to(motor);
@@ -140,7 +140,7 @@ impl Synchronous {
         }
     }
 
-    /// Rotor when the current was measured last.
+    /// Rotor at the last measurement of the current.
     #[inline(always)]
     pub(super) const fn rotor(&self) -> KnownRotation {
         self.rotor
@@ -157,37 +157,37 @@ impl Synchronous {
         self.state.current = current;
     }
 
-    /// Whether the inverter gave less voltage than it was asked for at the last tick.
+    /// True if the inverter gave less voltage than requested at the last tick.
     #[inline(always)]
     pub(super) const fn shortens(&self) -> bool {
         self.shortens
     }
 
-    /// What the inverter gives over the last tick that was advanced (V, peak).
+    /// Voltage of the inverter over the last tick that was advanced (V, peak).
     #[inline(always)]
     pub(super) const fn voltage(&self) -> Dq {
         self.voltage
     }
 
-    /// Mean powers over that tick (W); zero where nobody wants them.
+    /// Mean powers over that tick (W); zero if they are left out.
     #[inline(always)]
     pub(super) fn power(&self) -> pmsm::Power {
         self.power.unwrap_or_default()
     }
 
-    /// Temperatures at this tick; zero where nothing warms up.
+    /// Temperatures at this tick; zero without warming.
     #[inline(always)]
     pub(super) fn temperatures(&self) -> pmsm::Temperatures {
         self.effects.as_ref().and_then(|effects| effects.temperatures()).unwrap_or_default()
     }
 
-    /// Mean loss of the inverter over that tick (W); zero where nobody wants it.
+    /// Mean loss of the inverter over that tick (W); zero if left out.
     #[inline(always)]
     pub(super) fn inverter_loss(&self) -> f64 {
         self.inverter.as_ref().map_or(0.0, |inverter| inverter.loss())
     }
 
-    /// Length of the current over that tick; zero where no inverter switches.
+    /// Length of the current over that tick; zero without a switching inverter.
     #[inline(always)]
     pub(super) fn ripple(&self) -> inverter::Ripple {
         self.inverter.as_ref().map_or_else(inverter::Ripple::default, |inverter| inverter.ripple())
@@ -199,7 +199,7 @@ impl Synchronous {
         (self.u_dc, self.inverter.as_ref().map_or_else(inverter::LinkPower::default, |inverter| inverter.link_power()))
     }
 
-    /// Whether the link has less than half of its voltage without load (assumed: drives give up somewhere between half and three quarters).
+    /// True if the link has less than half of its voltage without load (assumed: drives trip somewhere between half and three quarters).
     #[inline(always)]
     pub(super) fn link_has_collapsed(&self) -> bool {
         self.inverter
@@ -214,7 +214,7 @@ impl Synchronous {
         }
     }
 
-    /// Goes from tick k to k+1 (`h` s) with the voltage `wanted` of the inverter and returns the mean effort over it (N·m or N).
+    /// Advances from tick k to k+1 (`h` s) with the voltage `wanted` of the inverter and returns the mean effort over it (N·m or N).
     #[inline(always)]
     pub(super) fn advance(&mut self, wanted: AlphaBeta, motor: BodyState, h: f64) -> f64 {
         let mean_speed = self.mean_speed(motor);
@@ -234,15 +234,15 @@ impl Synchronous {
         }
     }
 
-    /// Mean speed of the coming tick: straight on from the last two ticks, of second order.
+    /// Mean speed of the coming tick: extrapolated from the last two ticks, of second order.
     #[inline(always)]
     fn mean_speed(&self, motor: BodyState) -> f64 {
         motor.velocity + (motor.velocity - self.last_speed) / 2.0
     }
 
-    /// The power goes off, for a tick of `h` (s); gives the mean effort of the motor over it. The current is gone within the tick, which
-    /// takes a real inverter some milliseconds, and its energy back in the DC link; no current flows back as long as the back-EMF is below
-    /// the DC link.
+    /// Switches the power off for a tick of `h` (s); returns the mean effort of the motor over it. The current is gone within the tick,
+    /// which takes a real inverter some milliseconds, and its energy back in the DC link; no current flows back as long as the back-EMF is
+    /// below the DC link.
     #[inline(always)]
     pub(super) fn switch_off(&mut self, motor: BodyState, h: f64) -> f64 {
         let (params, current) = (self.motor.params(), self.state.current);

@@ -3,13 +3,13 @@
 //! ```text
 //! i_m = quantised((1 + g)·i(t − s) + o + noise)  of the phases a and b      i_c = −(i_a + i_b)
 //! ```
-//! sampled at each cycle of the current loop, and told `delay` cycles later. With the current loop fast enough to hold what
-//! it measures at its reference, the motor has the error with the opposite sign:
+//! sampled at each cycle of the current loop, and reported `delay` cycles later. If the current loop is fast enough to hold
+//! the measured current at its reference, the motor has the error with the opposite sign:
 //!
 //! - Offsets o_a, o_b are a vector that stands in the stator, of length (2/√3)·√(o_a² + o_a·o_b + o_b²): torque at f_e.
 //! - Gain errors g_a, g_b turn a current I into itself times (g_a + g_b)/2 and a vector of length I·|g_a − g_b|/√3 that turns
 //!   against the rotor: torque at 2·f_e. The true currents are those of 1/(1 + g) − 1 in place of g.
-//! - What is `τ` old is found behind by ω_e·τ: the motor's current leads that which is measured by this angle.
+//! - A delay of `τ` leaves the measured current behind by ω_e·τ: the motor's current leads the measured one by this angle.
 //!
 //! Source: Chung and Sul, *Analysis and Compensation of Current Measurement Error in Vector-Controlled AC Motor Drives*, IEEE
 //! Transactions on Industry Applications 34(2), 1998. The formulas are derived again in docs/sensors.md.
@@ -49,9 +49,9 @@ const MOST_CYCLES: u32 = 2;
 /// Two sensors, on the phases a and b.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CurrentSensor {
-    /// What they read at no current (A).
+    /// Readings without current (A).
     pub offset: [f64; 2],
-    /// Share by which they read too much.
+    /// Relative gain errors, positive for too large readings.
     pub gain_error: [f64; 2],
     /// Noise of each sample (A, effective).
     pub noise: f64,
@@ -59,9 +59,9 @@ pub struct CurrentSensor {
     pub seed: u32,
     /// Converter; `None` for one without steps and range.
     pub converter: Option<Converter>,
-    /// Cycles of the current loop after which a sample is told.
+    /// Delay of a sample, in cycles of the current loop.
     pub delay: u32,
-    /// How long before the tick it is taken (s), less than a tick.
+    /// Sampling time before the tick (s), less than a tick.
     pub shift: f64,
 }
 
@@ -85,20 +85,20 @@ impl Converter {
 }
 
 impl CurrentSensor {
-    /// As late as it is, and with its gains; without offsets, noise, steps and range.
+    /// The sensor with its delays and gains alone: without offsets, noise, steps and range.
     #[must_use]
     pub fn linearised(&self) -> Self {
         let Self { offset: _, gain_error, noise: _, seed: _, converter: _, delay, shift } = *self;
         Self { gain_error, delay, shift, ..Self::default() }
     }
 
-    /// True where both read the same share of their phase and nothing else, so that the vector is read by that share.
+    /// True if both have the same gain error and no others, so that it applies to the vector.
     fn errs_alike(&self) -> bool {
         let Self { offset, gain_error: [a, b], noise, seed: _, converter, delay: _, shift: _ } = *self;
         offset.iter().all(|offset| *offset == 0.0) && a.to_bits() == b.to_bits() && noise == 0.0 && converter.is_none()
     }
 
-    /// In ticks of `h` (s).
+    /// Checks the parameters in ticks of `h` (s).
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -131,7 +131,7 @@ impl CurrentSensor {
     }
 }
 
-/// The sensors at work: their state from tick to tick.
+/// Current sensors at work: their state from tick to tick.
 #[derive(Debug, Clone, Stateful)]
 pub(crate) struct State {
     #[state(constant)]
@@ -150,7 +150,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Before the first tick; the current loop turns every `every` ticks of `h` (s).
+    /// The state before the first tick; the current loop runs every `every` ticks of `h` (s).
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -167,8 +167,8 @@ impl State {
         })
     }
 
-    /// What the drive is told at this tick, at which the `current` is that of a rotor at `angle`, whose rotation is `rotor`. To
-    /// be called once at each tick. Until there is a sample that is old enough it is the first one.
+    /// Current reported to the drive at this tick; `current` is the true one of a rotor at `angle`, whose rotation is `rotor`. To
+    /// be called once at each tick. Before a sample is old enough, the first one is reported.
     #[inline(always)]
     pub(crate) fn read(&mut self, current: Dq, angle: ElectricalAngle, rotor: Rotation) -> AlphaBeta {
         if self.turn.is_due(self.every) {
@@ -180,7 +180,7 @@ impl State {
         self.samples[self.params.delay as usize]
     }
 
-    /// Not inlined into the tick, whose registers it would take.
+    /// Not inlined into the tick, whose registers it would occupy.
     #[inline(never)]
     fn sample(&self, current: Dq, angle: ElectricalAngle, rotor: Rotation) -> AlphaBeta {
         let p = &self.params;
@@ -237,7 +237,7 @@ mod tests {
         State::new(params, every(ticks), H).unwrap()
     }
 
-    /// Of a vector of 3.7 A that turns by `turn` per tick, at tick `k`.
+    /// Reading of a vector of 3.7 A that turns by `turn` per tick, at tick `k`.
     fn read(sensor: &mut State, turn: f64, k: u32) -> AlphaBeta {
         let angle = ElectricalAngle(turn * f64::from(k) + 0.3);
         sensor.read(Dq { d: 0.0, q: 3.7 }, angle, angle.rotation())
@@ -287,7 +287,7 @@ mod tests {
         }
     }
 
-    /// Oracle: q²/12 of a uniform error, in both phases; the converter's steps are small against the current, whose turns are no
+    /// Oracle: q²/12 of a uniform error, in both phases; the converter's steps are small against the current, whose turns are not a
     /// fraction of its ticks. The variance of a sum of n squares of uniform errors is known to √(4/5)/√n: five times that allowed.
     #[test]
     fn a_step_makes_a_twelfth_of_its_square() {
@@ -351,7 +351,7 @@ mod tests {
         }
     }
 
-    /// The interpolation is of second order: where the current is no straight line, half the tick leaves a quarter of the error.
+    /// The interpolation is of second order: if the current is not linear, half the tick leaves a quarter of the error.
     #[test]
     fn a_shift_is_of_second_order_in_the_tick() {
         let error = |ticks_per_second: f64| {

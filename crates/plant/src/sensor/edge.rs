@@ -1,32 +1,32 @@
-//! The last edge of an encoder: when its signals passed from one increment to the next.
+//! The last edge of an encoder: the time at which its signals passed from one increment to the next.
 //!
 //! ```text
 //! edges at (n + 1/2)·q      time since one between two ticks: h·(s(k) − s_e)/(s(k) − s(k−1))
 //! ```
-//! s is what the increments are taken of, with all errors before them. Between two ticks it is a line, which is exact at constant speed;
-//! an acceleration a moves the edge by up to a·h²/8 of position: of second order in the tick.
+//! s is the position that is counted in increments, with all errors before that. Between two ticks it is a line, which is exact at constant
+//! speed; an acceleration a moves the edge by up to a·h²/8 of position: of second order in the tick.
 
 use servobench_base::Stateful;
 /// The last edge.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Edge {
-    /// How long ago it was (s).
+    /// Time since the edge (s).
     pub age: f64,
-    /// Where it was, from the position that is read on: half an increment in one direction or the other.
+    /// Position of the edge relative to the reading: half an increment in one direction or the other.
     pub offset: f64,
 }
 
-/// Times edges; its state from tick to tick.
+/// Timing of edges; its state from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct Timing {
-    /// Position at the last tick, and the increment that was read of it.
+    /// Position at the last tick, and the increments that were read then.
     last: Option<(f64, f64)>,
     edge: Option<Edge>,
 }
 
 impl Timing {
-    /// The last edge at a tick, `h` (s) after the last one, at which the position is `position` and `count` increments of `step` are
-    /// read; none before the first one.
+    /// The last edge at a tick, `h` (s) after the last one, with the position `position` and the reading of `count` increments of
+    /// `step`; none before the first one.
     pub(super) fn read(&mut self, position: f64, count: f64, step: f64, h: f64) -> Option<Edge> {
         if let Some(edge) = &mut self.edge {
             edge.age += h;
@@ -68,7 +68,7 @@ mod tests {
         [worst, (squares / f64::from(found)).sqrt()]
     }
 
-    /// Oracle: x = v·t passes a border b at b/v, exactly but for roundings, in both directions and at any number of edges per tick.
+    /// Oracle: x = v·t passes a border b at b/v, exactly except for roundings, in both directions and at any number of edges per tick.
     #[test]
     fn edges_of_a_constant_speed_are_timed_exactly() {
         for v in [0.731, -3.3, 27.9, -313.7] {
@@ -87,7 +87,7 @@ mod tests {
             error(|t| v * t + a * t * t / 2.0, instant, h, 0.3)
         };
         let ([worst, coarse], [_, fine]) = (found(1e-4), found(5e-5));
-        // Effective values: where within a tick an edge falls is another chance at every step.
+        // Effective values: the place of an edge within a tick is random at every step.
         let order = (coarse / fine).log2();
         assert!((order - 2.0).abs() < 0.05, "{order}");
         let bound = a * 1e-8 / (8.0 * v);

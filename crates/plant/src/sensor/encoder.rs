@@ -1,16 +1,16 @@
 //! Position encoder: ideal, with a resolution, or with the errors of a real one.
 //!
 //! ```text
-//! x of then → eccentricity → signals → zero → noise → increments → turns
+//! x at the earlier time → eccentricity → signals → zero → noise → increments → turns
 //! ```
-//! - **Latency**: x is the position of `latency` ago.
+//! - **Latency**: x is the position a time `latency` earlier.
 //! - **Eccentricity** of a disc, e off its centre, that is read at radius r by one head: θ + (e/r)·sin(θ − θ₀).
 //! - **Signals**: the errors of a sine and a cosine, see [`Signals`].
 //! - **Zero** and **noise** are added; the noise is that of one reading, white and Gaussian.
 //! - **Increments**: the nearest one, an error of variance q²/12 where the motion passes many.
-//! - **Turns**: an absolute encoder counts 2ⁿ of them and begins again.
+//! - **Turns**: an absolute encoder counts 2ⁿ of them and starts again.
 //!
-//! An ideal encoder gives the velocity, too; one that errs does so while only zero, turns or commutation do.
+//! An ideal encoder also gives the velocity; one with errors does so if these are only zero, turns or commutation.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::edge::{Edge, Timing};
 use super::latency::Past;
@@ -77,26 +77,26 @@ pub struct EncoderErrors {
     pub signals: Signals,
     /// Eccentricity of the disc (m).
     pub eccentricity: f64,
-    /// Radius at which the disc is read (m); of no meaning without eccentricity.
+    /// Radius at which the disc is read (m); meaningless without eccentricity.
     pub radius: f64,
     /// Angle at which the eccentricity makes no error (rad).
     pub eccentricity_angle: f64,
-    /// What it reads at zero (rad or m). The drive knows it for its commutation, but takes the axis to be there.
+    /// Reading at zero (rad or m). The drive knows it for its commutation, but takes the axis to be there.
     pub zero: f64,
-    /// By how much the commutation of the drive is off (rad or m).
+    /// Commutation error of the drive (rad or m).
     pub commutation: f64,
     /// Noise of each reading (rad or m, effective).
     pub noise: f64,
     /// Seed of the noise.
     pub seed: u32,
-    /// How old the position is that is read (s).
+    /// Age of the position that is read (s).
     pub latency: f64,
-    /// Travel after which an absolute encoder begins again at zero (rad).
+    /// Travel after which an absolute encoder starts again at zero (rad).
     pub range: Option<f64>,
 }
 
 impl EncoderErrors {
-    /// Whether anything errs.
+    /// True if there is any error.
     #[must_use]
     pub fn errs(&self) -> bool {
         let Self { signals, radius, eccentricity_angle, seed, .. } = *self;
@@ -104,7 +104,7 @@ impl EncoderErrors {
         *self != Self { signals, radius, eccentricity_angle, seed, ..Self::default() }
     }
 
-    /// Part that the linear loop has. Every field is named here: a new one does not compile until it is decided.
+    /// The part in the linear loop. Every field is named here: a new one does not compile until its treatment is decided.
     fn linearised(&self) -> Self {
         let Self {
             signals: _,
@@ -121,24 +121,24 @@ impl EncoderErrors {
         Self { commutation, latency, ..Self::default() }
     }
 
-    /// Whether what it reads is the motion of its body, but for a constant.
+    /// True if the reading is the motion of its body, except for a constant.
     fn is_faithful(&self) -> bool {
         !self.signals.errs() && self.eccentricity == 0.0 && self.noise == 0.0 && self.latency == 0.0
     }
 }
 
-/// What an encoder tells the drive at tick k.
+/// Reading of an encoder for the drive at tick k.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Reading {
     /// Position (rad or m).
     pub position: f64,
     /// Velocity (rad/s or m/s), from an ideal encoder only; otherwise the drive forms differences.
     pub velocity: Option<f64>,
-    /// What the drive adds to the position for its commutation, if anything (rad or m).
+    /// Offset that the drive adds to the position for its commutation, if any (rad or m).
     pub to_rotor: Option<f64>,
-    /// Its last edge, where edges are timed and there has been one.
+    /// The last edge, if edges are timed and there was one.
     pub edge: Option<Edge>,
-    /// Whether the encoder has found that its signals cannot be trusted; it stays.
+    /// True if the encoder has found that its signals cannot be trusted; it latches.
     pub error: bool,
 }
 
@@ -172,28 +172,28 @@ impl Encoder {
         Ok(())
     }
 
-    /// As late as it is, and with the commutation that is off by as much; without increments, noise and errors that repeat. Where the
-    /// one that it stands for gives positions alone, so must it be read.
+    /// The encoder with its latency and commutation error alone: without increments, noise and periodic errors. If the
+    /// original gives positions only, the result must be read in the same way.
     #[must_use]
     pub fn linearised(&self) -> Self {
         let Self { increment: _, errors } = *self;
         Self { increment: None, errors: errors.as_ref().map(EncoderErrors::linearised) }
     }
 
-    /// Distance of two positions that it tells apart: an increment or, if that is wider, the error of its signals within a period; 0
-    /// of one that is ideal but for noise.
+    /// Distance of two positions that can be distinguished: an increment or, if that is wider, the error of its signals within a period; 0
+    /// for an encoder that is ideal except for noise.
     #[must_use]
     pub fn resolution(&self) -> f64 {
         self.increment.unwrap_or_default().max(self.errors.map_or(0.0, |errors| errors.signals.error_width()))
     }
 
-    /// Whether it gives the velocity, too.
+    /// True if it also gives the velocity.
     #[must_use]
     pub fn gives_velocity(&self) -> bool {
         self.increment.is_none() && self.errors.is_none_or(|errors| errors.is_faithful())
     }
 
-    /// Reads, to the nearest increment, `position` and `velocity` of the body it sits on, without errors.
+    /// Reads, to the nearest increment, `position` and `velocity` of its body, without errors.
     #[inline(always)]
     #[must_use]
     pub fn read(&self, position: f64, velocity: f64) -> Reading {
@@ -226,7 +226,7 @@ struct Erring {
     timing: Option<Timing>,
     #[state(constant)]
     gives_velocity: bool,
-    /// What the drive adds to the position for its commutation.
+    /// Offset that the drive adds to the position for its commutation.
     #[state(constant)]
     to_rotor: f64,
     /// Readings so far.
@@ -236,7 +236,7 @@ struct Erring {
 }
 
 impl EncoderState {
-    /// Before the first tick of `h` (s); each encoder of an axis has a `number` of its own, and with it its own noise.
+    /// The state before the first tick of `h` (s); each encoder of an axis has a separate `number`, and thereby separate noise.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -245,7 +245,7 @@ impl EncoderState {
         Ok(Self { encoder, erring: encoder.errors.map(|errors| Box::new(Erring::new(encoder, errors, number, h))) })
     }
 
-    /// The same, which also tells when its last edge was; only an encoder with increments has edges.
+    /// Adds the timing of edges; only an encoder with increments has them.
     #[must_use]
     pub fn with_timed_edges(self, number: u32, h: f64) -> Self {
         let encoder = self.encoder;
@@ -255,7 +255,7 @@ impl EncoderState {
         Self { encoder, erring: Some(erring) }
     }
 
-    /// Reads `body`, on which it sits. To be called once at each tick.
+    /// Reads its `body`. To be called once at each tick.
     #[inline(always)]
     pub fn read(&mut self, body: BodyState) -> Reading {
         match &mut self.erring {
@@ -264,7 +264,7 @@ impl EncoderState {
         }
     }
 
-    /// Whether it has errors.
+    /// True if it has errors.
     #[inline(always)]
     #[must_use]
     pub const fn errs(&self) -> bool {
@@ -287,7 +287,7 @@ impl Erring {
         }
     }
 
-    /// Not inlined into the tick, whose registers it would take.
+    /// Not inlined into the tick, whose registers it would occupy.
     #[inline(never)]
     fn read(&mut self, body: BodyState, increment: Option<f64>) -> Reading {
         let errors = &self.errors;
@@ -369,8 +369,8 @@ mod tests {
         BodyState { position, velocity: 3.0 }
     }
 
-    /// Oracle: the position of a line that is read at the radius r, off its centre by e, by geometry: (r·cos θ + e, r·sin θ) seen from
-    /// the centre of the disc turns by θ + (e/r)·sin θ to first order in e/r, with an error below (e/r)²/2.
+    /// Oracle: the position of a line that is read at the radius r, off its centre by e, by geometry: (r·cos θ + e, r·sin θ) turns
+    /// by θ + (e/r)·sin θ about the centre of the disc to first order in e/r, with an error below (e/r)²/2.
     #[test]
     fn eccentricity_is_an_error_once_per_turn() {
         let ratio = 6e-4;
@@ -390,8 +390,8 @@ mod tests {
         assert!((turned.read(at(0.4 + TAU / 4.0)).position - 0.4 - TAU / 4.0 - ratio).abs() < 1e-15);
     }
 
-    /// Oracle: q²/12 about the true position, and of the difference of two readings q²·f·(1 − f) with the fraction f of an increment
-    /// that is passed in between, whatever else: of a constant velocity the difference is one of two neighbours.
+    /// Oracle: q²/12 about the true position, and for the difference of two readings q²·f·(1 − f) with the fraction f of an increment
+    /// that is passed in between, in any case: at a constant velocity the difference is one of two neighbours.
     #[test]
     fn increments_make_a_twelfth_of_their_square_and_differences_of_neighbours() {
         let (step, many) = (1e-3, 200_000);

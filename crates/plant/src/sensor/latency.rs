@@ -1,7 +1,7 @@
-//! What a digital encoder tells is as old as its protocol makes it.
+//! Latency of a digital encoder: its readings are delayed by its protocol.
 //!
 //! Between two ticks the position is the cubic of Hermite through both positions and velocities: of fourth order in the tick, and
-//! exact under constant acceleration and constant jerk. Before the first tick the body is taken to have moved as it moves then.
+//! exact under constant acceleration and constant jerk. Before the first tick the body is taken to have moved with its initial velocity.
 use crate::mechanics::BodyState;
 use servobench_base::state::{Damaged, Reader, Stateful, Value as _, Writer};
 
@@ -12,13 +12,13 @@ pub(super) struct Past {
     states: Vec<BodyState>,
     newest: usize,
     is_begun: bool,
-    /// Whole ticks, and share of a tick, that it looks back.
+    /// Whole ticks of the latency; `share` is the rest, in ticks.
     ticks: usize,
     share: f64,
     h: f64,
 }
 
-/// Saved from the newest on: a number of the state is then as old at each tick.
+/// Saved from the newest on: each number of the state then has the same age at every tick.
 impl Stateful for Past {
     fn save(&self, to: &mut dyn Writer) {
         let Self { states, newest, is_begun, ticks: _, share: _, h: _ } = self;
@@ -37,7 +37,7 @@ impl Stateful for Past {
 }
 
 impl Past {
-    /// Looking back for `latency` (s) in ticks of `h` (s).
+    /// A memory for `latency` (s) in ticks of `h` (s).
     pub(super) fn new(latency: f64, h: f64) -> Self {
         let ticks = libm::floor(latency / h);
         let share = latency / h - ticks;
@@ -50,7 +50,7 @@ impl Past {
         Self { states: vec![BodyState::default(); ticks + 2], newest: 0, is_begun: false, ticks, share, h }
     }
 
-    /// Takes the state of this tick and gives the position of then.
+    /// Takes the state of this tick and returns the position `latency` earlier.
     pub(super) fn position(&mut self, now: BodyState) -> f64 {
         let count = self.states.len();
         if self.is_begun {
@@ -70,7 +70,7 @@ impl Past {
         self.between(back(self.ticks + 1), back(self.ticks))
     }
 
-    /// Before `after` by the share of a tick, and after `before` by the rest of it.
+    /// Position before `after` by the share of a tick, and after `before` by the rest of it.
     fn between(&self, before: BodyState, after: BodyState) -> f64 {
         if self.share == 0.0 {
             return after.position;

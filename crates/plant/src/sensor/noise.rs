@@ -1,14 +1,14 @@
 //! Gaussian noise by number: the n-th value of a stream follows from seed and n alone, whatever was drawn before.
 //!
 //! A 64-bit word of `SplitMix64` (Steele, Lea and Flood, OOPSLA 2014), whose n-th output is a mix of a counter, becomes a normal
-//! variate by the ziggurat of Marsaglia and Tsang (Journal of Statistical Software 5(8), 2000) with 256 layers of equal area: a look at a
-//! table for more than 98 % of the values. Where a value is not accepted at once, further words are those of a stream whose key is the first.
+//! variate by the ziggurat of Marsaglia and Tsang (Journal of Statistical Software 5(8), 2000) with 256 layers of equal area: a table
+//! look-up for more than 98 % of the values. If a value is not accepted at once, further words come from a stream whose key is the first.
 use std::sync::LazyLock;
 
 /// Weyl increment of `SplitMix64`: the odd number next to 2⁶⁴ over the golden ratio.
 const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
 const LAYERS: usize = 256;
-/// Where the tail begins, of 256 layers: Marsaglia and Tsang 2000.
+/// Beginning of the tail, with 256 layers: Marsaglia and Tsang 2000.
 const TAIL: f64 = 3.654_152_885_361_008_8;
 
 /// Right ends of the layers from the lowest on, and the heights of the density there.
@@ -26,7 +26,7 @@ fn density(x: f64) -> f64 {
 static ZIGGURAT: LazyLock<Layers> = LazyLock::new(|| {
     let half_turn = core::f64::consts::PI / 2.0;
     let area = TAIL * density(TAIL) + libm::sqrt(half_turn) * libm::erfc(TAIL * core::f64::consts::FRAC_1_SQRT_2);
-    // The lowest layer is as wide as its area, of which the tail is a part, makes it.
+    // The lowest layer is as wide as its area, which includes the tail, requires.
     let (mut ends, mut x) = ([area / density(TAIL); LAYERS + 1], TAIL);
     for end in &mut ends[1..LAYERS] {
         *end = x;
@@ -59,7 +59,7 @@ impl Noise {
         if word & 0x100 == 0 { x } else { -x }
     }
 
-    /// What becomes of `x`, which is beyond the part of its layer that is below the density throughout.
+    /// Completes the value of `x`, which is beyond the part of its layer that is below the density throughout.
     #[cold]
     fn other(self, first: u64, layer: usize, x: f64) -> f64 {
         let Layers { ends, heights } = self.layers;
@@ -102,7 +102,7 @@ const fn mix(word: u64) -> u64 {
     word ^ word >> 31
 }
 
-/// A number between 0 and 1, never one of them, of the upper 52 bits of `word`; the lower ones choose layer and sign.
+/// A number between 0 and 1, exclusive, from the upper 52 bits of `word`; the lower ones choose layer and sign.
 #[inline]
 fn unit(word: u64) -> f64 {
     ((word >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
@@ -130,7 +130,7 @@ mod tests {
             // The top gathers the roundings of 255 layers.
             assert!((found / area - 1.0).abs() < 1e-9, "{layer}: {found} {area}");
         }
-        // Their programs have it to ten digits.
+        // Their programs give it to ten digits.
         assert!((area / 0.004_928_673_233_99 - 1.0).abs() < 1e-10, "{area}");
         let at_once = ends.windows(2).map(|layer| layer[1] / layer[0]).sum::<f64>() / LAYERS as f64;
         assert!((0.98..0.99).contains(&at_once), "{at_once}");

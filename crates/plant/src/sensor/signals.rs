@@ -1,9 +1,9 @@
-//! The two signals of a sine–cosine encoder and the angle that is read of them.
+//! The two signals of a sine–cosine encoder and the angle that is read from them.
 //!
 //! ```text
 //! φ = 2π·x/P      A = (1 + a)·cos φ + o_A      B = sin(φ + ε) + o_B      φ_m = atan2(B, A)
 //! ```
-//! The position read is that of the signal period in which x is, which the evaluation counts, and φ_m within it. Errors repeat
+//! The position read is that of the signal period of x, which the evaluation counts, and φ_m within it. Errors repeat
 //! with the period, to first order (Heydemann, *Determination and correction of quadrature fringe measurement errors in
 //! interferometers*, Applied Optics 20(19), 1981):
 //!
@@ -13,9 +13,9 @@
 //! | offset o | P/(2π)·o, once per period | asin(o) |
 //! | phase ε | P/(4π)·ε, twice per period, about a mean of P/(4π)·ε | asin(tan(ε/2)) about ε/2 |
 //!
-//! A track that is lost has no amplitude any more: what is left cannot be counted, and the position stays within the period in
-//! which that happened. The evaluation monitors the length of (A, B), which is 1 without errors: an error bit is set where it
-//! leaves 0.5 to 1.5 (assumed: bounds differ from one evaluation to the next) and stays.
+//! A lost track has no amplitude: the rest cannot be counted, and the position stays within the period in
+//! which that happened. The evaluation monitors the length of (A, B), which is 1 without errors: an error bit is set when it
+//! leaves 0.5 to 1.5 (assumed: bounds differ from one evaluation to the next) and stays set.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use super::turn;
 use core::f64::consts::TAU;
@@ -34,19 +34,19 @@ servobench_config::choices! {
 /// Signals of a sine–cosine encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Signals {
-    /// Signal period (rad or m); of no meaning while nothing errs with it.
+    /// Signal period (rad or m); meaningless without periodic errors.
     pub period: f64,
-    /// Share by which the amplitude of the cosine is larger than that of the sine.
+    /// Excess of the cosine's amplitude over that of the sine, as a share.
     pub amplitude_error: f64,
     /// Offsets of cosine and sine, as shares of the amplitude.
     pub offset: [f64; 2],
-    /// By how much the sine is more than a right angle from the cosine (rad, electrical).
+    /// Excess over a right angle of the sine from the cosine (rad, electrical).
     pub phase_error: f64,
-    /// A track that fails, and when (s).
+    /// A track that fails, and the time of failure (s).
     pub lost: Option<(Track, f64)>,
 }
 
-/// Lengths of (A, B) within which the evaluation has no objection.
+/// Lengths of (A, B) that the evaluation accepts.
 const MONITORED: core::ops::RangeInclusive<f64> = 0.5..=1.5;
 
 const PER_TURN: f64 = 1.0 / TAU;
@@ -62,14 +62,14 @@ impl Signals {
         Self { period, amplitude_error: 0.0, offset: [0.0; 2], phase_error: 0.0, lost: None }
     }
 
-    /// Whether anything errs with their period.
+    /// True if there is any error that repeats with their period.
     #[must_use]
     pub fn errs(&self) -> bool {
         *self != Self::ideal(self.period)
     }
 
     /// Width, from lowest to highest, of the error of the position within a signal period (rad or m), to first order in the errors;
-    /// at most, since those once and twice per period need not add.
+    /// an upper bound, since those once and twice per period need not add.
     #[must_use]
     pub fn error_width(&self) -> f64 {
         let twice = libm::hypot(self.amplitude_error, self.phase_error);
@@ -77,7 +77,7 @@ impl Signals {
     }
 
     /// # Errors
-    /// [`ParamError`] for errors with which the signals do not go round zero any more.
+    /// [`ParamError`] for errors with which the signals no longer circle zero.
     pub(super) fn check(&self) -> Result<(), ParamError> {
         // The shortest vector of the ellipse, less the offset.
         let shortest = (1.0 + self.amplitude_error).min(1.0) * libm::cos(self.phase_error);
@@ -105,7 +105,7 @@ pub(super) struct Evaluation {
     last: f64,
     /// Period in which a track was lost.
     held: Option<f64>,
-    /// Whether the amplitude has been objected to.
+    /// True once the amplitude has been rejected.
     alarm: bool,
 }
 
@@ -115,7 +115,7 @@ impl Evaluation {
         Self { signals, per_period, skew: libm::sincos(signals.phase_error), last: 0.0, held: None, alarm: false }
     }
 
-    /// What is read of the true position `x` at the time `t` (s).
+    /// Reading of the true position `x` at the time `t` (s).
     #[inline(always)]
     pub(super) fn read(&mut self, x: f64, t: f64) -> f64 {
         let Signals { amplitude_error, offset, lost, .. } = self.signals;
@@ -132,7 +132,7 @@ impl Evaluation {
             let read = libm::atan2(b, a) * PER_TURN;
             read + *self.held.get_or_insert(turn::whole(self.last - read))
         } else {
-            // The angle between what is read and what is there: within half a period, and a small one.
+            // The angle between reading and true position: within half a period, and small.
             let (across, along) = (b * rotation.cos - a * rotation.sin, a * rotation.cos + b * rotation.sin);
             periods + libm::atan2(across, along) * PER_TURN
         };
@@ -140,7 +140,7 @@ impl Evaluation {
         found * self.signals.period
     }
 
-    /// Whether the amplitude of the signals has been objected to.
+    /// True once the amplitude of the signals has been rejected.
     pub(super) const fn alarm(&self) -> bool {
         self.alarm
     }
@@ -190,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Oracle: the errors themselves. Of one kind the width is that of the first order; together it is an upper bound, by a third at most.
+    /// Oracle: the errors themselves. For one kind the width is that of the first order; together it is an upper bound, by a third at most.
     #[test]
     fn the_width_is_that_of_the_errors() {
         let none = Signals::ideal(PERIOD);
@@ -222,7 +222,7 @@ mod tests {
             }
             sum[0].hypot(sum[1])
         };
-        // What is left beyond the first order is of the size of the error.
+        // The remainder beyond the first order has the size of the error.
         let small = 0.01;
         let amplitude = Signals { amplitude_error: small, ..none };
         assert!((share(amplitude, 2.0) / (small / 2.0) - 1.0).abs() < small && share(amplitude, 1.0) < 1e-12);
@@ -245,7 +245,7 @@ mod tests {
         assert!(!evaluation.alarm());
     }
 
-    /// The position stays in its period however far the scale goes, and the amplitude tells.
+    /// The position stays in its period however far the scale moves, and the amplitude reports the loss.
     #[test]
     fn a_lost_track_is_not_counted_any_more() {
         for track in [Track::Sine, Track::Cosine] {

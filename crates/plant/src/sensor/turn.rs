@@ -3,14 +3,14 @@
 use core::f64::consts::TAU;
 use servobench_base::{ElectricalAngle, Rotation};
 
-/// The nearest whole number, below 2⁵¹: numbers from there on have no fraction, so that a sum with one is rounded.
+/// The nearest whole number, below 2⁵¹: larger numbers have no fraction, so that a sum with one is rounded.
 #[inline(always)]
 pub(super) fn whole(x: f64) -> f64 {
     const WHOLE: f64 = 1.5 / f64::EPSILON;
     x + WHOLE - WHOLE
 }
 
-/// The rotation by so many turns, of which whole ones and quarters are taken off without rounding.
+/// The rotation by `turns` turns, from which whole ones and quarters are subtracted without rounding.
 #[inline(always)]
 pub(super) fn rotation(turns: f64) -> Rotation {
     let quarters = whole(4.0 * turns);

@@ -55,7 +55,7 @@ fn devices_turn_threshold_and_resistance_into_heat() {
     assert!(of(&DEAD, at(0.4)).loss.abs() < 1e-15);
 }
 
-/// Motors from 16 Ω and 50 µH to 0.02 Ω and 5 mH, with what their devices have.
+/// Motors from 16 Ω and 50 µH to 0.02 Ω and 5 mH, with parameters of their inverters.
 fn motors() -> Vec<(pmsm::Params, Params, f64, f64)> {
     let motor = |resistance: f64, l: f64, flux_linkage: f64| pmsm::Params {
         electrical_ratio: 4.0,
@@ -101,14 +101,14 @@ fn run((motor, p, u_dc, current): &(pmsm::Params, Params, f64, f64), periods: f6
     means.map(|mean| mean / count)
 }
 
-/// What gives about that current at the speed `omega`.
+/// Voltage for about that current at the speed `omega`.
 fn wanted(motor: &pmsm::Params, p: &Params, u_dc: f64, current: f64, omega: f64) -> Dq {
     let error = 4.0 / PI * (p.device_drop + p.dead_time * p.carrier * u_dc);
     let needed = motor.steady_voltage(Dq { d: 0.0, q: current }, omega);
     Dq { d: needed.d, q: needed.q + error + p.on_resistance * current }
 }
 
-/// Oracle: steps so short that the winding is its inductance alone, against which three dry frictions act: the currents p that would be
+/// Oracle: steps so short that the winding is its inductance alone, against which three dry frictions act: the currents p without them
 /// are drawn to zero by E·dt/L, with the star point where they sum up to zero.
 fn tiny_steps(
     (motor, p, u_dc, current): &(pmsm::Params, Params, f64, f64),
@@ -130,7 +130,7 @@ fn tiny_steps(
             let rotor = ElectricalAngle(begin + omega * dt * (f64::from(n) + 0.5)).rotation();
             let emf = Dq { d: 0.0, q: omega * motor.flux_linkage }.to_alpha_beta(rotor);
             let r = motor.resistance + p.on_resistance;
-            // The implicit midpoint rule but for the error.
+            // The implicit midpoint rule, without the error.
             let (keep, gain) = ((l / dt - r / 2.0) / (l / dt + r / 2.0), 1.0 / (l / dt + r / 2.0));
             let free = legs(AlphaBeta {
                 alpha: keep * i.alpha + gain * (wanted.alpha - emf.alpha),
@@ -158,7 +158,7 @@ fn tiny_steps(
     means.map(|mean| mean / count)
 }
 
-/// From a speed at which currents stick at zero for a long time to half of that which the link allows.
+/// From a speed at which currents stick at zero for a long time to half of the largest speed on the link.
 #[test]
 fn losses_and_torque_are_those_of_tiny_steps() {
     for (n, motor) in motors().iter().enumerate() {

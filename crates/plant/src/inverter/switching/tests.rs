@@ -15,8 +15,8 @@ const U: f64 = 320.0;
 const IDEAL: Params = Params { modulation: Modulation::Switching, carrier: 16e3, ..Params::IDEAL };
 const REAL: Params = Params { dead_time: 2.3e-6, device_drop: 0.9, on_resistance: 0.06, ..IDEAL };
 
-/// At constant speed, in ticks of `h` (s), with a voltage of the rotor frame that is renewed every `every` ticks and meets the rotor in the
-/// middle of that time. `each` sees tick, current and what happened.
+/// At constant speed, in ticks of `h` (s), with a voltage of the rotor frame that is renewed every `every` ticks and is exact in the
+/// middle of that time. `each` gets tick, current and results.
 fn run(
     (p, motor, h): (&Params, &pmsm::Params, f64),
     (start, voltage, omega_e): (Dq, Dq, f64),
@@ -36,8 +36,8 @@ fn run(
     }
 }
 
-/// Oracle: the same edges in plain words – a list of times and rails of one period, made here from the duties, the dead time and the sign of
-/// the current – with the equations by Runge and Kutta's method of order 4 in many small steps.
+/// Oracle: the same edges by a plain list of times and rails of one period, made here from the duties, the dead time and the sign of
+/// the current, with the equations by Runge and Kutta's method of order 4 in many small steps.
 #[test]
 fn a_period_is_that_of_many_small_steps_between_the_same_edges() {
     for (p, omega) in [(&IDEAL, 700.0), (&REAL, -1300.0), (&REAL, 0.0)] {
@@ -159,13 +159,13 @@ fn the_mean_current_is_that_of_the_averaged_inverter() {
             let [found, expected] = sums;
             let error = (found.d - expected.d).hypot(found.q - expected.q) / expected.magnitude();
             println!("{carrier} Hz, {base} Hz, {omega} rad/s: {error:.1e}");
-            // 0.1 % is asked for. The pulses are spread over the period, in which the rotor turns: of second order in its angle.
+            // 0.1 % is required. The pulses are spread over the period, in which the rotor turns: of second order in its angle.
             assert!(error < 1e-3, "{carrier} Hz, {base} Hz, {omega} rad/s: {error}");
         }
     }
 }
 
-/// What 16 periods of the carrier of 16 kHz have, in `parts` ticks each: ripple by the ticks' own account, and of the instants at their ends.
+/// Ripple over 16 periods of the carrier of 16 kHz, in `parts` ticks each: by the ticks' own result, and from the instants at their ends.
 fn ripple<W: Winding>(
     p: &Params,
     motor: &pmsm::Params,
@@ -191,8 +191,8 @@ fn ripple<W: Winding>(
     [0, 1].map(|n| Ripple { peak: peaks[n], rms: (squares[n] / f64::from(periods * parts)).sqrt() })
 }
 
-/// Oracle: the same current at instants 125 ns apart. A tick that is a period knows of it what lies between its ends: with dead time and
-/// thresholds, in field weakening, on an inductance that is next to none, in iron that saturates, and with a phase that is lost.
+/// Oracle: the same current at instants 125 ns apart. A tick of one period accounts for the current between its ends: with dead time and
+/// thresholds, in field weakening, on a tiny inductance, in iron that saturates, and with a lost phase.
 #[test]
 fn a_tick_knows_the_ripple_between_its_ends() {
     let weak = pmsm::Params { resistance: 16.0, inductance: Dq { d: 50e-6, q: 50e-6 }, ..MOTOR };
@@ -228,14 +228,14 @@ fn a_tick_knows_the_ripple_between_its_ends() {
         });
         let [[found, sampled], [_, expected]] = both;
         println!("{name}: {found:.4?}, at ends {sampled:.4?}, of instants {expected:.4?}");
-        // Between two instants a current goes 125 ns·(2/3·320 V)/L, whose largest is not met: half of it in the mean.
+        // Between two instants a current changes by 125 ns·(2/3·320 V)/L, whose largest is missed: half of it in the mean.
         let step = 125e-9 * U / motor.inductance.d;
         assert!(found.peak > expected.peak - 1e-9 && found.peak < expected.peak + step, "{name}: {both:?}");
         assert!((found.rms / expected.rms - 1.0).abs() < 2e-3, "{name}: {both:?}");
     }
 }
 
-/// Ripple of the current vector on an inductance alone, a volt of link and a second of period and a henry being one: RMS of the vector over
+/// Ripple of the current vector on an inductance alone, with units of one for link voltage, period and inductance: RMS of the vector over
 /// a turn and largest peak-to-peak of phase a, from the piecewise voltages of the vectors themselves.
 fn integrated(modulation: f64) -> (f64, f64) {
     let (turns, steps) = (720, 4000);
@@ -270,7 +270,7 @@ fn closed_form(m: f64) -> f64 {
     (f / 288.0).sqrt()
 }
 
-/// Oracles: the closed form, and the voltages of the vectors integrated on an inductance. The current that is no ripple is next to nothing: the
+/// Oracles: the closed form, and the voltages of the vectors integrated on an inductance. The current besides the ripple is negligible: the
 /// voltage is the back-EMF.
 #[test]
 fn the_ripple_is_that_of_space_vector_modulation() {

@@ -46,7 +46,7 @@ fn without_effects_the_bits_are_those_of_a_motor_that_never_heard_of_them() {
     assert_eq!(bits(&ticks(plain)), bits(&ticks(stage(&Effects::default()))));
 }
 
-/// What cogs leaves the currents alone: only the effort differs, by the closed form; and no power is lost.
+/// Cogging leaves the currents unchanged: only the effort differs, by the closed form; and no power is lost.
 #[test]
 fn cogging_acts_on_the_rotor_and_not_on_the_currents() {
     let (plain, real) = (ticks(stage(&Effects::default())), ticks(stage(&with_cogging())));
@@ -54,7 +54,7 @@ fn cogging_acts_on_the_rotor_and_not_on_the_currents() {
     for (k, (plain, real)) in plain.iter().zip(&real).enumerate() {
         assert_eq!(bits(&[*plain])[0][5..], bits(&[*real])[0][5..], "tick {k}");
         let velocity = 37.0 + 900.0 * k as f64 * H;
-        // Straight on from the last two ticks; before the first one the speed was constant.
+        // Extrapolated from the last two ticks; before the first one the speed was constant.
         let travel = (velocity + if k == 0 { 0.0 } else { 450.0 * H }) * H;
         let expected = with_cogging().cogging[0].mean_effort(position, travel);
         assert!((real[0] - plain[0] - expected).abs() < 1e-13 * 60.0, "tick {k}: {} {expected}", real[0] - plain[0]);
@@ -66,7 +66,7 @@ fn cogging_acts_on_the_rotor_and_not_on_the_currents() {
 }
 
 /// Oracle: a rotor alone in the field of its teeth is a pendulum of the energy J·v²/2 + F/κ·cos(κ·x + φ). Its effort is constant over
-/// a tick, at a speed that goes on straight. What that takes from the energy is of third order, and it takes some: nothing grows.
+/// a tick, at a linearly extrapolated speed. The energy error of that is of third order, and a loss: nothing grows.
 #[test]
 fn a_rotor_that_swings_in_its_cogging_keeps_its_energy() {
     let cogging = Cogging { ratio: 36.0, amplitude: 0.2, phase: 0.3 };
@@ -87,7 +87,7 @@ fn a_rotor_that_swings_in_its_cogging_keeps_its_energy() {
             motor.position += h * (motor.velocity + h * acceleration / 2.0);
             motor.velocity += h * acceleration;
         }
-        // Of what swings, 0.2/36·(1 + cos(0.02·36 + 0.3)) J.
+        // Relative to the swing, 0.2/36·(1 + cos(0.02·36 + 0.3)) J.
         (energy(motor) - begun) / (cogging.amplitude / cogging.ratio * 1.523)
     };
     let lost = [4_000, 8_000].map(lost);
@@ -107,7 +107,7 @@ fn all() -> Effects {
     }
 }
 
-/// A winding of so little heat that it warms up in a tenth of a second.
+/// A winding of such a small heat capacity that it warms up in a tenth of a second.
 const WARMING: Temperature = Temperature {
     reference: 20.0,
     resistance_coefficient: 0.003_93,
@@ -165,7 +165,7 @@ fn no_power_is_lost_whatever_is_switched_on() {
     }
 }
 
-/// Oracle: the plain motor with the resistance and the flux linkage of those temperatures, bit for bit: no tick knows of it.
+/// Oracle: the plain motor with the resistance and the flux linkage of those temperatures, bit for bit: a tick costs no more.
 #[test]
 fn a_temperature_that_stays_is_another_motor() {
     let temperature = Temperature { network: None, ..WARMING };
@@ -177,7 +177,7 @@ fn a_temperature_that_stays_is_another_motor() {
 }
 
 /// Oracle: a rotor held at rest on a constant voltage u along d: at the end R = R_ref·(1 + α·(T_w − T_ref)), P = 3/2·u²/R,
-/// T_w − T_a = P·(R_wh + R_ha), a quadratic equation for T_w. With less resistance at 0 it is another answer, which is the run that
+/// T_w − T_a = P·(R_wh + R_ha), a quadratic equation for T_w. With less resistance at 0 it has another solution, which is the run that
 /// must fail.
 #[test]
 fn a_winding_on_a_constant_voltage_comes_to_rest_where_its_loss_is() {
@@ -215,7 +215,7 @@ fn a_winding_on_a_constant_voltage_comes_to_rest_where_its_loss_is() {
     assert!(expected(0.0) > 1.3 * expected(0.003_93));
 }
 
-/// The state of a copy is its own: it goes the same way, bit for bit.
+/// A copy has a separate state: it continues in the same way, bit for bit.
 #[test]
 fn a_copy_goes_on_as_the_original_does() {
     let mut original = stage(&all());
@@ -262,7 +262,7 @@ fn what_is_out_of_its_bound_is_refused_by_name() {
 }
 
 /// Oracle: the motor without saturation, for currents at which it has none; and a run that must differ, at those at which it has. On a
-/// bridge that switches, from edge to edge, with what its devices take; what the field has stored comes back over the run.
+/// switching bridge, from edge to edge, with the drop of its devices; the field returns its stored energy over the run.
 #[test]
 fn a_map_is_followed_on_every_inverter() {
     let none =
@@ -315,7 +315,7 @@ fn the_iron_loses_by_the_flux_of_the_map() {
     for k in 0..4000 {
         let motor = BodyState { position: 37.0 * H * f64::from(k), velocity: 37.0 };
         stage.measured_current(motor);
-        // As the rotor meets it in the middle of the tick.
+        // In the frame of the rotor in the middle of the tick.
         let voltage = Dq { d: -25.0, q: 110.0 }.to_alpha_beta(stage.rotation().rotation().ahead(1.5 * 37.0 * H));
         stage.advance(PowerCommand::Voltage(voltage), motor, H);
     }

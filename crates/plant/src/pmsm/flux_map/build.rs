@@ -1,15 +1,15 @@
-//! From a table of flux linkages to a co-energy.
+//! Construction of a co-energy from a table of flux linkages.
 //!
 //! ```text
 //! along an edge   ∫ψ di = Δ·(ψ₀ + ψ₁)/2 − Δ²·(ψ₁′ − ψ₀′)/12       ψ′ by parabolas through three nodes, as steep as ψ stays monotone
-//! around a cell   Γ = ∮ψ·di = Δi_d·Δi_q·(mean L_qd − mean L_dq)    a magnetic circuit without loss has none
-//! W' at the nodes: least squares of what the edges say             the flux linkages at the nodes stay those of the table
+//! around a cell   Γ = ∮ψ·di = Δi_d·Δi_q·(mean L_qd − mean L_dq)    zero for a magnetic circuit without loss
+//! W' at the nodes: least squares of the gains along the edges      the flux linkages at the nodes stay those of the table
 //! ```
-//! The table is refused where Γ says that the two cross inductances differ by more than [`MOST_CURL`] of √(L_d·L_q), the mean inductances
-//! over the table: currents that go round the cell would take energy out of nothing. It is refused where the matrix of the incremental
-//! inductances is not positive definite, looked at in five by five points of each cell: more current would make less flux.
+//! The table is refused if Γ shows that the two cross inductances differ by more than [`MOST_CURL`] of √(L_d·L_q), the mean inductances
+//! over the table: currents around the cell would create energy. It is refused if the matrix of the incremental
+//! inductances is not positive definite, checked at five by five points of each cell: more current would make less flux.
 //!
-//! Outside of the table a frame of cells lies around it, up to half as wide as the table. In it the inductances of an edge go on, at least
+//! Around the table lies a frame of cells, up to half as wide as the table. In it the inductances of an edge continue, at least
 //! the smallest one of that edge, while the cross-saturation fades; behind it the flux of each axis is linear in its own current. So all
 //! currents have a flux, which grows with them.
 mod error;
@@ -24,13 +24,13 @@ use servobench_base::Dq;
 /// Flux linkages of a motor in a rectangular grid of currents.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FluxData {
-    /// Currents of the d axis (A, peak), increasing, 0 within them.
+    /// Currents of the d axis (A, peak), increasing, with 0 among them.
     pub i_d: Vec<f64>,
-    /// Those of the q axis; a table that begins at 0 is mirrored.
+    /// Currents of the q axis; a table that begins at 0 is mirrored.
     pub i_q: Vec<f64>,
     /// Flux linkage of the d axis (V·s, peak), all of the first i_d, then those of the next one.
     pub psi_d: Vec<f64>,
-    /// That of the q axis.
+    /// Flux linkage of the q axis, in the same order.
     pub psi_q: Vec<f64>,
 }
 
@@ -43,12 +43,12 @@ impl FluxData {
 
 /// Largest difference of the cross inductances.
 pub(super) const MOST_CURL: f64 = 0.1;
-/// Smallest incremental inductance, as a part of the mean one of its axis, and smallest determinant as a part of the product of the
-/// two: what is less cannot be told from none.
+/// Smallest incremental inductance, relative to the mean one of its axis, and smallest determinant relative to the product of the
+/// two: less cannot be distinguished from zero.
 const LEAST_INDUCTANCE: f64 = 1e-3;
-/// Where in a cell the inductances are looked at.
+/// Points in a cell at which the inductances are checked.
 const LOOKED_AT: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// How often the frame is halved where its inductances are not positive definite.
+/// Maximum number of times that the frame is halved while its inductances are not positive definite.
 const HALVINGS: u32 = 12;
 
 pub(super) fn table(data: &FluxData) -> Result<FluxTable, FluxMapError> {
@@ -83,7 +83,7 @@ fn frame_is_good(framed: &Grid, cells: &[Coefficients], mean: Dq) -> bool {
 /// c_ab of a cell.
 type Coefficients = [[f64; 4]; 4];
 
-/// The first of these cells in which the inductances are not positive definite, and what they are there.
+/// The first of these cells in which the inductances are not positive definite, and their values there.
 fn first_bad(
     grid: &Grid,
     cells: &[Coefficients],

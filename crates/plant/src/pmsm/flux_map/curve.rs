@@ -1,4 +1,4 @@
-//! Saturation by one figure of a data sheet: how much torque per ampere is left at a large current.
+//! Saturation by one figure of a data sheet: the remaining torque per ampere at a large current.
 //!
 //! ```text
 //! m² = x² + κ·i_q²                x = i_d + i_m, i_m the current that the magnets stand for
@@ -7,10 +7,10 @@
 //! ```
 //! One main flux of all ampere-turns saturates, in both axes by the same factor φ; the part s never does. W' is convex for all currents. φ
 //! is a smooth form of Fröhlich's magnetisation curve (assumed; it has 1 + |m| where this has √(1 + m²)); one factor for both axes is the
-//! classical one of salient machines: de Jong, *IEE Proceedings B* 129, 1982.
+//! classical model of salient machines: de Jong, *IEE Proceedings B* 129, 1982.
 //!
-//! A, κ, i_m and g follow from what a data sheet has: ψ and both inductances without current, and φ(i_d = 0, i_q = I)/φ(0, 0) = k, the part
-//! of the torque per ampere, and of L_q, that is left at the current I.
+//! A, κ, i_m and g follow from the data sheet: ψ and both inductances without current, and φ(i_d = 0, i_q = I)/φ(0, 0) = k, the share
+//! of the torque per ampere, and of L_q, that remains at the current I.
 //!
 //! ```text
 //! ψ = A·i_m·φ(i_m)      L_d = A·(φ(i_m) + i_m·φ'(i_m))      L_q = A·κ·φ(i_m)
@@ -38,14 +38,14 @@ servobench_config::parameters! {
     }
 }
 
-/// How the iron saturates.
+/// Saturation of the iron.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saturation {
     /// Current in the q axis, without any in the d axis (A, peak).
     pub current: f64,
-    /// What is left of the effort per ampere there.
+    /// Remaining effort per ampere there, as a share.
     pub share: f64,
-    /// What never saturates of the inductances.
+    /// Share of the inductances that never saturates.
     pub residual: f64,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct Curve {
 }
 
 impl Saturation {
-    /// What never saturates, where a file does not say.
+    /// Default share of the inductances that never saturates.
     pub const RESIDUAL: f64 = 0.1;
 
     /// φ at g·m².
@@ -73,7 +73,7 @@ impl Saturation {
         self.residual + (1.0 - self.residual) / libm::sqrt(1.0 + square)
     }
 
-    /// The curve with the knee `g`, in which the magnets stand for the current `i_m` that makes ψ and L_d what they are.
+    /// The curve with the knee `g`, in which the magnets stand for the current `i_m` that gives ψ and L_d.
     fn with_knee(&self, g: f64, flux_linkage: f64, inductance: Dq) -> Curve {
         // ψ/L_d = i_m·φ/(φ + i_m·φ'), which grows with i_m and is above it.
         let ratio = |i_m: f64| {
@@ -88,7 +88,7 @@ impl Saturation {
         Curve { inductance: own, saliency: inductance.q / (own * factor), magnets, knee: g, residual: self.residual }
     }
 
-    /// What the curve leaves of the torque per ampere.
+    /// Remaining torque per ampere by the curve, as a share.
     fn left(&self, curve: &Curve) -> f64 {
         let square = curve.magnets * curve.magnets;
         self.factor(curve.knee * (square + curve.saliency * self.current * self.current))
@@ -96,7 +96,7 @@ impl Saturation {
     }
 }
 
-/// Where between `ends` the condition ends to hold, to the rounding.
+/// Point between `ends` up to which the condition `holds`, to the rounding.
 fn halved([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..200 {
         let middle = low + (high - low) / 2.0;
@@ -120,7 +120,7 @@ impl Curve {
         }
         let left =
             |exponent: f64| saturation.left(&of(libm::exp2(exponent) / (saturation.current * saturation.current)));
-        // The torque falls with the knee, then comes back as the magnets alone saturate the iron: the side without that.
+        // The torque falls with the knee, then rises as the magnets alone saturate the iron: the side before that.
         let mut high = -30.0;
         while left(high) > saturation.share {
             high += 0.25;
@@ -153,7 +153,7 @@ impl Curve {
         }
     }
 
-    /// With y = √g·(x, √κ·i_q): (√(1 + y₀²)·√(1 + y₁²) − 1 − y₀·y₁)/√(1 + y₁²), in which nothing cancels after it is expanded by its
+    /// With y = √g·(x, √κ·i_q): (√(1 + y₀²)·√(1 + y₁²) − 1 − y₀·y₁)/√(1 + y₁²), in which nothing cancels after expansion by its
     /// conjugate.
     pub(super) fn beyond(&self, before: Dq, after: Dq) -> f64 {
         let Self { inductance, saliency, magnets, knee, residual } = *self;

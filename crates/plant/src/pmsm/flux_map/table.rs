@@ -5,12 +5,12 @@
 //! W'(t, u) = Σ c_ab·t^a·u^b      a, b = 0 … 3      t, u from 0 to 1 in a cell
 //! ```
 //! Flux linkages are continuous and those of the table at its nodes; the inductances are continuous within a cell. Beyond the outermost
-//! nodes, ψ_d goes on with a constant L_dd and ψ_q with a constant L_qq, each by itself; the builder sees to it that ψ_d is constant along
+//! nodes, ψ_d continues with a constant L_dd and ψ_q with a constant L_qq, each independently; the builder makes ψ_d constant along
 //! the outermost lines of i_d, and ψ_q along those of i_q. Bicubic Hermite interpolation: Press et al., *Numerical Recipes*, 3rd ed., §3.6.
 use super::{FluxPoint, Inductance};
 use servobench_base::Dq;
 
-/// Lines of the grid along one axis, with one at either infinity.
+/// Lines of the grid along one axis, including one at either infinity.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
     lines: Vec<f64>,
@@ -18,19 +18,19 @@ pub(super) struct Axis {
     beyond: [f64; 2],
 }
 
-/// Where a current is along an axis.
+/// Position of a current along an axis.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     /// From 0 to 1.
     t: f64,
     /// 1/width.
     per: f64,
-    /// How far it is beyond the grid, and the inductance there.
+    /// Distance beyond the grid, and the inductance there.
     out: Option<(f64, f64)>,
 }
 
 impl Axis {
-    /// Nodes that increase, and the inductance beyond the first and the last one.
+    /// An axis with increasing nodes, and the inductances beyond the first and the last one.
     pub(super) fn new(nodes: &[f64], beyond: [f64; 2]) -> Self {
         let lines = core::iter::once(f64::NEG_INFINITY).chain(nodes.iter().copied()).chain([f64::INFINITY]).collect();
         Self { lines, beyond }
@@ -46,7 +46,7 @@ impl Axis {
         self.lines.partition_point(|line| *line <= i).saturating_sub(1).min(self.lines.len() - 2)
     }
 
-    /// A current in the cell, and which one of the grid it is computed by.
+    /// Position of a current in the cell, and the cell of the grid by which it is computed.
     #[expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
     #[inline(always)]
     fn place(&self, cell: usize, i: f64) -> (usize, Place) {
@@ -67,7 +67,7 @@ impl Axis {
 pub(super) struct FluxTable {
     d: Axis,
     q: Axis,
-    /// c_ab of each cell, those of one i_d after the other.
+    /// c_ab of each cell, first those of the first i_d.
     cells: Vec<[[f64; 4]; 4]>,
 }
 
@@ -76,7 +76,7 @@ const POINTS: [f64; 3] = [0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7
 const WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
 
 impl FluxTable {
-    /// The coefficients come from the builder.
+    /// A table with coefficients from the builder.
     pub(super) const fn new(d: Axis, q: Axis, cells: Vec<[[f64; 4]; 4]>) -> Self {
         Self { d, q, cells }
     }
@@ -148,7 +148,7 @@ impl FluxTable {
     }
 }
 
-/// Where on the way, from 0 on, the line is that ends the cell.
+/// Share of the path, from 0 on, up to the line that ends the cell.
 fn exit(axis: &Axis, cell: usize, from: f64, change: f64) -> f64 {
     if change > 0.0 {
         (axis.lines[cell + 1] - from) / change

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 /// Magnet-assisted synchronous reluctance motor of 5.5 kW (Baldor ECS101M0H7EF4), fitted to its measured flux linkages: Lelli, Hinkkanen
 /// and Giulii Capponi, "A saturation model based on a simplified equivalent magnetic circuit for permanent magnet machines", 2024, with the
-/// parameters of motulator's example of that motor. Currents by flux linkages, of an energy by themselves.
+/// parameters of motulator's example of that motor. Currents as functions of flux linkages, the derivatives of an energy.
 pub(in crate::pmsm) fn published_current(psi: Dq) -> Dq {
     let (d, q) = (psi.d.abs(), psi.q.abs());
     let own_d = 3.96 + 28.46 * d.powi(4) + 41.52 / 3.0 * d * q.powi(3);
@@ -14,7 +14,7 @@ pub(in crate::pmsm) fn published_current(psi: Dq) -> Dq {
     Dq { d: own_d * psi.d + of_bridge * bridge, q: (own_q + 0.1 * of_bridge) * psi.q }
 }
 
-/// The flux linkage of that motor: Newton's method with differences, on the way from no current.
+/// The flux linkage of that motor: Newton's method with differences, starting without current.
 pub(in crate::pmsm) fn published_flux(i: Dq) -> Dq {
     let mut psi = Dq { d: 0.477, q: 0.0 };
     for step in 1..=20 {
@@ -53,13 +53,13 @@ fn curve(current: f64, share: f64, residual: f64) -> FluxMap {
     FluxMap::curve(&Saturation { current, share, residual }, SERVO.0, SERVO.1).unwrap()
 }
 
-/// The published motor is what its paper says: 0.477 V·s without current, 1.5·p·(ψ_d·i_q − ψ_q·i_d) of its rated torque at its rated
+/// The published motor matches its paper: 0.477 V·s without current, 1.5·p·(ψ_d·i_q − ψ_q·i_d) of its rated torque at its rated
 /// current.
 #[test]
 fn the_published_motor_is_the_published_one() {
     let psi = published_flux(Dq::default());
     assert!((psi.d - 0.477).abs() < 5e-4 && psi.q.abs() < 1e-12, "{psi:?}");
-    // 8.8 A effective at 45° give the 29.2 N·m of the plate within the 10 % that the angle and the losses leave open.
+    // 8.8 A effective at 45° give the 29.2 N·m of the rating plate within the 10 % that the angle and the losses leave open.
     let i = Dq { d: -8.8, q: 8.8 };
     let psi = published_flux(i);
     let torque = 3.0 * (psi.d * i.q - psi.q * i.d);
@@ -85,11 +85,11 @@ fn between_the_nodes_the_flux_is_that_of_the_published_motor() {
     let errors = [(14, 12), (28, 24), (56, 48)].map(|(d, q)| error(&published(d, q)));
     let order = (errors[1] / errors[2]).log2();
     println!("RMS errors of steps of 2, 1 and 0.5 A: {errors:?} V·s, observed order {order}");
-    // Of 1.2 V·s.
+    // Relative to 1.2 V·s.
     assert!(errors[0] < 2e-3 && errors[1] < 3e-4 && order > 2.5, "{errors:?}, {order}");
 }
 
-/// Oracle: differences of the flux linkages, and Simpson's rule along a straight way.
+/// Oracle: differences of the flux linkages, and Simpson's rule along a straight path.
 fn is_a_potential(map: &FluxMap, a: Dq, b: Dq, scale: f64) {
     let at = |s: f64| Dq { d: a.d + s * (b.d - a.d), q: a.q + s * (b.q - a.q) };
     // Over lines of the grid the slopes jump: many short steps.
@@ -120,8 +120,8 @@ fn is_a_potential(map: &FluxMap, a: Dq, b: Dq, scale: f64) {
 }
 
 proptest! {
-    /// The flux linkages are those of one energy, which is what it says: within the table, in its frame and behind it. 30 V·s·A are what
-    /// goes round.
+    /// The flux linkages are derivatives of one energy, the computed one: within the table, in its frame and behind it. The energies are
+    /// about 30 V·s·A.
     #[test]
     fn a_table_is_a_potential(ad in -60.0..50.0_f64, aq in -70.0..70.0_f64, bd in -60.0..50.0_f64, bq in -70.0..70.0_f64) {
         static MAP: std::sync::OnceLock<FluxMap> = std::sync::OnceLock::new();
@@ -137,7 +137,7 @@ proptest! {
         is_a_potential(&curve(37.0, share, residual), Dq { d: ad, q: aq }, Dq { d: bd, q: bq }, 100.0);
     }
 
-    /// Round any triangle the field gives back what it took, to the rounding.
+    /// Around any triangle the field returns the energy that it took, to the rounding.
     #[test]
     fn a_cycle_gives_its_energy_back(all in prop::array::uniform6(-90.0..90.0_f64)) {
         static MAP: std::sync::OnceLock<FluxMap> = std::sync::OnceLock::new();
@@ -149,7 +149,7 @@ proptest! {
         }
     }
 
-    /// Oracle: the map itself. From the flux linkage back to the current, from one that is a few amperes off.
+    /// Oracle: the map itself. From the flux linkage back to the current, starting a few amperes off.
     #[test]
     fn the_current_follows_from_the_flux(d in -25.0..12.0_f64, q in -30.0..30.0_f64, off in -2.0..2.0_f64) {
         static MAP: std::sync::OnceLock<FluxMap> = std::sync::OnceLock::new();
@@ -159,7 +159,7 @@ proptest! {
     }
 }
 
-/// Oracle: the table itself at its nodes, as it is read and mirrored.
+/// Oracle: the table itself at its nodes, as read and mirrored.
 #[test]
 fn at_the_nodes_the_flux_is_that_of_the_table() {
     let data = sampled(vec![-20.0, -13.0, -3.0, 0.0, 7.5], vec![0.0, 2.5, 8.0, 19.0], published_flux);
@@ -191,7 +191,7 @@ fn a_table_of_constant_inductances_is_linear_everywhere() {
     }
 }
 
-/// What was measured with an error of 0.3 % is smoothed into an energy, and stays what it is at the nodes.
+/// A measurement with an error of 0.3 % is smoothed into an energy, and keeps its values at the nodes.
 #[test]
 fn small_errors_of_a_measurement_are_borne() {
     let noisy = |i: Dq| {
@@ -207,7 +207,7 @@ fn small_errors_of_a_measurement_are_borne() {
     assert!((psi.d - data.psi_d[3 * 13 + 5]).abs() < 1e-14, "{psi:?}");
 }
 
-/// No current is too far, and what is no number stays none.
+/// Very large currents have a flux, and a not-a-number current gives none.
 #[test]
 fn far_currents_have_a_flux_and_no_number_has_none() {
     let map = published(9, 7);
@@ -230,7 +230,7 @@ fn far_currents_have_a_flux_and_no_number_has_none() {
     }
 }
 
-/// Oracle: the data sheet that the curve was made of, and the closed form of the torque per ampere.
+/// Oracle: the data sheet from which the curve was made, and the closed form of the torque per ampere.
 #[test]
 fn a_curve_has_what_the_data_sheet_says() {
     for (current, share, residual) in [(37.0, 0.83, 0.1), (5.0, 0.97, 0.0), (90.0, 0.62, 0.3), (12.0, 1.0, 0.2)] {
@@ -241,10 +241,10 @@ fn a_curve_has_what_the_data_sheet_says() {
         assert!((dd - SERVO.1.d).abs() < 1e-14 && dq == 0.0 && (qq - SERVO.1.q).abs() < 1e-14, "{inductance:?}");
         let there = map.flux(Dq { d: 0.0, q: current });
         assert!((there.d / SERVO.0 - share).abs() < 1e-9, "{there:?}");
-        // L_q, the flux per ampere, is left to the same part.
+        // The same share of L_q, the flux per ampere, remains.
         assert!((there.q / current / SERVO.1.q - share).abs() < 1e-9, "{there:?}");
     }
-    // These magnets saturate the iron so much by themselves that a current can take no more from it.
+    // These magnets saturate the iron so much by themselves that a current cannot saturate it further.
     let none = FluxMap::curve(&Saturation { current: 1.0, share: 0.5, residual: 0.4 }, 0.0606, SERVO.1);
     assert_eq!(none.unwrap_err().name, SaturationParameter::SHARE.name);
     for (saturation, name) in [
@@ -256,7 +256,7 @@ fn a_curve_has_what_the_data_sheet_says() {
     }
 }
 
-/// Each mistake by its name, with its place and a way out.
+/// Each mistake by its name, with its place and a remedy.
 #[test]
 fn what_is_wrong_with_a_table_is_told() {
     use FluxMapError as E;
@@ -299,7 +299,7 @@ fn what_is_wrong_with_a_table_is_told() {
     }
 }
 
-/// The tables that scenarios and tests have of that motor: as it is, without saturation, and with iron that saturates at half of the
+/// The tables of that motor for scenarios and tests: unchanged, without saturation, and with iron that saturates at half of the
 /// current. `SERVOBENCH_WRITE_DOCS=1` writes them.
 #[test]
 fn the_tables_that_are_shipped_are_the_published_motor() {

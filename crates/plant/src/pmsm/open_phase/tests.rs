@@ -51,8 +51,8 @@ fn run(omega_e: f64, h: f64, ticks: u32, mut step: impl FnMut(&mut State, &Input
     ([x.current.d, x.current.q, sums[0], sums[1]], largest)
 }
 
-/// Oracle: the motor with all three phases, one of which has a resistance of thousands of times that of the others: as far off as that is
-/// finite, half of it with twice the resistance. Harmonics and a difference between the two phases that are left come with it.
+/// Oracle: the motor with all three phases, one of which has thousands of times the resistance of the others: as far off as that is
+/// finite, half of it with twice the resistance. With harmonics and a difference between the other two phases.
 #[test]
 fn it_is_the_limit_of_a_phase_with_more_and_more_resistance() {
     let omega_e = 140.0;

@@ -6,7 +6,7 @@ use crate::pmsm::{Input, State};
 use proptest::prelude::*;
 use servobench_base::{AlphaBeta, ElectricalAngle};
 
-/// The motor of [`published`], with the inductances that its example controls it by.
+/// The motor of [`published`], with the inductances by which its example controls it.
 const RELUCTANCE: Params =
     Params { electrical_ratio: 2.0, resistance: 0.63, inductance: Dq { d: 18e-3, q: 110e-3 }, flux_linkage: 0.477 };
 const SERVO: Params = Params {
@@ -43,7 +43,7 @@ fn a_tick_is_of_fourth_order_at_constant_speed() {
     real.assert_fourth_order(&all, &of, 1e-6, 3.7);
 }
 
-/// The published motor by its table, over whose lines the inductances jump: of second order at least, and what counts, small.
+/// The published motor by its table, across whose lines the inductances jump: of second order at least, and with small errors.
 #[test]
 fn a_table_is_followed_over_its_lines() {
     let map = published(14, 12);
@@ -65,7 +65,7 @@ fn a_table_is_followed_over_its_lines() {
     });
     println!("{oracle:?}\n{errors:?}");
     for (at, name) in NAMES.into_iter().enumerate() {
-        // Of 20 A, and of the 20 N·m that two of them make with 0.9 V·s.
+        // Relative to 20 A, and to the 20 N·m that two of them make with 0.9 V·s.
         assert!(
             errors[2][at] < 1e-6 * oracle[at].abs().max(20.0),
             "{name}: off by {} of {}",
@@ -95,8 +95,8 @@ fn without_saturation_it_is_the_motor_that_is_solved_exactly() {
     }
 }
 
-/// Oracle: the same in hundredths of a tick. What one tick of 16 kHz leaves out of the larger of the current and the rated one, in currents
-/// up to twice the rated ones and with all the voltage that links of 540 and 320 V give: 7e-8 RMS, 6e-7 at most. The bounds have twice of
+/// Oracle: the same in hundredths of a tick. The error of one tick of 16 kHz, relative to the larger of the current and the rated one, in
+/// currents up to twice the rated ones and with all the voltage of links of 540 and 320 V: 7e-8 RMS, 6e-7 at most. The bounds are twice
 /// that; an engineer sees 1e-5.
 #[test]
 fn what_a_tick_leaves_out_is_below_what_an_engineer_sees() {
@@ -128,7 +128,7 @@ fn what_a_tick_leaves_out_is_below_what_an_engineer_sees() {
 }
 
 proptest! {
-    /// Oracle: the first law, whatever saturates, however fast, however long the time; in series, too, where what is in series takes its
+    /// Oracle: the first law, for any saturation, speed and duration; in series, too, where the series resistance takes its
     /// part.
     #[test]
     fn no_power_is_lost(
@@ -165,7 +165,7 @@ proptest! {
         let in_series = 1.5 * series * sums.square / h;
         let terms = [electrical, copper, in_series, stored, air_gap];
         let largest = terms.into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
-        // What is stored is the difference of two currents, which have a rounding each.
+        // The stored energy is the difference of two currents, which have a rounding each.
         let rounding = 4e-16 * 1.5 * map.flux(before).magnitude().max(map.flux(after).magnitude())
             * before.magnitude().max(after.magnitude()) / h;
         prop_assert!((electrical - copper - in_series - stored - air_gap).abs() < 1e-12 * largest + rounding,
@@ -199,8 +199,8 @@ fn a_tick_in_which_the_speed_changes_is_of_second_order() {
     assert_second_order_under_acceleration(&plain(&SERVO, &curve(&SERVO, 20.0, 0.7)));
 }
 
-/// No time is nothing; nothing on a motor at rest stays nothing; a speed, a voltage or a current that is no number gives none and comes to
-/// an end.
+/// Zero time changes nothing; zero inputs leave a motor at rest at zero; a not-a-number speed, voltage or current gives none and
+/// terminates.
 #[test]
 fn nothing_in_is_nothing_out() {
     let map = published(9, 7);
@@ -232,14 +232,14 @@ fn nothing_in_is_nothing_out() {
     }
     let after = motor.advance::<true>(Dq { d: f64::NAN, q: 0.0 }, &rest, &mut Sums::default());
     assert!(after.d.is_nan());
-    // A voltage beyond all reason keeps its numbers.
+    // An extremely large voltage still gives finite numbers.
     let huge = Span { voltage: AlphaBeta { alpha: 1e9, beta: -1e8 }, omega: 300.0, ..rest };
     let after = motor.advance::<true>(i, &huge, &mut Sums::default());
     assert!(after.d.is_finite() && after.q.is_finite(), "{after:?}");
 }
 
-/// A current that nothing drives falls to the rounding of the magnets' flux linkage, through all that is on the way, and stays there: two
-/// hundred motors by a figure and by a table, at rest and pushed from a thousandth to a billionth of an ampere.
+/// An undriven current falls to the rounding of the magnets' flux linkage, through all values between, and stays there: two
+/// hundred motors by a figure and by a table, at rest and with initial currents from a thousandth to a billionth of an ampere.
 #[test]
 fn a_motor_that_nothing_drives_comes_to_rest() {
     let table = published(14, 12);
@@ -278,7 +278,7 @@ fn a_motor_that_nothing_drives_comes_to_rest() {
         }
         assert!(x.current.magnitude() < 100.0 * least + 1e-12 * current, "motor {n}: {:?}, {least}", x.current);
         for size in [1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-15] {
-            // Within a tick a current follows its voltage, whatever there is of either.
+            // Within a tick a current follows its voltage, whatever the size of either.
             let voltage = AlphaBeta { alpha: size * p.resistance, beta: -size * p.resistance };
             let output = motor.step(&mut x, &Input { voltage, rotor, omega_e: 3.0 }, h);
             assert!(x.current.magnitude().is_finite() && output.power.copper >= 0.0, "motor {n}, {size}: {x:?}");

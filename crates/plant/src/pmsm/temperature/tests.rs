@@ -20,7 +20,7 @@ fn closed_form(t: f64, copper: f64, iron: f64) -> [f64; 2] {
     let lambdas = [1.0, -1.0].map(|sign| 0.5 * (sign * root - sum));
     let housing = (copper + iron) * to_ambient;
     let end = [housing + copper * to_housing, housing];
-    // Eigenvectors (a, a + λ): at time 0 they make −end.
+    // Eigenvectors (a, a + λ): at time 0 their sum is −end.
     let [v, w] = lambdas.map(|lambda| a + lambda);
     let second = (-end[1] + end[0] * v / a) / (w - v);
     let first = -end[0] / a - second;
@@ -28,7 +28,7 @@ fn closed_form(t: f64, copper: f64, iron: f64) -> [f64; 2] {
     [end[0] + a * (e1 + e2), end[1] + v * e1 + w * e2]
 }
 
-/// Oracle: the closed form of the step response, at times that are no whole steps of each other; steps from a tick to ten time constants.
+/// Oracle: the closed form of the step response, at times that do not divide each other; steps from a tick to ten time constants.
 #[test]
 fn the_step_response_is_exact_whatever_the_step() {
     let (copper, iron) = (57.0, 13.0);

@@ -1,4 +1,4 @@
-//! Runs of a motor at constant speed and under acceleration, tick by tick and by an oracle: for tests of every way to solve one.
+//! Runs of a motor at constant speed and under acceleration, tick by tick and by an oracle: for tests of every method of solution.
 use crate::pmsm::flux_harmonics::FluxHarmonic;
 use crate::pmsm::winding::Winding;
 use crate::pmsm::{FluxMap, Input, Params, State, step_with_power};
@@ -14,23 +14,23 @@ pub(crate) struct Run {
     pub(crate) end: f64,
 }
 
-/// What a run ends with: current, and the means of torque, copper loss and electrical power.
+/// Results of a run: current, and the means of torque, copper loss and electrical power.
 pub(crate) const NAMES: [&str; 5] = ["i_d", "i_q", "torque", "copper", "electrical"];
 
-/// A motor as its equations in the stator frame have it, three phases one by one.
+/// A motor by its equations in the stator frame, three phases one by one.
 pub(crate) struct Equations<'a> {
     pub(crate) params: &'a Params,
     /// Constant inductances are a curve that is straight.
     pub(crate) map: &'a FluxMap,
-    /// Flux linkage of the magnets that is in the map (V·s).
+    /// Flux linkage of the magnets in the map (V·s).
     pub(crate) magnets: f64,
     pub(crate) harmonics: &'a [FluxHarmonic],
-    /// Of the resistance of each phase.
+    /// Resistance of each phase, relative to that of the motor.
     pub(crate) factors: [f64; 3],
 }
 
 impl Equations<'_> {
-    /// By Runge and Kutta's method of order 4; the torque is what the energy leaves: electrical less copper less stored, over the speed.
+    /// By Runge and Kutta's method of order 4; the torque is the remaining energy over the speed: electrical less copper less stored.
     pub(crate) fn solve(&self, of: &Run, steps: u32) -> [f64; 5] {
         let p = self.params;
         let own = |theta: f64| {
@@ -70,8 +70,8 @@ impl Equations<'_> {
         [i.d, i.q, (y[3] - y[2] - stored) * p.electrical_ratio / of.omega, y[2], y[3]]
     }
 
-    /// Asserts that `motor` in ticks of `of.end`/128 and half of that falls to these equations with the fourth order, `least` at least, to `share` of each
-    /// value.
+    /// Asserts that the error of `motor` relative to these equations, in ticks of `of.end`/128 and half of that, falls with the fourth
+    /// order, `least` at least, to `share` of each value.
     pub(crate) fn assert_fourth_order(&self, motor: &impl Winding, of: &Run, share: f64, least: f64) {
         let oracle = self.solve(of, 40_000);
         let [coarse, fine] = [128, 256].map(|n| of.in_ticks(motor, n));
@@ -86,7 +86,7 @@ impl Equations<'_> {
     }
 }
 
-/// `y` after `end`, its slope being `slope`, by Runge and Kutta's method of order 4.
+/// `y` after `end`, with its derivative `slope`, by Runge and Kutta's method of order 4.
 pub(crate) fn runge_kutta<const N: usize>(
     mut y: [f64; N],
     end: f64,
@@ -122,8 +122,8 @@ impl Run {
     }
 }
 
-/// Asserts that a tick of `h` (s) of `motor`, whose rotor turns by `turn` (rad) in it, is that of the motor with constant parameters `p`, which
-/// is solved exactly.
+/// Asserts that a tick of `h` (s) of `motor`, whose rotor turns by `turn` (rad) in it, equals that of the motor with constant parameters
+/// `p`, which is solved exactly.
 pub(crate) fn assert_solved_exactly(motor: &impl Winding, p: &Params, h: f64, turn: f64) {
     let rotor = ElectricalAngle(0.7).rotation();
     let omega_e = turn / h;
@@ -135,14 +135,14 @@ pub(crate) fn assert_solved_exactly(motor: &impl Winding, p: &Params, h: f64, tu
     let through = 1.0 / (p.resistance + p.inductance.d / h);
     let scale = 3.0 + (20.0 + (omega_e * p.flux_linkage).abs()) * through;
     let off = (x.current.d - y.current.d).abs().max((x.current.q - y.current.q).abs());
-    // (1/4)⁴/720 of a transient for each part of the tick, of which there are 24 at most that it lives through.
+    // (1/4)⁴/720 of a transient for each part of the tick, which survives 24 of them at most.
     assert!(off < 2e-5 * scale, "{p:?} {turn}: off by {off} of {scale}");
     let most = 1.5 * p.electrical_ratio * (p.flux_linkage + (p.inductance.q - p.inductance.d) * scale) * scale;
     // A product of two currents that each change by a quarter in a part.
     assert!((ours.torque - exact.torque).abs() < 2e-5 * most, "{turn}: {} {}", ours.torque, exact.torque);
 }
 
-/// Asserts that a tick of `motor` in which the speed changes, which is given its mean, is of second order, against a finer tick.
+/// Asserts that a tick of `motor` at the mean of a changing speed is of second order, against a finer tick.
 pub(crate) fn assert_second_order_under_acceleration(motor: &impl Winding) {
     let (omega, acceleration) = (300.0, 4e5);
     let end = |n: u32| {

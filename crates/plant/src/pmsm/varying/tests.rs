@@ -37,7 +37,7 @@ fn a_tick_is_of_fourth_order_at_constant_speed() {
     }
 }
 
-/// Oracle: the motor without harmonics, which is solved exactly. What a part of a tick leaves out is said in the module's text.
+/// Oracle: the motor without harmonics, which is solved exactly. The error of a part of a tick is in the module's text.
 #[test]
 fn without_harmonics_it_is_the_motor_that_is_solved_exactly() {
     let round =
@@ -51,7 +51,7 @@ fn without_harmonics_it_is_the_motor_that_is_solved_exactly() {
 }
 
 proptest! {
-    /// Oracle: the first law, whatever is unequal, however fast, however long the tick.
+    /// Oracle: the first law, for any inequality, speed and length of the tick.
     #[test]
     fn no_power_is_lost(
         resistance in 1e-3..50.0_f64,
@@ -124,7 +124,7 @@ fn a_tick_in_which_the_speed_changes_is_of_second_order() {
     assert_second_order_under_acceleration(&varying(&MOTOR, &HARMONICS, &phases));
 }
 
-/// Nothing on a motor at rest is exact zeros; a speed that is no number gives none.
+/// Zero inputs leave a motor at rest at exact zeros; a not-a-number speed gives none.
 #[test]
 fn nothing_in_is_nothing_out() {
     let phases = PhaseMatrix::of(FACTORS);

@@ -1,8 +1,9 @@
-//! The tick of a motor with effects, behind a cable that is not as it should be, or on an inverter or a link that is not ideal.
+//! The tick of a motor with effects, behind a cable with faults, or on an inverter or a link that is not ideal.
 //!
 //! ```text
-//! cable (mirror image of what is asked for, a phase that opens) → inverter (averaged: one voltage; switching: one from edge to edge) → winding (currents, torque, losses) → rotor (cogging, drag of the
-//! iron, temperature) → link (supplies what motor and devices took)
+//! cable (mirror image of the request, a phase that opens) → inverter (averaged: one voltage; switching: one from edge to edge)
+//! → winding (currents, torque, losses) → rotor (cogging, drag of the iron, temperature)
+//! → link (supplies the power of motor and devices)
 //! ```
 use super::Synchronous;
 use crate::inverter::{self, Averaged, Bridge, LinkParams, LinkPower, LinkState, Modulation, Ripple, Switching};
@@ -10,11 +11,11 @@ use crate::pmsm::{self, Winding as _};
 use servobench_base::{AlphaBeta, Dq, ElectricalAngle, ParamError, Stateful};
 use std::sync::Arc;
 
-/// Largest turn of the rotor in a tick (rad, electrical). One that turns further has diverged, and its windings, which are followed in
-/// parts of a turn, would take longer for each tick the faster it gets: its effort is no number, which ends the run.
+/// Largest turn of the rotor in a tick (rad, electrical). Beyond it the rotor has diverged, and its windings, which are followed in
+/// parts of a turn, would take longer for each tick the faster it gets: its effort is NaN, which ends the run.
 const MOST_TURN: f64 = 1024.0;
 
-/// An inverter on its link, and what they did in the last tick.
+/// An inverter on its link, and its results of the last tick.
 #[derive(Debug, Clone, Stateful)]
 #[state(fixed)]
 pub(super) struct RealInverter {
@@ -45,7 +46,7 @@ enum Modulator {
 }
 
 impl RealInverter {
-    /// For `motor`, in ticks of `h` (s); `None` where it would do what an ideal one does.
+    /// An inverter for `motor`, in ticks of `h` (s); `None` if it would act as an ideal one.
     ///
     /// # Errors
     /// [`ParamError`] names the parameter that is out of its bound.
@@ -90,7 +91,7 @@ impl RealInverter {
         self.link.as_ref().map(|link| link.params.voltage)
     }
 
-    /// The link supplies what the motor takes, `power` (W), and the devices, over a tick of `h` (s). Its voltage from now on is returned,
+    /// Supplies `power` (W) of the motor, and that of the devices, from the link over a tick of `h` (s). Returns the new voltage,
     /// if it changes.
     fn supply(&mut self, power: f64, h: f64) -> Option<f64> {
         let Link { params, state } = self.link.as_mut()?;
@@ -112,7 +113,7 @@ impl Modulator {
         }
     }
 
-    /// The winding of a motor without effects, behind that.
+    /// The winding of a motor without effects, behind that resistance.
     fn equations(&self) -> pmsm::Equations {
         match self {
             Self::Averaged(averaged) => *averaged.equations(),
@@ -137,26 +138,26 @@ impl Modulator {
 struct Winding<'a> {
     ticks: &'a pmsm::Ticks,
     real: Option<&'a pmsm::RealMotor>,
-    /// At this tick.
+    /// Parameters at this tick.
     params: &'a pmsm::Params,
-    /// Direction of the only current that flows, where a phase is lost.
+    /// Direction of the only current that flows, if a phase is lost.
     line: Option<AlphaBeta>,
     h: f64,
 }
 
-/// What winding and inverter do in a tick.
+/// Results of winding and inverter in a tick.
 struct Driven {
     output: pmsm::Output,
-    /// As the rotor meets it in the middle of the tick (V).
+    /// Voltage in the frame of the rotor in the middle of the tick (V).
     voltage: Dq,
     shortens: bool,
-    /// Of the devices (W).
+    /// Loss of the devices (W).
     loss: f64,
     ripple: Ripple,
 }
 
 impl Winding<'_> {
-    /// On a voltage that is held over the tick.
+    /// Advances on a voltage that is held over the tick.
     fn step(&self, x: &mut pmsm::State, input: &pmsm::Input) -> pmsm::Output {
         if let Some(open) = self.with_open_phase(0.0) {
             return open.step(x, input, self.h);
@@ -169,7 +170,7 @@ impl Winding<'_> {
         pmsm::Output { torque, power }
     }
 
-    /// Behind `series` (Ω); `None` where no phase is lost.
+    /// The winding behind `series` (Ω); `None` without a lost phase.
     fn with_open_phase(&self, series: f64) -> Option<pmsm::OpenPhase<'_>> {
         self.line.map(|line| pmsm::OpenPhase::new(self.params, self.real, series, line))
     }
@@ -205,7 +206,7 @@ impl Winding<'_> {
 }
 
 impl Synchronous {
-    /// What sensors at the legs see, the rotor being at `angle`.
+    /// Current measured by sensors at the legs, with the rotor at `angle`.
     #[cold]
     pub(super) fn measured_at_the_legs(&mut self, angle: ElectricalAngle) -> AlphaBeta {
         let rotor = self.rotor.rotation();
@@ -223,7 +224,7 @@ impl Synchronous {
     pub(super) fn advance_real(&mut self, wanted: AlphaBeta, travel: pmsm::Travel, h: f64) -> f64 {
         let params = self.effects.as_ref().map_or(*self.motor.params(), |real| real.params(&self.motor));
         let (rotor, omega_e) = (self.rotor.rotation(), params.electrical_ratio * travel.speed);
-        // What is no number is not within it either.
+        // A not-a-number turn is refused, too.
         if !(-MOST_TURN..=MOST_TURN).contains(&(omega_e * h)) {
             return f64::NAN;
         }
@@ -255,7 +256,7 @@ impl Synchronous {
         self.account(&params, driven.output, before, travel, (driven.loss, driven.ripple), h).torque
     }
 
-    /// The power is off for a tick in which the winding gives what is in `output`.
+    /// Advances by a tick without power, in which the winding gives `output`.
     #[cold]
     pub(super) fn rest(&mut self, output: pmsm::Output, travel: pmsm::Travel, h: f64) -> pmsm::Output {
         if let Some(Modulator::Switching(switching, bridge)) = self.inverter.as_mut().map(|one| &mut one.modulator) {
@@ -267,7 +268,7 @@ impl Synchronous {
         self.account(&params, output, before, travel, (0.0, Ripple::default()), h)
     }
 
-    /// What acts on the rotor beside the winding, and what the link supplies.
+    /// Adds the effects on the rotor beside the winding, and the supply by the link.
     fn account(
         &mut self,
         params: &pmsm::Params,

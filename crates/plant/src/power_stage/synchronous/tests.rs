@@ -1,4 +1,4 @@
-//! A motor behind a cable that is not as it should be.
+//! A motor behind a cable with faults.
 use super::*;
 use crate::inverter::{LinkParams, Modulation, Params, legs};
 use crate::wiring::{Phase, Swap};
@@ -30,7 +30,7 @@ fn motor(wiring: Wiring, inverter: Option<Params>) -> Synchronous {
     one
 }
 
-/// Of a motor that gets faster; `each` has the tick, what is measured and the motor after it.
+/// A run of a motor that gets faster; `each` gets the tick, the measured current and the motor after it.
 fn run(one: &mut Synchronous, ticks: u32, mut each: impl FnMut(u32, AlphaBeta, &Synchronous)) {
     for k in 0..ticks {
         let t = H * f64::from(k);
@@ -47,7 +47,7 @@ fn a_cable_that_is_right_costs_nothing() {
     assert!(motor(Wiring::default(), None).cable.is_none());
 }
 
-/// Oracle: the motor on the right cable, asked for the mirror image.
+/// Oracle: the motor on the right cable, with the mirror image of the request.
 #[test]
 fn a_swapped_motor_is_the_mirror_image_for_every_inverter() {
     for inverter in [None, Some(REAL), Some(Params { modulation: Modulation::Switching, ..REAL })] {
@@ -62,7 +62,7 @@ fn a_swapped_motor_is_the_mirror_image_for_every_inverter() {
                 let wanted = AlphaBeta { alpha: 50.0 - 2.0 * f64::from(k), beta: 33.0 };
                 let effort = swapped.advance(cable.across(wanted), body, H);
                 let expected = right.advance(wanted, body, H);
-                // Both are the same but for some roundings of the mirror, which the current loop of the motor keeps for a while.
+                // Both are the same except for some roundings of the mirror, which the winding of the motor keeps for a while.
                 let off = (seen.alpha - mirrored.alpha).hypot(seen.beta - mirrored.beta);
                 assert!(off < 1e-9 && (effort - expected).abs() < 1e-9, "{inverter:?} {swap:?}: {off}, {effort}");
             }

@@ -1,4 +1,4 @@
-//! What is wrong with a table of flux linkages.
+//! Errors of a table of flux linkages.
 use super::{FluxData, MOST_CURL};
 use core::fmt;
 
@@ -26,39 +26,39 @@ impl fmt::Display for FluxPart {
     }
 }
 
-/// Why a table is not the flux linkage of a motor. Currents in A, flux linkages in V·s, inductances in H.
+/// Reasons why a table is not the flux linkage of a motor. Currents in A, flux linkages in V·s, inductances in H.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum FluxMapError {
     /// An axis is too short or too long.
     #[error("`{which}` must have from {} to {} values, got {count}", FluxData::FEWEST, FluxData::MOST)]
     Count {
-        /// FluxPart axis.
+        /// The axis.
         which: FluxPart,
-        /// How many values it has.
+        /// Number of its values.
         count: usize,
     },
     /// A flux linkage is not given for all currents.
     #[error("`{which}` must have a value at each of the {expected} pairs of currents, got {count}")]
     Size {
-        /// FluxPart one.
+        /// The flux linkage.
         which: FluxPart,
-        /// How many it has.
+        /// Number of its values.
         count: usize,
-        /// How many there are to be.
+        /// Required number.
         expected: usize,
     },
-    /// A value is no number.
+    /// A value is not a number, or infinite.
     #[error("`{which}` must be finite, got {value}")]
     NotFinite {
-        /// Where.
+        /// The part of the table.
         which: FluxPart,
-        /// What it is.
+        /// The value.
         value: f64,
     },
     /// An axis does not increase.
     #[error("`{which}` must increase, got {after} A after {before} A")]
     Order {
-        /// FluxPart axis.
+        /// The axis.
         which: FluxPart,
         /// A value.
         before: f64,
@@ -68,7 +68,7 @@ pub enum FluxMapError {
     /// The currents at rest are outside.
     #[error("`{which}` must reach from 0 A or below to 0 A or above, got {} A to {} A", .range[0], .range[1])]
     WithoutZero {
-        /// FluxPart axis.
+        /// The axis.
         which: FluxPart,
         /// Its ends.
         range: [f64; 2],
@@ -87,7 +87,7 @@ pub enum FluxMapError {
     #[error("`{which}` must grow with its own current, but from ({}, {}) A to ({}, {}) A it goes from {} to {} V s",
         .from[0], .from[1], .to[0], .to[1], .flux[0], .flux[1])]
     Falls {
-        /// FluxPart one.
+        /// The flux linkage.
         which: FluxPart,
         /// i_d and i_q.
         from: [f64; 2],
@@ -118,13 +118,13 @@ pub enum FluxMapError {
         /// L_dd, L_dq and L_qq.
         inductance: [f64; 3],
     },
-    /// The table cannot be gone on with.
+    /// The table cannot be continued beyond its edges.
     #[error("no flux linkage that grows with the currents goes on where the table ends")]
     NoFrame,
 }
 
 impl FluxMapError {
-    /// What to do about it.
+    /// The remedy, in words.
     #[must_use]
     pub const fn way_out(&self) -> &'static str {
         match self {

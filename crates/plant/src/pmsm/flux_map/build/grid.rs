@@ -2,10 +2,10 @@
 use super::{Coefficients, FluxData, FluxMapError, FluxPart, MOST_CURL};
 use servobench_base::Dq;
 
-/// Fluxes at i_q = 0 of a table that is mirrored there, as a part of the largest one.
+/// Largest flux at i_q = 0 of a table that is mirrored there, relative to the largest one.
 const NO_FLUX: f64 = 1e-3;
 
-/// What is known at a node.
+/// Data of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Node {
     coenergy: f64,
@@ -18,11 +18,11 @@ struct Node {
 pub(super) struct Grid {
     pub(super) i_d: Vec<f64>,
     pub(super) i_q: Vec<f64>,
-    /// Those of one i_d after the other.
+    /// Nodes of the first i_d, then those of the next one.
     nodes: Vec<Node>,
 }
 
-/// An edge from one node to another, and what the co-energy gains along it.
+/// An edge from one node to another, and the gain of the co-energy along it.
 struct Edge {
     from: usize,
     to: usize,
@@ -150,7 +150,7 @@ impl Grid {
         Ok(())
     }
 
-    /// Σ weight·(W'_to − W'_from − gain)² is smallest: by conjugate gradients, from what the ways along i_q = the first one say.
+    /// Minimises Σ weight·(W'_to − W'_from − gain)²: by conjugate gradients, starting from the gains along the first i_q.
     fn set_coenergy(&mut self, edges: &[Edge]) {
         let (rows, columns, count) = (self.i_d.len(), self.i_q.len(), self.nodes.len());
         let mut x = vec![0.0; count];
@@ -201,7 +201,7 @@ impl Grid {
     pub(super) fn cells(&self) -> Vec<Coefficients> {
         let cell = |j: usize, k: usize| {
             let (width_d, width_q) = (self.i_d[j + 1] - self.i_d[j], self.i_q[k + 1] - self.i_q[k]);
-            // What counts is the difference from the first node.
+            // Only the difference from the first node matters.
             let base = self.node(j, k).coenergy;
             let node = |a: usize, b: usize| {
                 let Node { coenergy, flux, cross } = self.node(j + a, k + b);
@@ -225,7 +225,7 @@ impl Grid {
         (0..self.across()).flat_map(|j| (0..self.along()).map(move |k| (j, k))).map(|(j, k)| cell(j, k)).collect()
     }
 
-    /// With a frame around it, `share` times as wide as the table, and the inductances behind it: of the d axis below and above, then
+    /// Adds a frame, `share` times as wide as the table; returns it with the inductances behind it: of the d axis below and above, then
     /// of the q axis.
     pub(super) fn framed(&self, share: f64) -> (Self, [[f64; 2]; 2]) {
         let (wider, beyond_d) = self.with_sides(share);
@@ -233,7 +233,7 @@ impl Grid {
         (wider.transposed(), [beyond_d, beyond_q])
     }
 
-    /// With d and q exchanged.
+    /// The grid with d and q exchanged.
     fn transposed(&self) -> Self {
         let (rows, columns) = (self.i_d.len(), self.i_q.len());
         let node = |k: usize, j: usize| {
@@ -244,7 +244,7 @@ impl Grid {
         Self { i_d: self.i_q.clone(), i_q: self.i_d.clone(), nodes }
     }
 
-    /// With a row of cells below and above the d axis: W' = W'₀ + ψ_d·x + (ψ_out − ψ_d)·x²/(2·width), ψ_out the same for all i_q.
+    /// Adds a row of cells below and above the d axis: W' = W'₀ + ψ_d·x + (ψ_out − ψ_d)·x²/(2·width), ψ_out the same for all i_q.
     fn with_sides(&self, share: f64) -> (Self, [f64; 2]) {
         let (rows, columns) = (self.i_d.len(), self.i_q.len());
         let width = share * (self.i_d[rows - 1] - self.i_d[0]);
@@ -327,7 +327,7 @@ fn check(data: &FluxData) -> Result<(), FluxMapError> {
     Ok(())
 }
 
-/// With the other half of a table that begins at i_q = 0: ψ_d is even in i_q, ψ_q is odd.
+/// Adds the other half of a table that begins at i_q = 0: ψ_d is even in i_q, ψ_q is odd.
 fn mirrored(data: &FluxData) -> Result<FluxData, FluxMapError> {
     if data.i_q[0] != 0.0 {
         return Ok(data.clone());

@@ -21,7 +21,7 @@ const H: f64 = 1.0 / 16e3;
 const REAL: Params =
     Params { carrier: 16e3, dead_time: 2.3e-6, device_drop: 0.9, on_resistance: 0.06, ..Params::IDEAL };
 
-/// Everything that a motor may have.
+/// All effects of a motor.
 fn every_effect() -> pmsm::Effects {
     pmsm::Effects {
         flux_map: Some(
@@ -53,7 +53,7 @@ fn every_effect() -> pmsm::Effects {
     }
 }
 
-/// A motor at `speed` on a voltage that stands in its rotor's frame; `each` sees it after every tick.
+/// A motor at `speed` on a voltage that is constant in its rotor's frame; `each` sees it after every tick.
 fn run(of: (&Params, Option<&LinkParams>), way: (Dq, f64), ticks: u32, each: impl FnMut(u32, &Synchronous)) {
     run_with(&pmsm::Effects::default(), of, way, ticks, each);
 }
@@ -91,7 +91,7 @@ fn the_loss_is_that_of_sinusoidal_currents() {
         let (current, speed) = (Dq { d: 1.5, q: 9.0 }, 2.0 * PI * 10.0);
         let p = Params { modulation, dead_time: 0.0, ..REAL };
         let needed = MOTOR.steady_voltage(current, 4.0 * speed);
-        // What the devices take of the fundamental: 4/π·U_T along the current, and r.
+        // Drop of the devices in the fundamental: 4/π·U_T along the current, and r.
         let taken = 4.0 / PI * 0.9 / current.magnitude() + 0.06;
         let voltage = Dq { d: needed.d + taken * current.d, q: needed.q + taken * current.q };
         let (mut loss, mut count, mut length) = (0.0, 0.0, 0.0);
@@ -110,7 +110,7 @@ fn the_loss_is_that_of_sinusoidal_currents() {
     }
 }
 
-/// Oracle: the first law, of the motor and of the capacitor, at every tick; what the devices and the dead time do included.
+/// Oracle: the first law, of the motor and of the capacitor, at every tick; with the effects of the devices and the dead time.
 #[test]
 fn what_the_mains_give_is_stored_lost_or_turned() {
     let effects = [pmsm::Effects::default(), every_effect()];
@@ -137,7 +137,7 @@ fn what_the_mains_give_is_stored_lost_or_turned() {
     }
 }
 
-/// Oracle: each other; where the current has no zero crossing the carrier does not matter. 16 A, of which no leg has less than 6, against a ripple of 0.2 A.
+/// Oracle: each other; without zero crossings of the current the carrier does not matter. 16 A, no leg below 6, against a ripple of 0.2 A.
 #[test]
 fn both_modulations_give_the_same_current() {
     let voltage = Dq { d: 45.0, q: -3.0 };
@@ -157,8 +157,8 @@ fn both_modulations_give_the_same_current() {
     assert!(error < 1e-3, "{averaged:?} {switching:?}");
 }
 
-/// Oracle: the exact segments. Phases that are equal make no other motor; what solves them between two edges leaves out what
-/// `pmsm::varying` says.
+/// Oracle: the exact segments. Equal phases do not change the motor; the error of the solution between two edges is given in
+/// `pmsm::varying`.
 #[test]
 fn a_winding_that_may_vary_is_followed_between_the_same_edges() {
     let p = Params { modulation: Modulation::Switching, ..REAL };
@@ -174,8 +174,8 @@ fn a_winding_that_may_vary_is_followed_between_the_same_edges() {
     }
 }
 
-/// Oracle: each other, over a revolution, with everything that a motor has. The averaged inverter ends
-/// at the circle, which is not met here.
+/// Oracle: each other, over a revolution, with all effects of a motor. The averaged inverter is limited
+/// by the circle, which is not reached here.
 #[test]
 fn both_modulations_drive_a_motor_with_effects_alike() {
     let p = Params { carrier: 16e3, ..Params::IDEAL };
