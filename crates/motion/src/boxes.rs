@@ -1,7 +1,7 @@
-//! The box lengths of a plan, all orders in one loop; the derivation is in the crate documentation.
+//! Lengths of the moving averages of a plan, all orders in one loop; the derivation is in the crate documentation.
 //!
 //! On [`whole`] numbers every bound that is met lowers the amplitude. In [`continuous`] time it stays the limit D, and a
-//! bound that binds is the peak from which the boxes behind it go on:
+//! bound that binds is the peak from which the averages behind it continue:
 //!
 //! ```text
 //! T1 = min(J/D, √(A/D), ∛(V/2D), ∜(X/8D))
@@ -11,24 +11,24 @@
 //!   J binds:  T2 = least T of  T = A/J,  T(T1 + T) = V/J,  2T(T1 + T)² = X/J;  …
 //! ```
 
-/// Admissible excess of a bound, relative: the rounding of one comparison. `Ts` itself, its fourth power, a product of
+/// Relative excess of a bound that is accepted: the rounding of one comparison. `Ts` itself, its fourth power, a product of
 /// four counts and two quotients are some fifteen roundings of 2⁻⁵³ each.
 const SLACK: f64 = 16.0 * f64::EPSILON;
 
-/// A continuous dwell below this part of the box that holds it is rounding of the request, not a dwell.
+/// Share of an average's length below which a continuous dwell in it is rounding of the request.
 const NO_DWELL: f64 = 1e-12;
 
 /// Largest sample count: above it not every whole number is an `f64`.
 pub(crate) const MAX_SAMPLES: f64 = 9_007_199_254_740_992.0;
 
-/// Whole lengths of the `bounds.len() − 1` boxes of the shortest profile that the sequential method finds.
+/// Whole lengths of the `bounds.len() − 1` moving averages of the shortest profile that the sequential method finds.
 ///
-/// `bounds` runs from the limit of the highest derivative over those below it to the distance, all positive and in the
-/// unit of time of the boxes. The boxes that an order does not have are zero. `None`: a move of more than [`MAX_SAMPLES`].
+/// `bounds` goes from the limit of the highest derivative over those below it to the distance, all positive and in the
+/// time unit of the averages. The averages that an order lacks are zero. `None`: a move of more than [`MAX_SAMPLES`].
 pub(crate) fn whole(bounds: &[f64]) -> Option<[f64; 4]> {
     let n = bounds.len() - 1;
     let mut boxes = [0.0; 4];
-    // The amplitude that makes the last chosen bound an equality, and ∏ and Σ of the boxes so far.
+    // The amplitude that makes the last chosen bound an equality, and ∏ and Σ of the averages so far.
     let (mut amplitude, mut product, mut sum) = (bounds[0], 1.0, 0.0);
     for (k, slot) in boxes.iter_mut().enumerate().take(n) {
         let shortest = |level: usize| shortest_whole(level - k - 1, sum, bounds[level] / (amplitude * product));
@@ -56,7 +56,7 @@ pub(crate) fn whole(bounds: &[f64]) -> Option<[f64; 4]> {
 /// Lengths of any size; `bounds` as for [`whole`].
 pub(crate) fn continuous(bounds: &[f64]) -> [f64; 4] {
     let n = bounds.len() - 1;
-    // `following` boxes more are as short as their order permits.
+    // The next `following` averages are as short as their order permits.
     let (mut boxes, mut sum, mut following) = ([0.0; 4], 0.0, 0);
     for k in 0..n {
         if following > 0 {
@@ -72,9 +72,9 @@ pub(crate) fn continuous(bounds: &[f64]) -> [f64; 4] {
     boxes
 }
 
-/// Which of `bounds` binds the box behind those that sum up to `sum` and reach `peak`, and the length that it permits.
+/// Index of the one of `bounds` that binds the average behind those that sum up to `sum` and reach `peak`, and its permitted length.
 ///
-/// Only the first one costs no root: of the others, the cubic last, one is taken where the length so far exceeds the bound.
+/// Only the first one needs no root: for the others, the cubic last, one is computed if the length so far exceeds the bound.
 fn binding(sum: f64, peak: f64, bounds: &[f64]) -> (usize, f64) {
     let (mut which, mut length) = (0, bounds[0] / peak);
     for i in [1, 3, 2] {
@@ -87,21 +87,21 @@ fn binding(sum: f64, peak: f64, bounds: &[f64]) -> (usize, f64) {
     (which, length)
 }
 
-/// How far the whole numbers of the fewest samples may lie from the lengths of the continuous profile: to the next whole
+/// Distance of the whole numbers of the fewest samples from the lengths of the continuous profile: up to the next whole
 /// number, and this much farther. Brute force over far wider windows finds nothing shorter (`tests/plans/fewest.rs`).
 const REACH: f64 = 2.0;
 
-/// Whole lengths of the `bounds.len() − 1` boxes of the profile with the smallest sum; of several, the one with the lowest
-/// amplitude. `bounds` and `None` as for [`whole`].
+/// Whole lengths of the `bounds.len() − 1` moving averages of the profile with the smallest sum; among several, the one with the
+/// lowest amplitude. `bounds` and `None` as for [`whole`].
 ///
-/// With the distance X = amplitude·∏ n_k, a bound on the product of the first m boxes and the amplitude is one on the
-/// product of the boxes behind them, for whatever n_1 … n_m:
+/// With the distance X = amplitude·∏ n_k, a bound on the product of the first m averages and the amplitude is one on the
+/// product of the averages behind them, for any n_1 … n_m:
 ///
 /// ```text
 /// X/V ≤ n_4,   X/A ≤ n_3·n_4,   X/J ≤ n_2·n_3·n_4,   X/D ≤ n_1·n_2·n_3·n_4        (order 4)
 /// ```
 ///
-/// All but the last box take every whole number near the continuous length; the last follows.
+/// All but the last average take every whole number near the continuous length; the last follows.
 pub(crate) fn fewest(bounds: &[f64]) -> Option<[f64; 4]> {
     let near = continuous(bounds);
     let mut search = Search { bounds, near, best: whole(bounds)? };
@@ -109,7 +109,7 @@ pub(crate) fn fewest(bounds: &[f64]) -> Option<[f64; 4]> {
     Some(search.best)
 }
 
-/// The boxes that are tried, and the best of them.
+/// Search for the best averages.
 struct Search<'a> {
     bounds: &'a [f64],
     near: [f64; 4],
@@ -117,7 +117,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Tries all lengths from box `k` on behind `boxes`, whose sum is `sum`.
+    /// Tries all lengths from average `k` on behind `boxes`, whose sum is `sum`.
     fn from(&mut self, k: usize, mut boxes: [f64; 4], sum: f64) {
         let last = self.bounds.len() - 2;
         let shortest = sum.max(1.0);
@@ -152,7 +152,7 @@ fn rank(boxes: &[f64; 4]) -> (f64, f64) {
     (boxes.iter().sum(), -product)
 }
 
-/// Product of a box of length `t` and the `i` shortest boxes that may follow it, if those before it sum up to `c`:
+/// Product of an average of length `t` and the `i` shortest averages that may follow it, if those before it sum up to `c`:
 /// 2^(i(i−1)/2)·t·(c + t)^i.
 fn growth(i: usize, c: f64, t: f64) -> f64 {
     const DOUBLINGS: [f64; 4] = [1.0, 1.0, 2.0, 8.0];
@@ -168,7 +168,7 @@ fn shortest_whole(i: usize, c: f64, q: f64) -> f64 {
     smallest_whole(root(i, c, q), c, |n| growth(i, c, n) >= q * (1.0 - SLACK))
 }
 
-/// Positive root of `growth(i, c, t) = q`; i = 3 occurs for the first box only, where c = 0.
+/// Positive root of `growth(i, c, t) = q`; i = 3 occurs for the first average only, where c = 0.
 fn root(i: usize, c: f64, q: f64) -> f64 {
     match i {
         0 => q,
@@ -183,7 +183,7 @@ fn root(i: usize, c: f64, q: f64) -> f64 {
 /// that the steps lead from either side to the root and not past it. Cardano's formula, (23) of the paper, cancels for
 /// t ≪ c.
 fn cubic(c: f64, q: f64) -> f64 {
-    /// A step so small, as a part of the root, leaves the cube of it: less than rounding.
+    /// Last step, relative to the root: it leaves the cube of itself, which is below rounding.
     const LAST: f64 = 1e-6;
     let mut t = near_cubic(c, q);
     loop {
@@ -197,7 +197,7 @@ fn cubic(c: f64, q: f64) -> f64 {
     }
 }
 
-/// The root of [`cubic`] to a percent from t = c on, where [`continuous`] boxes lie; below it a bound.
+/// The root of [`cubic`] to a percent from t = c on, where [`continuous`] averages lie; below it a bound.
 fn near_cubic(c: f64, q: f64) -> f64 {
     let inverse = near_inverse_cbrt(q);
     let part = c * inverse;

@@ -1,15 +1,15 @@
-//! What all generators have in common.
+//! Common interface of all generators.
 use crate::online::Transition;
 use crate::{Piece, Profile, Trajectory};
 use servobench_base::Setpoint;
 
-/// A set-point over time, whatever planned it: polynomials one after the other, in the axis unit (m or rad) and seconds from
+/// A set-point over time from any planner: consecutive polynomials, in the axis unit (m or rad) and seconds from
 /// its start.
 pub trait Course {
     /// Duration (s).
     fn duration(&self) -> f64;
 
-    /// The polynomial that holds at `t` (s): that of the start before it, that of the end from there on.
+    /// The polynomial at `t` (s): that of the start before it, that of the end from there on.
     fn piece(&self, t: f64) -> Piece;
 
     /// The set-point at `t` (s).
@@ -17,7 +17,7 @@ pub trait Course {
         self.piece(t).at(t)
     }
 
-    /// The state at the end, from which it goes on at its velocity.
+    /// The state at the end, which continues at its velocity.
     fn end(&self) -> Setpoint {
         self.at(self.duration())
     }
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::{Limits, Order, PlanError};
 
-    /// Oracle: the set-point looked up at every instant.
+    /// Oracle: the set-point computed separately at every instant.
     #[test]
     fn a_course_is_walked_piece_by_piece() -> Result<(), PlanError> {
         let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };

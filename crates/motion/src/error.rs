@@ -1,14 +1,14 @@
-//! Why a move cannot be planned.
+//! Errors of planning a move.
 use servobench_base::{ParamError, Stateful};
 use thiserror::Error;
 
-/// A request that is refused, with what would be accepted.
+/// A refused request, with the remedy.
 #[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum PlanError {
-    /// A distance, limit or time that is no number of the right sign.
+    /// A distance, limit or time that is not a number of the right sign.
     #[error(transparent)]
     Parameter(#[from] ParamError),
-    /// A value so large or small that the numbers of the plan would leave what `f64` represents well.
+    /// A value so large or small that the numbers of the plan would leave the range that `f64` represents well.
     #[error("`{name}` must be between {lowest:e} and {highest:e} (SI), got {value:e}: {remedy}")]
     OutOfRange {
         /// Field name.
@@ -19,7 +19,7 @@ pub enum PlanError {
         lowest: f64,
         /// Largest accepted magnitude (SI).
         highest: f64,
-        /// The way out, in words.
+        /// The remedy, in words.
         remedy: &'static str,
     },
     /// A sampled move with more samples than an `f64` counts exactly.
@@ -28,12 +28,12 @@ pub enum PlanError {
          counted: take a longer sample time, a shorter distance or higher limits"
     )]
     TooManySamples {
-        /// Number of samples that the continuous move lasts.
+        /// Number of samples of the continuous move.
         samples: f64,
         /// Requested sample time (s).
         sample_time: f64,
     },
-    /// A move asked to be faster than its limits allow.
+    /// A requested duration below the shortest one within the limits.
     #[error("`duration` must be at least {shortest} s, got {duration} s: stretch to a longer time or raise the limits")]
     TooShort {
         /// Requested duration (s).
@@ -50,12 +50,12 @@ pub enum PlanError {
         name: &'static str,
         /// Rejected value, in the unit of the field.
         value: f64,
-        /// What the value must be, in words.
+        /// Bound on the value, in words.
         bound: &'static str,
-        /// The way out, in words.
+        /// The remedy, in words.
         remedy: &'static str,
     },
-    /// A table without a way from one point to another.
+    /// A table with fewer than two points.
     #[error("a table needs at least 2 points, got {points}: add the point where the move ends")]
     TooFewPoints {
         /// Number of points.
@@ -67,14 +67,14 @@ pub enum PlanError {
          raise the limit"
     )]
     TableTooFast {
-        /// What is beyond its limit.
+        /// Quantity beyond its limit.
         quantity: &'static str,
-        /// The most that the best share takes (SI).
+        /// Peak with the best share (SI).
         peak: f64,
         /// The limit (SI).
         limit: f64,
     },
-    /// A slice of the caller that cannot hold a value for each point.
+    /// A caller's slice without room for a value per point.
     #[error("`{name}` must hold a value for each of {points} points, got room for {length}: pass a longer slice")]
     ShortSlice {
         /// Argument name.
@@ -99,15 +99,15 @@ pub enum PlanError {
         /// Largest accepted magnitude (SI).
         highest: f64,
     },
-    /// An interval asked for before all its samples are there.
+    /// An interval requested before all its samples are there.
     #[error("the interpolation needs {needed} samples, got {received}: push the missing ones first")]
     Waiting {
-        /// Number of samples that are there.
+        /// Number of samples so far.
         received: usize,
         /// Number of samples that the mode needs.
         needed: usize,
     },
-    /// A filter with more impulses than are kept.
+    /// A filter with more impulses than its capacity.
     #[error(
         "the filter has {impulses} impulses, at most {capacity} are kept: take fewer shapers or shorter ones, or filter one \
          after the other"
@@ -115,7 +115,7 @@ pub enum PlanError {
     TooManyImpulses {
         /// Number of impulses.
         impulses: usize,
-        /// Number that is kept at most.
+        /// Maximum number of impulses.
         capacity: usize,
     },
     /// A streaming filter that lasts longer than its memory.

@@ -1,7 +1,7 @@
-//! Between a slow commanding task and a fast drive task: set-points at any fraction of a slow period.
+//! Interpolation between a slow commanding task and a fast drive task: set-points at any fraction of a slow period.
 //!
 //! The slow task gives position, velocity, acceleration and torque once every T; the fast one reads in between. With
-//! the samples `0` and `1` at the ends of the interval, `−2 … 3` around it, D = x1 − x0, and u the fraction of T passed:
+//! the samples `0` and `1` at the ends of the interval, `−2 … 3` around it, D = x1 − x0, and u the elapsed fraction of T:
 //!
 //! ```text
 //! linear    x = x0 + D·u
@@ -16,7 +16,7 @@
 //! Hermite polynomials and uniform B-splines: de Boor, *A Practical Guide to Splines*, 1978, ch. IV and X;
 //! Biagiotti & Melchiorri, *Trajectory Planning for Automatic Machines and Robots*, 2008, ch. 2 and 8.
 //!
-//! # What each mode promises
+//! # Properties of the modes
 //!
 //! | mode | meets the samples | continuous | exact for degree | delay | v and a are |
 //! |---|---|---|---|---|---|
@@ -28,14 +28,14 @@
 //! | all linear | x, v, a | x, v, a | 1 in each of x, v, a | T | interpolated by themselves |
 //! | all cubic | x, v, a | x, v, a and dx/dt | 3 in each of x, v | T | v: cubic by v and a; a = dv/dt |
 //!
-//! A polynomial mode follows whatever velocity and acceleration it is given, and where they do not belong to the
-//! positions it swings. A B-spline cannot, but rounds corners: what it makes of a parabola has the right velocity and
-//! acceleration and is off in position by `a·T²·(n + 1)/24`, n the degree (the variance of B is (n + 1)/12).
+//! A polynomial mode follows any given velocity and acceleration, and swings where they do not match the
+//! positions. A B-spline cannot swing, but rounds corners: for a parabola it has the right velocity and
+//! acceleration, and a position error of `a·T²·(n + 1)/24`, n the degree (the variance of B is (n + 1)/12).
 //!
 //! # Delay
 //!
 //! An interval can be read only when all its samples are there. Pushed at k·T, sample k opens the interval that ends
-//! [`Mode::delay_samples`] − 1 samples before it: what is read at t is the set-point of t − delay·T. The source's
+//! [`Mode::delay_samples`] − 1 samples before it: the value read at t is the set-point of t − delay·T. The source's
 //! prediction by one or two steps, its states and its buffer belong around this: [`Interval`] is one interval as a value,
 //! so a buffer may hold several; [`Interpolator`] holds the newest one.
 //!
@@ -101,7 +101,7 @@ impl Mode {
         }
     }
 
-    /// By how many slow periods the output lags when an interval is read as soon as it can be: half of
+    /// Delay of the output in slow periods when an interval is read as soon as possible: half of
     /// [`points`](Self::points).
     #[must_use]
     pub const fn delay_samples(self) -> usize {

@@ -1,4 +1,4 @@
-//! What a move may not exceed, and the order of the profile that respects it.
+//! Limits of a move, and the order of the profile that respects them.
 use crate::PlanError;
 use servobench_base::{ParamError, Stateful, positive};
 use servobench_config::Kind::Axis;
@@ -16,7 +16,7 @@ pub enum Order {
 }
 
 impl Order {
-    /// The order whose `derivative` is piecewise constant, the inverse of [`Order::derivative`]; `None` but for 2, 3, 4.
+    /// The order whose `derivative` is piecewise constant, the inverse of [`Order::derivative`]; `None` except for 2, 3, 4.
     #[must_use]
     pub const fn from_derivative(derivative: u8) -> Option<Self> {
         match derivative {
@@ -27,7 +27,7 @@ impl Order {
         }
     }
 
-    /// The derivative that is piecewise constant, and the number of boxes: 2, 3 or 4.
+    /// The derivative that is piecewise constant, and the number of moving averages: 2, 3 or 4.
     #[must_use]
     pub const fn derivative(self) -> usize {
         match self {
@@ -72,12 +72,12 @@ pub struct Limits {
     pub snap: f64,
 }
 
-/// Smallest and largest magnitude (SI) that a request may hold. Between them no product of four box lengths, limits
+/// Smallest and largest accepted magnitude (SI) in a request. Between them no product of four lengths of averages, limits
 /// or sample times leaves the normal range of `f64`, so that every plan is finite.
 pub(crate) const RANGE: (f64, f64) = (1e-30, 1e30);
 
 impl Limits {
-    /// No limit at all: the base for `Limits { velocity: 1.0, acceleration: 5.0, ..Limits::UNLIMITED }`.
+    /// No limits: the base for `Limits { velocity: 1.0, acceleration: 5.0, ..Limits::UNLIMITED }`.
     pub const UNLIMITED: Self =
         Self { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY, snap: f64::INFINITY };
 

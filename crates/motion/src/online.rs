@@ -6,25 +6,25 @@
 //!
 //! Between two states of a chain of integrators, let
 //!
-//! - *away* be the fastest way to gain velocity towards the target: at order 3 to the velocity limit, at order 4 to the largest
-//!   acceleration and on with it,
-//! - *home* the fastest way to the target's derivatives, one integrator less: the same problem one order below.
+//! - *away* be the fastest path that gains velocity towards the target: at order 3 to the velocity limit, at order 4 to the largest
+//!   acceleration, which is then held,
+//! - *home* the fastest path to the target's derivatives, one integrator less: the same problem one order below.
 //!
-//! Who follows *away* for a time τ and goes *home* from there covers the more the longer τ is; the first τ that meets the
-//! target is taken. Where that would pass the limit, the limit is touched for an instant, with the one value of the highest
-//! state with which the target is met; where a touch at rest is not far enough, there is a cruise. So order n is a root in
-//! one unknown over order n − 1, and order 2 is two parabolas. Where the velocity has a limit and rates that differ by its
+//! A path that follows *away* for a time τ and *home* from there covers the more the longer τ is; the first τ that meets the
+//! target is taken. If that would pass the limit, the limit is touched for an instant, with the one value of the highest
+//! state for which the target is met; if a touch at rest is not far enough, there is a cruise. So order n is a root in
+//! one unknown over order n − 1, and order 2 is two parabolas. If the velocity has a limit and rates that differ by its
 //! direction, as in a transition of order 2, `trapezoid` has them.
 //!
-//! How much farther one gets by a longer τ is known in closed form (`second::Fastest::grows`, `costate`), so that Newton's method
-//! finds each root in a few looks, and the inner one, which begins where the last one ended, in fewer.
+//! The additional distance of a longer τ is known in closed form (`second::Fastest::grows`, `costate`), so that Newton's method
+//! finds each root in a few evaluations, and the inner one, which begins where the last one ended, in fewer.
 //!
-//! Order 4 adds the one thing that order 3 does not need: a state may be so near its velocity limit that the fastest way
-//! passes it though a slower one does not. `ladder` says what is tried then.
+//! Order 4 needs one addition to order 3: a state may be so near its velocity limit that the fastest path
+//! passes it though a slower one does not. `ladder` has the alternatives.
 //!
 //! # Accelerations that differ
 //!
-//! By its direction: [`DirectionalLimits`]. While the speed grows and while it falls, as a drive's and a block's:
+//! By its direction: [`DirectionalLimits`]. While the speed grows and while it falls, as in drives and function blocks:
 //! [`RampLimits`], with [`Transition::plan_ramps`].
 //!
 //! # Passing a target
@@ -34,7 +34,7 @@
 //!
 //! # Cost
 //!
-//! Of one call, in µs, where `rsruckig` takes 0.39 to rest (median, and what one in a thousand takes; `cargo bench --bench online`):
+//! Of one call, in µs, where `rsruckig` takes 0.39 to rest (median, and the worst of a thousand; `cargo bench --bench online`):
 //!
 //! | | order 2 | order 3 | order 4 |
 //! |---|---|---|---|
@@ -42,7 +42,7 @@
 //! | [`Transition::plan_ramps`] | 0.2, 0.3 | 1.0, 5 | 6, 130 |
 //! | [`passing_velocity`] | 0.3, 0.4 | 0.5, 11 | 3, 200 |
 //!
-//! The slowest start next to their limits and have to turn round; those of [`passing_velocity`] try plans. From any state within its
+//! The slowest start next to their limits and have to reverse; those of [`passing_velocity`] try plans. From any state within its
 //! limits ("from anywhere") order 4 takes 8 and one in a thousand 117, the slowest of the bench 190; with [`Effort::Refined`] 8, 131 and
 //! 830.
 mod arrival;
@@ -83,7 +83,7 @@ servobench_config::choices! {
     }
 }
 
-/// Where a transition ends, with neither acceleration nor jerk.
+/// End of a transition, with neither acceleration nor jerk.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Target {
     /// At a position (m or rad), passed at a velocity (m/s or rad/s), zero for a stop there.
@@ -93,11 +93,11 @@ pub enum Target {
         /// Velocity.
         v: f64,
     },
-    /// At a velocity (m/s or rad/s), wherever that is reached.
+    /// At a velocity (m/s or rad/s), wherever it is reached.
     Velocity(f64),
 }
 
-/// What a transition may not exceed, velocity and acceleration by direction; in the axis unit (m or rad).
+/// Limits of a transition, velocity and acceleration by direction; in the axis unit (m or rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DirectionalLimits {
     /// Velocity (m/s or rad/s).
@@ -130,7 +130,7 @@ impl DirectionalLimits {
     }
 }
 
-/// The four that every order uses by their names, and those of the higher orders.
+/// Checks the four limits of every order by their names, and those of the higher orders.
 fn check_limits(order: Order, named: [(&'static str, f64); 4], jerk: f64, snap: f64) -> Result<(), PlanError> {
     let higher = [("jerk", jerk, Order::Third), ("snap", snap, Order::Fourth)];
     for (name, value) in named {

@@ -1,31 +1,31 @@
-//! The shortest snap-limited move: the half of it up to the middle.
+//! The first half of the shortest snap-limited move.
 //!
-//! The product of four boxes ([`crate`]) brings jerk to zero at peak velocity. Where velocity does not cruise that is not
-//! the shortest: the acceleration may swing straight from +a to −a, crossing zero with the jerk −j. The half move is
+//! The product of four moving averages ([`crate`]) brings jerk to zero at peak velocity. Without a cruise that is not
+//! the shortest: the acceleration may swing directly from +a to −a, crossing zero with the jerk −j. The half move is
 //!
 //! ```text
 //! up:    a from 0 to a_p,   jerk 0 → α → 0          α = min(√a_p, J)     β = a_p/α     lasting α + β
 //! hold:  a = a_p for η      only at a_p = A
 //! down:  a from a_p to 0,   jerk 0 → −δ → −j        δ = min(√P, J)       ε = P/δ       lasting δ + ε − j
 //! ```
-//! Turned around in time, the way down is what is left of a way up to P = a_p + j²/2 after its first j seconds, in which
-//! the jerk has risen to j and the acceleration to j²/2. A way up is a step through the boxes α and β: it rises by half
-//! of its time, and the second integral has its variance besides.
+//! Reversed in time, the way down is the rest of a way up to P = a_p + j²/2 after its first j seconds, in which
+//! the jerk has risen to j and the acceleration to j²/2. A way up is a step through averages of lengths α and β: it rises by half
+//! of its time, and the second integral also has its variance.
 //!
 //! ```text
 //! v_up = a_p·(α+β)/2                          x_up = a_p·((α+β)²/8 + (α²+β²)/24)
 //! v_down = (P − j²)·(δ+ε)/2 + j³/3            ∂v/∂a_p = α/2 + β + δ/2 + ε − j²/(2δ)
 //! ```
-//! The second half is the first one turned about the middle, x(T − t) = X − x(t). Three regions, by what binds there:
+//! The second half is the first one rotated about the middle, x(T − t) = X − x(t). Three regions, by the binding limit there:
 //!
 //! | | velocity at the middle | jerk −j there |
 //! |---|---|---|
 //! | swing | below V | the largest, min(J, √(2·a_p)) |
 //! | touch | V for an instant | between |
-//! | cruise | V for t_v | 0: the product of boxes |
+//! | cruise | V for t_v | 0: the product of moving averages |
 //!
-//! The more jerk is left in the middle, the shorter is the way to V: two half moves to V, without jerk and with the
-//! largest, tell the regions apart.
+//! The more jerk remains in the middle, the shorter is the distance to V: two half moves to V, without jerk and with the
+//! largest, distinguish the regions.
 //!
 //! Everything here is in units in which the distance and the snap limit are one.
 use crate::root::{between, increasing};
@@ -48,9 +48,9 @@ pub(crate) struct Half {
 /// The acceleration rises from 0 to a peak, without jerk at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Swell {
-    /// Length of the shorter box, and largest jerk.
+    /// Length of the shorter average, and largest jerk.
     jerk: f64,
-    /// Length of the longer box.
+    /// Length of the longer average.
     rise: f64,
 }
 
@@ -72,7 +72,7 @@ impl Swell {
 }
 
 impl Half {
-    /// Acceleration up to `peak` and at once down to zero at the jerk −`end`, within the jerk limit `jerk`; `end` is at
+    /// Acceleration up to `peak` and immediately down to zero at the jerk −`end`, within the jerk limit `jerk`; `end` is at
     /// most `jerk` and √(2·`peak`).
     fn new(peak: f64, end: f64, jerk: f64) -> Self {
         Self { peak, up: Swell::new(peak, jerk), hold: 0.0, down: Swell::new(peak + 0.5 * end * end, jerk), end }
@@ -119,14 +119,14 @@ impl Half {
     const fn x(&self) -> f64 {
         let Self { peak, up, hold, down, end } = *self;
         let off = down.time() - end;
-        // Back from the middle the velocity falls by the integral of the way up that is left.
+        // Back from the middle the velocity falls by the integral of the rest of the way up.
         let begun = end * end * (end * end / 24.0 + off * (end / 6.0 + off / 4.0));
         let fallen = (peak + 0.5 * end * end) * down.second() - begun;
         peak * (up.second() + 0.5 * hold * (up.time() + hold)) + self.v() * off - fallen
     }
 }
 
-/// `long` − `short`, or zero where that is the rounding of the root that they follow from.
+/// `long` − `short`, or zero if that is the rounding of the root from which they follow.
 fn difference(long: f64, short: f64) -> f64 {
     if long <= short * (1.0 + 1e-13) { 0.0 } else { long - short }
 }
@@ -141,11 +141,11 @@ pub(crate) struct Scaled {
 
 /// The first half of the shortest move over a unit distance at unit snap; `None` when it cruises.
 pub(crate) fn half(limits: &Scaled) -> Option<Half> {
-    // Going up alone covers a_p²/2 at least, so a_p < 1. From v down to zero at −a_p covers v²/(2·a_p), so v < 1.
+    // The way up alone covers a_p²/2 at least, so a_p < 1. From v down to zero at −a_p covers v²/(2·a_p), so v < 1.
     let limits = Scaled { velocity: limits.velocity.min(1.0), acceleration: limits.acceleration.min(1.0), ..*limits };
     let cubed = limits.velocity / FREE_SWING.0;
     let steepest = limits.jerk.min(SQRT_2 * libm::cbrt(cubed)).min(libm::sqrt(2.0 * limits.acceleration));
-    // The way is stationary at the steepest: almost a linear function of the square of what the jerk is less.
+    // The distance is stationary at the steepest: almost a linear function of the square of the missing jerk.
     let reaching = |square: f64| reaching(steepest * (1.0 - libm::sqrt(square)), &limits);
     let beyond = |square: f64| off_middle(reaching(square).x());
     let longest = beyond(1.0);
@@ -159,15 +159,15 @@ pub(crate) fn half(limits: &Scaled) -> Option<Half> {
     Some(reaching(between((0.0, shortest), (1.0, longest), beyond)))
 }
 
-/// What a position near the middle of the way is off by, or zero where that is rounding.
+/// Offset of a position from the middle of the distance, or zero if that is rounding.
 fn off_middle(x: f64) -> f64 {
     let off = x - 0.5;
     if off.abs() < 4.0 * f64::EPSILON { 0.0 } else { off }
 }
 
-/// To the velocity limit in the middle, with the jerk −`end` there.
+/// The half move to the velocity limit in the middle, with the jerk −`end` there.
 fn reaching(end: f64, limits: &Scaled) -> Half {
-    /// A step so small, as a part of the peak, leaves the square of it: what is missing then is rounding.
+    /// Last step, relative to the peak: its square, the remainder, is rounding.
     const LAST: f64 = 1e-8;
     let Scaled { velocity, acceleration, jerk } = *limits;
     // From above: v is at least that of the free swing, and at least a_p²/J.
@@ -181,14 +181,14 @@ fn reaching(end: f64, limits: &Scaled) -> Half {
             let hold = if peak < acceleration { 0.0 } else { short / peak };
             return Half { hold, ..half };
         }
-        // The velocity grows ever faster with the peak: Newton's method comes down to the root and does not pass it.
+        // The velocity grows ever faster with the peak: Newton's method descends to the root and does not pass it.
         step = -short / half.v_by_peak();
         peak -= step;
     }
     Half::new(peak, end, jerk)
 }
 
-/// As if there were no limit of velocity.
+/// The half move without a limit of velocity.
 fn swing(limits: &Scaled) -> Half {
     let Scaled { acceleration: highest, jerk, .. } = *limits;
     let steepest = |peak: f64| Half::new(peak, libm::sqrt(2.0 * peak).min(jerk), jerk);
@@ -202,7 +202,7 @@ fn swing(limits: &Scaled) -> Half {
         let lowest = highest.min(0.5 * jerk * jerk).min(free);
         return steepest(increasing(lowest, highest, |peak| off_middle(steepest(peak).x())));
     }
-    // The hold adds its own a_p·η²/2, and η times what is constant in time around it: v going up, a_p on the way down.
+    // The hold adds its own a_p·η²/2, and η times the velocity gained on the way up plus a_p times the duration of the way down.
     let v = highest * (0.5 * at_highest.up.time() + at_highest.down.time() - at_highest.end);
     Half { hold: 2.0 * short / (v + libm::sqrt(v * v + 2.0 * highest * short)), ..at_highest }
 }

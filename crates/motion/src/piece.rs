@@ -2,21 +2,21 @@
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::{Setpoint, Stateful};
 
-/// The polynomial that holds at one time of a [`Profile`](crate::Profile) and for a while after it.
+/// Polynomial at one time of a [`Profile`](crate::Profile) and for a while after it.
 ///
-/// Whoever asks for set-points in the order of time keeps it as long as it [`holds`](Self::holds), instead of having
-/// it looked up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same bit for bit.
+/// To read set-points in the order of time, keep a piece as long as it [`holds`](Self::holds), instead of looking it
+/// up at each instant by [`Profile::at`](crate::Profile::at); the set-points are the same bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Piece {
     pub(crate) anchor: Setpoint,
-    /// Where the polynomial is anchored and how far it goes (s from `origin`, in the direction of `sign`).
+    /// Anchor of the polynomial and its duration (s from `origin`, in the direction of `sign`).
     pub(crate) start: f64,
     pub(crate) length: f64,
     /// 0 and 1, or the end of the move and −1: x(t) = `base` + `sign`·polynomial(`sign`·(t − `origin`)).
     pub(crate) origin: f64,
     pub(crate) sign: f64,
     pub(crate) base: f64,
-    /// A switching instant that is nearer than this counts as reached (s).
+    /// Distance within which a switching instant counts as reached (s).
     pub(crate) tolerance: f64,
     /// The next switching instant (s from `origin`).
     pub(crate) until: f64,
@@ -44,19 +44,19 @@ impl Piece {
         Self::forward(anchor, start, until - start, until)
     }
 
-    /// `setpoint` as it is until `until` (s), although its velocity is not zero: a set-point held between two samples.
+    /// `setpoint`, unchanged until `until` (s), although its velocity is not zero: a set-point held between two samples.
     #[must_use]
     pub const fn held(setpoint: Setpoint, until: f64) -> Self {
         Self::forward(setpoint, 0.0, 0.0, until)
     }
 
-    /// The same, a switching instant that is nearer than `tolerance` (s) counting as reached.
+    /// The same with `tolerance` (s): a switching instant nearer than that counts as reached.
     #[must_use]
     pub const fn within(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
     }
 
-    /// The same passed `factor` times as slowly.
+    /// The same, executed `factor` times as slowly.
     #[must_use]
     pub fn slowed(&self, factor: f64) -> Self {
         let [start, length, origin] = [self.start, self.length, self.origin].map(|time| time * factor);
@@ -64,7 +64,7 @@ impl Piece {
         Self { anchor: self.anchor.at_pace(1.0 / factor), start, length, origin, tolerance, until, ..*self }
     }
 
-    /// The same seen from the time `time` (s) and the position `x` on: those are zero.
+    /// The same relative to the time `time` (s) and the position `x`.
     #[must_use]
     pub fn seen_from(&self, time: f64, x: f64) -> Self {
         Self { origin: self.origin - time, base: self.base - x, ..*self }
@@ -75,26 +75,26 @@ impl Piece {
         Self { anchor, start, length, origin: 0.0, sign: 1.0, base: 0.0, tolerance: 0.0, until }
     }
 
-    /// Whether it is still the one at `t` (s), a time not before the one that it was looked up for.
+    /// True if it still applies at `t` (s), a time not before the one for which it was looked up.
     #[inline(always)]
     #[must_use]
     pub fn holds(&self, t: f64) -> bool {
         t + self.tolerance - self.origin < self.until
     }
 
-    /// The time at which it ceases to hold (s); infinite for the last one.
+    /// The end of its validity (s); infinite for the last one.
     #[must_use]
     pub fn ends(&self) -> f64 {
         self.origin + self.until
     }
 
-    /// The set-point at `t` (s), a time at which it holds.
+    /// The set-point at `t` (s), a time at which it applies.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         let since = self.sign * (t - self.origin) - self.start;
         let state = self.anchor.after(since.max(0.0).min(self.length));
-        // The sum makes plain zeros of negative ones.
+        // The sum turns negative zeros into positive ones.
         Setpoint {
             x: self.base + self.sign * state.x,
             a: 0.0 + self.sign * state.a,

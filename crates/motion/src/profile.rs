@@ -1,4 +1,4 @@
-//! A planned rest-to-rest move: what it is made of, and the set-point at any time.
+//! A planned rest-to-rest move: its segments, and the set-point at any time.
 use crate::boxes;
 use crate::request::Request;
 use crate::sampled::Run;
@@ -11,12 +11,12 @@ pub struct Profile {
     order: Order,
     distance: f64,
     amplitude: f64,
-    /// `None` where it is no step through boxes.
+    /// `None` if it is not a step through moving averages.
     boxes: Option<Boxes>,
     /// Largest magnitudes of velocity and its derivatives; infinite above the order.
     peaks: [f64; 4],
     duration: f64,
-    /// A switching instant that is nearer than this counts as reached (s).
+    /// Distance within which a switching instant counts as reached (s).
     tolerance: f64,
     /// Starts of the segments of the first half of the move (s); infinite beyond the order.
     starts: [f64; 8],
@@ -26,7 +26,7 @@ pub struct Profile {
     anchors: [Setpoint; 8],
 }
 
-/// The boxes of a move that is a step through boxes.
+/// The moving averages of a move that is a step through them.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Boxes {
     /// Lengths in `unit`; zero beyond the order.
@@ -38,7 +38,7 @@ pub(crate) struct Boxes {
     pub(crate) sampled: bool,
 }
 
-/// Times for which each derivative stays at its peak within one pulse of it (s), as the literature names them.
+/// Times for which each derivative stays at its peak within one pulse of it (s), named as in the literature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Times {
     /// Snap, order 4 only.
@@ -70,7 +70,7 @@ pub struct Peaks {
 pub struct Samples {
     /// Sample time (s).
     pub time: f64,
-    /// Box lengths in samples; zero beyond the order.
+    /// Lengths of the moving averages in samples; zero beyond the order.
     pub boxes: [u64; 4],
 }
 
@@ -105,8 +105,8 @@ impl Profile {
         Self::whole(order, distance, limits, sample_time, boxes::whole)
     }
 
-    /// As [`plan_sampled`](Self::plan_sampled), with the fewest samples that a step through boxes needs, instead of the
-    /// sequential rounding; never more than there. Of several ways, that of the lowest amplitude.
+    /// As [`plan_sampled`](Self::plan_sampled), with the fewest samples for a step through moving averages, instead of the
+    /// sequential rounding; never more than that. Among several solutions, that of the lowest amplitude.
     ///
     /// # Errors
     /// As [`plan_sampled`](Self::plan_sampled).
@@ -114,7 +114,7 @@ impl Profile {
         Self::whole(order, distance, limits, sample_time, boxes::fewest)
     }
 
-    /// The move through the boxes that `choose` makes of the bounds in units of the sample time.
+    /// The move through the moving averages that `choose` returns for the bounds in units of the sample time.
     fn whole(
         order: Order,
         distance: f64,
@@ -136,10 +136,10 @@ impl Profile {
 
     /// Plans the shortest move of `distance` (m or rad; its sign is the direction) in continuous time.
     ///
-    /// At orders 2 and 3, and where an order 4 cruises, that is [`plan`](Self::plan); without a cruise the jerk goes on
+    /// At orders 2 and 3, and for an order 4 with a cruise, that is [`plan`](Self::plan); without a cruise the jerk continues
     /// through peak velocity and the move takes up to 6.94 % less time: (384·x/d)^¼ instead of (512·x/d)^¼, which is 7.457 %
-    /// longer, with the snap alone limited. With a cruise the shortest way to the velocity limit would leave it again in ever shorter swings
-    /// (Fuller's phenomenon); what that would gain, below 0.1 %, is left.
+    /// longer, with the snap alone limited. With a cruise the shortest path to the velocity limit would leave it again in ever shorter
+    /// swings (Fuller's phenomenon); that gain, below 0.1 %, is left out.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).
@@ -161,13 +161,13 @@ impl Profile {
         Ok(Self::continuous(order, distance, &bounds))
     }
 
-    /// The move through boxes of any length; `bounds` as in [`Request`].
+    /// The move through moving averages of any length; `bounds` as in [`Request`].
     fn continuous(order: Order, distance: f64, bounds: &[f64; 5]) -> Self {
         let boxes = if distance == 0.0 { [0.0; 4] } else { boxes::continuous(&bounds[..=order.derivative()]) };
         Self::from_boxes(order, distance, boxes, None)
     }
 
-    /// The move of `distance` with these boxes, in seconds or in samples. The boxes fulfil the order conditions.
+    /// The move of `distance` with averages of these lengths, in seconds or in samples. They fulfil the order conditions.
     pub(crate) fn from_boxes(order: Order, distance: f64, lengths: [f64; 4], sample_time: Option<f64>) -> Self {
         let n = order.derivative();
         let unit = sample_time.unwrap_or(1.0);
@@ -184,14 +184,14 @@ impl Profile {
         }
         let boxes = Boxes { lengths, dwells, unit, sampled: sample_time.is_some() };
         let duration = sum * unit;
-        // k·Ts against k/f is 1.5 ulp; a time found by subtracting is worse, which the sample grid can bear.
+        // k·Ts against k/f is 1.5 ulp; a time computed by subtraction is worse, which the sample grid tolerates.
         let tolerance = rounding(duration).max(if boxes.sampled { 1e-9 * unit } else { 0.0 });
         if sum == 0.0 {
             return Self { boxes: Some(boxes), peaks, tolerance, ..Self::empty(order, distance, duration) };
         }
         let (amplitude, v) = (peak.copysign(distance), peaks[0].copysign(distance));
         let (starts, lengths) = (segment::starts(&boxes, n), segment::lengths(&boxes, n));
-        // Of the cruise only the velocity is not zero: the residue that the integration leaves in the acceleration would
+        // In the cruise only the velocity is not zero: the residue that the integration leaves in the acceleration would
         // drift through a long one.
         let cruise = Setpoint { x: v * (starts[(1 << (n - 1)) - 1] / 2.0), v, ..Setpoint::default() };
         let anchors = match order {
@@ -224,7 +224,7 @@ impl Profile {
         let lengths = half.lengths().map(|length| length * unit);
         let duration: f64 = lengths.iter().sum();
         let mut profile = Self::empty(Order::Fourth, distance, 2.0 * duration);
-        // Where a unit of snap goes to: the amplitude that ends in the middle follows, the limit but for rounding.
+        // Integrals of a unit of snap: the amplitude that ends in the middle follows, the limit except for rounding.
         let (mut state, mut start) = (Setpoint::default(), 0.0);
         let segments = lengths.into_iter().zip(SIGNS).filter(|(length, _)| *length > 0.0);
         for (i, (length, sign)) in segments.enumerate() {
@@ -246,7 +246,7 @@ impl Profile {
         profile
     }
 
-    /// The same move with every time longer by `factor`.
+    /// The same move with every time multiplied by `factor`.
     pub(crate) fn slowed(&self, factor: f64) -> Self {
         let mut slow = Self::empty(self.order, self.distance, self.duration * factor);
         let slower = 1.0 / factor;
@@ -265,7 +265,7 @@ impl Profile {
     /// The set-point `t` seconds after the start: at rest at 0 before it, at rest at exactly the distance from the end
     /// on. A value that switches has its new value from the switching instant on.
     ///
-    /// The polynomial is taken from the start of the segment, and from the end of the move for its second half
+    /// The polynomial is evaluated from the start of the segment, and from the end of the move for its second half
     /// (x(t) = x_end − x(T − t)): no state is carried along, nothing drifts. A switching instant counts as reached
     /// within 4 ulp of the duration, and of a sampled plan within 1e-9 samples: k·Ts always hits, however it was
     /// rounded. NaN counts as before the start.
@@ -301,7 +301,7 @@ impl Profile {
         }
         let (anchor, start, length) = (self.anchors[i], self.starts[i], self.lengths[i]);
         if is_late {
-            // Passed from its end to its start, which belongs to it; but for the first segment, as the end of the move
+            // Traversed from its end to its start, which belongs to it; except for the first segment, as the end of the move
             // is at rest.
             let until = if i == 0 { 0.0 } else { (-before).next_up() };
             Piece { anchor, start, length, origin: duration, sign: -1.0, base: distance, tolerance, until }
@@ -328,14 +328,14 @@ impl Profile {
         self.duration
     }
 
-    /// The effective snap, jerk or acceleration by order (SI), signed by the direction: what the pulses reach, at most
+    /// The effective snap, jerk or acceleration by order (SI), signed by the direction: the value of the pulses, at most
     /// the limit, `distance/∏ T_k`.
     #[must_use]
     pub const fn amplitude(&self) -> f64 {
         self.amplitude
     }
 
-    /// Box lengths `T1 … Tn` (s); none where the move is no step through boxes.
+    /// Lengths of the moving averages `T1 … Tn` (s); none if the move is not a step through them.
     #[must_use]
     pub fn boxes(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         let (lengths, unit) = match &self.boxes {
@@ -345,7 +345,7 @@ impl Profile {
         lengths.iter().map(move |length| length * unit)
     }
 
-    /// Dwell of each derivative at its peak; `None` where the move is no step through boxes.
+    /// Dwell of each derivative at its peak; `None` if the move is not a step through moving averages.
     #[must_use]
     pub fn times(&self) -> Option<Times> {
         let Boxes { dwells, unit, .. } = self.boxes?;
@@ -357,13 +357,13 @@ impl Profile {
         })
     }
 
-    /// How long the velocity stays at its peak (s).
+    /// Duration of the peak velocity (s).
     #[must_use]
     pub fn cruise(&self) -> f64 {
         self.times().map_or(0.0, |times| times.t_v)
     }
 
-    /// Peak magnitudes; of a step through boxes `|x|/T_n`, `|x|/(T_n·T_(n−1))`, …
+    /// Peak magnitudes; for a step through moving averages `|x|/T_n`, `|x|/(T_n·T_(n−1))`, …
     #[must_use]
     pub const fn peaks(&self) -> Peaks {
         let [velocity, acceleration, jerk, snap] = self.peaks;

@@ -20,7 +20,7 @@
 //! A point without a velocity is approached linearly, b1 = (PT − P0)/T and b2 = b3 = 0. Position and velocity are
 //! continuous in a cubic table; velocity jumps at the points of a linear one, where the acceleration would be
 //! infinite and is given as that of the segment that begins. A cubic segment behind a linear one begins with the
-//! velocity that the linear one has; one that begins the table without a velocity begins at rest.
+//! velocity of the linear one; one that begins the table without a velocity begins at rest.
 //!
 //! # Velocities between given positions
 //!
@@ -31,7 +31,7 @@
 //! λ·V0 + 2·V1 + μ·V2 = r1 = 3(λ·s0 + μ·s1)
 //! ```
 //!
-//! - [`average`]: V1 = (P2 − P0)/(h0 + h1), without regard of that.
+//! - [`average`]: V1 = (P2 − P0)/(h0 + h1), which ignores that.
 //! - [`smooth`]: passes from the first point to the last, in place, each point from its neighbours. This row and the
 //!   next one solved for V1 are the formula F2 of the source, generalised to unequal times, and this row alone, for
 //!   the last point, its F1:
@@ -41,9 +41,9 @@
 //!   ```
 //!
 //!   A pass leaves at most (2λ1 + μ1·μ2)/(4 − μ1·λ2) ≤ 1/2 of the largest distance to the solution of all rows, 1/3
-//!   if all times are equal: the passes are iterations that solve the system, and two of them are what the source
-//!   shows.
-//! - [`continuous`]: that solution, a tridiagonal system solved in one sweep forth and back.
+//!   if all times are equal: the passes are iterations that solve the system, and the source shows two of
+//!   them.
+//! - [`continuous`]: that solution, a tridiagonal system solved in one forward and one backward sweep.
 //!
 //! Source: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020), sections "Cubic Polynomial Interpolation",
 //! "Calculating velocity for continuous accelerations" and "Using PVT points to generate S-curve moves".

@@ -5,7 +5,7 @@ use servobench_base::{finite, positive};
 
 /// A checked request.
 pub(crate) struct Request {
-    /// Signed distance (m or rad), a plain zero or in range.
+    /// Signed distance (m or rad), a positive zero or in range.
     pub(crate) distance: f64,
     /// Limits from the highest derivative down, then |distance|.
     pub(crate) bounds: [f64; 5],
@@ -19,7 +19,7 @@ impl Request {
     pub(crate) fn new(order: Order, distance: f64, limits: &Limits) -> Result<Self, PlanError> {
         let mut bounds = [f64::INFINITY; 5];
         bounds[..4].copy_from_slice(&limits.descending(order)?);
-        // Adding zero makes −0 a plain zero.
+        // Adding zero makes −0 a positive zero.
         let mut distance = finite("distance", distance)? + 0.0;
         if distance != 0.0 {
             distance = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?;

@@ -1,4 +1,4 @@
-//! The two profiles of Rockwell's Motion Axis Move: trapezoid and S-curve, with their ways to say jerk.
+//! The two profiles of Rockwell's Motion Axis Move: trapezoid and S-curve, with its forms of jerk.
 //!
 //! Velocity rises to the speed within the acceleration and its jerk, and falls within the deceleration and its own:
 //!
@@ -6,37 +6,38 @@
 //! v ≥ A²/J:  t_j = A/J,     t_a = v/A − A/J        lasting  v/A + A/J
 //! v < A²/J:  t_j = √(v/J),  t_a = 0                lasting  2·√(v/J)
 //! ```
-//! either way over v/2 times its length. Jerk "in % of time" is the part of the ramp in which the acceleration changes, half
-//! of it at each end: with t_a + 2·t_j = v/A + A/J and 2·t_j = %/100 of it, J = (A²/V)·(200/% − 1), where V is the speed that
-//! was asked for. It stays that when the distance is too short for this speed. A trapezoid takes all the jerk that the axis
-//! is configured for.
+//! in both cases over v/2 times its length. Jerk "in % of time" is the part of the ramp in which the acceleration changes, half
+//! of it at each end: with t_a + 2·t_j = v/A + A/J and 2·t_j = %/100 of it, J = (A²/V)·(200/% − 1), where V is the requested
+//! speed. It stays that when the distance is too short for this speed. A trapezoid uses the full jerk for which the axis
+//! is configured.
 //!
-//! Jerk as a time t_j is J = A/t_j. The ramp to V lasts V/A + t_j then, of which t_j is half at most: for t_j > V/A it is V/A. A move that
-//! is driven by a master counts in master units what another one counts in seconds: t_j = way/speed of the master.
+//! Jerk as a time t_j is J = A/t_j. The ramp to V lasts V/A + t_j then, of which t_j is half at most: for t_j > V/A it is V/A. A move
+//! driven by a master is in master units instead of seconds: t_j = distance/speed of the master.
 //!
-//! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move" and "Time based planning";
-//! the distances that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its profiles.
+//! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move" and "Time based
+//! planning"; the distances that K. T. Erickson, *Programmable Logic Controllers*, §3.2.3.1, prints for its examples are not those of its
+//! profiles.
 use crate::limits::in_range;
 use crate::online::Stretch;
 use crate::root::increasing;
 use crate::{Order, PlanError, Trajectory};
 use servobench_base::{ParamError, Setpoint, Stateful, finite, positive};
 
-/// How a move says its jerk.
+/// Jerk of a move, in one of its forms.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Jerk {
     /// As a value (m/s³ or rad/s³).
     Value(f64),
-    /// As a part of the jerk that the axis is configured for (%, above 0 to 100).
+    /// As a share of the jerk for which the axis is configured (%, above 0 to 100).
     PercentOfMaximum(f64),
-    /// As the part of the ramp in which the acceleration changes (%, above 0 to 100).
+    /// As the share of the ramp in which the acceleration changes (%, above 0 to 100).
     PercentOfTime(f64),
-    /// As the time in which the acceleration rises at the beginning of the ramp, and falls at its end (s). A time of more than half a ramp is
-    /// taken for half of it.
+    /// As the time in which the acceleration rises at the beginning of the ramp, and falls at its end (s). A time of more than half a ramp
+    /// counts as half of it.
     Time(f64),
-    /// The same in units of a master, which goes so many of them per second.
+    /// The same in units of a master.
     MasterUnits {
-        /// Way of the master while the acceleration rises, or falls (master units).
+        /// Distance of the master while the acceleration rises, or falls (master units).
         way: f64,
         /// Speed of the master (master units per second).
         speed: f64,
@@ -74,12 +75,12 @@ pub struct Move {
     pub shape: Shape,
 }
 
-/// Largest jerk that an axis is configured for (m/s³ or rad/s³).
+/// Largest jerk for which an axis is configured (m/s³ or rad/s³).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct MaximumJerk {
-    /// Of accelerations.
+    /// For accelerations.
     pub acceleration: f64,
-    /// Of decelerations.
+    /// For decelerations.
     pub deceleration: f64,
 }
 
@@ -158,7 +159,7 @@ impl Move {
 }
 
 impl Jerk {
-    /// The jerk (m/s³ or rad/s³) of a ramp with `acceleration` to `speed` on an axis that is configured for `maximum`.
+    /// The jerk (m/s³ or rad/s³) of a ramp with `acceleration` to `speed` on an axis configured for `maximum`.
     ///
     /// # Errors
     /// [`PlanError`] when a part is not above 0 and at most 100 %.
@@ -187,11 +188,11 @@ impl Jerk {
 }
 
 impl Ramp {
-    /// Lengths of the jerk and of the constant acceleration on the way to `v` (s).
+    /// Lengths of the jerk and of the constant acceleration up to `v` (s).
     fn times(&self, v: f64) -> [f64; 2] {
         let whole = self.acceleration / self.jerk;
         let constant = v / self.acceleration - whole;
-        // A rest of rounding is none: 100 % of time leaves no constant acceleration.
+        // A remainder of rounding does not count: 100 % of time leaves no constant acceleration.
         if constant > 1e-12 * whole { [whole, constant] } else { [libm::sqrt(v / self.jerk), 0.0] }
     }
 

@@ -1,18 +1,18 @@
 //! The root of an increasing function between two bounds.
 
-/// Evaluations at most: bisection between any two bounds that are not farther apart than 1e30 times the root takes 150.
+/// Maximum number of evaluations: bisection between any two bounds that are not farther apart than 1e30 times the root takes 150.
 const MOST: usize = 200;
 
-/// Where `f`, which increases, is zero between `low` and `high`; the nearer bound when it has one sign there.
+/// Root of `f`, which increases, between `low` and `high`; the nearer bound if `f` has one sign there.
 ///
-/// Chandrupatla's method (Advances in Engineering Software 28, 1997): inverse quadratic interpolation where the last three
-/// points say that it is safe, bisection elsewhere. It ends where the interval is one of rounding.
+/// Chandrupatla's method (Advances in Engineering Software 28, 1997): inverse quadratic interpolation if it is safe by the last
+/// three points, bisection otherwise. It ends when the interval is within rounding.
 pub(crate) fn increasing(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (f_low, f_high) = (f(low), f(high));
     increasing_from((low, f_low), (high, f_high), f)
 }
 
-/// The same with what `f` is known to be at both bounds.
+/// The same with known values of `f` at both bounds.
 #[inline]
 pub(crate) fn increasing_from(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     if low.1 >= 0.0 {
@@ -24,14 +24,14 @@ pub(crate) fn increasing_from(low: (f64, f64), high: (f64, f64), f: impl Fn(f64)
     }
 }
 
-/// The same between two points at which `f` is known to be below and above zero.
+/// The same between two points with known values of `f` below and above zero.
 pub(crate) fn between(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     // `a` is the newest point, `b` the other end of the bracket, `c` the point before `a` on its side.
     let ((mut b, mut f_b), (mut a, mut f_a)) = (low, high);
     if f_a <= 0.0 {
         return a;
     }
-    // The value that is rounding, at the size of what is subtracted in `f`.
+    // Value below which `f` is rounding, at the size of its terms.
     let negligible = f64::EPSILON * f_b.abs().min(f_a.abs());
     let mut part = 0.5;
     for _ in 0..MOST {
@@ -46,7 +46,7 @@ pub(crate) fn between(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> f64)
         }
         (a, f_a) = (m, f_m);
         let best = if f_a.abs() < f_b.abs() { a } else { b };
-        // The step that is rounding, as a part of the bracket.
+        // Size of a rounding step, as a share of the bracket.
         let rounding = 2.0 * f64::EPSILON * best.abs() / (b - a).abs();
         if rounding > 0.5 || f_a.abs() <= negligible {
             return best;

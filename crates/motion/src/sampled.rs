@@ -1,6 +1,6 @@
 //! Moves executed sample by sample.
 //!
-//! A sampled move is a list of [`Run`]s: a highest derivative and for how many samples it is sent. Two ways to make
+//! A sampled move is a list of [`Run`]s: a highest derivative and the number of samples for which it is sent. Two methods to make
 //! set-points of it are in use. With Ts = 1 and the snap s_k of sample k, order 4:
 //!
 //! ```text
@@ -18,7 +18,7 @@
 //! ```
 //!
 //! B_1 is the hat between −1 and 1, B_m(t) the mean of B_(m−1) from t to t + 1: the derivative of one sum has the differences
-//! of neighbours for coefficients, which is what the cascade adds up. B_m is nowhere negative, its shifts sum to one, and its
+//! of neighbours as coefficients, which the cascade adds up. B_m is nowhere negative, its shifts sum to one, and its
 //! middle is at −(m − 1)/2. Hence:
 //!
 //! - **A move within its limits at every sample of the cascade is within them at every time of the exact hold**: a weighted
@@ -31,17 +31,17 @@
 //!
 //! # How many samples
 //!
-//! Three planners, each freer than the one before. By how many samples they are shorter than the first, on average and at
+//! Three planners, each with more freedom than the one before. Saving of samples compared with the first, on average and at
 //! most, in 1299 random requests of order 4 up to 300 samples (the test `forward_euler_keeps_every_limit_at_every_sample_and_lands`
 //! prints it; `SERVOBENCH_SWEEP=400000`):
 //!
-//! | | the move is | shorter by |
+//! | | shape of the move | shorter by |
 //! |---|---|---|
-//! | [`Profile::plan_sampled`](crate::Profile::plan_sampled) | boxes, rounded one after the other as published | – |
-//! | [`Profile::plan_fewest`](crate::Profile::plan_fewest) | boxes | 1.00, at most 7 |
+//! | [`Profile::plan_sampled`](crate::Profile::plan_sampled) | moving averages, rounded one after the other as published | – |
+//! | [`Profile::plan_fewest`](crate::Profile::plan_fewest) | moving averages | 1.00, at most 7 |
 //! | `Shortest` (feature `std`) | any | 3.15, at most 28 |
 //!
-//! Of all 4000 requests, of orders 2 to 4, 3991 are proven to have no shorter move by any shape. A long move is seldom proven, and
+//! Of all 4000 requests, of orders 2 to 4, 3991 are proven to have no shorter move of any shape. A long move is seldom proven, and
 //! is within five samples of the continuous optimum.
 mod cascade;
 use servobench_base::Stateful;
@@ -74,7 +74,7 @@ servobench_config::choices! {
     }
 }
 
-/// Samples in a row in which the highest derivative is the same.
+/// Consecutive samples with the same highest derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Run {
     /// Acceleration, jerk or snap by order (SI), with the sign of the direction.

@@ -1,4 +1,4 @@
-//! Where the highest derivative switches: pulses and dwells in the order of time.
+//! Switching of the highest derivative: pulses and dwells in the order of time.
 use crate::Profile;
 use crate::profile::Boxes;
 use core::array::from_fn;
@@ -50,10 +50,10 @@ impl Iterator for Segments<'_> {
     }
 }
 
-/// Segments at most.
+/// Maximum number of segments.
 const MOST: usize = 16;
 
-/// Segment `i` of 16 of a move of order 4 whose second half is the first one turned about the middle: s(t) = −s(T − t).
+/// Segment `i` of 16 of a move of order 4 whose second half is the first one rotated about the middle: s(t) = −s(T − t).
 fn turned(profile: &Profile, i: usize) -> Option<Segment> {
     if i < MOST / 2 {
         return profile.first_half(i);
@@ -62,10 +62,10 @@ fn turned(profile: &Profile, i: usize) -> Option<Segment> {
     Some(Segment { start: profile.duration() - start - length, length, value: 0.0 - value })
 }
 
-/// Segment `i` of the 2ⁿ − 1 that a step of `amplitude` through n `boxes` has, those of length zero included.
+/// Segment `i` of the 2ⁿ − 1 of a step of `amplitude` through n moving averages (`boxes`), those of length zero included.
 ///
-/// Pulse p = i/2 starts at the sum of the boxes `T2, T3, …` that the bits of p select and has the sign (−1)^(number of
-/// bits). The dwell behind it is that of box 2 + (trailing zeros of p + 1).
+/// Pulse p = i/2 starts at the sum of the lengths `T2, T3, …` that the bits of p select and has the sign (−1)^(number of
+/// bits). The dwell behind it is that of average 2 + (trailing zeros of p + 1).
 pub(crate) fn nth(boxes: &Boxes, n: usize, amplitude: f64, i: usize) -> Segment {
     let Boxes { lengths, dwells, unit, .. } = boxes;
     let pulse = i / 2;
@@ -84,7 +84,7 @@ pub(crate) fn nth(boxes: &Boxes, n: usize, amplitude: f64, i: usize) -> Segment 
     }
 }
 
-/// Starts (s) of the segments of the first half of a step through n `boxes`, the cruise included, as [`nth`] has them;
+/// Starts (s) of the segments of the first half of a step through n moving averages (`boxes`), the cruise included, as in [`nth`];
 /// infinite beyond the order.
 pub(crate) fn starts(boxes: &Boxes, n: usize) -> [f64; MOST / 2] {
     let [first, second, third, _] = boxes.lengths;

@@ -1,7 +1,7 @@
-//! Input shaping and averaging of set-points: what keeps a move from exciting a vibration of the axis.
+//! Input shaping and moving averages of set-points, which keep a move from exciting a vibration of the axis.
 //!
 //! A mode of natural frequency ω and damping ratio ζ rings after an impulse. Split into impulses `A_i` at `t_i` (ΣA = 1),
-//! what rings after the last one, in parts of what one impulse at t = 0 would have left at its own instant, is
+//! the vibration after the last one, relative to that of one impulse at t = 0 at its own instant, is
 //!
 //! ```text
 //! V(ω, ζ) = e^(−ζω·t_n)·|Σ A_i·e^((ζω + jω_d)·t_i)|      ω_d = ω·√(1 − ζ²)        (Singer & Seering 1990, eq. 2)
@@ -15,8 +15,8 @@
 //!   EI with n humps: V = v at their tops, n + 1 zeros around them        adds (n + 1)·T (ζ = 0), n = 2, 3
 //! ```
 //!
-//! How much is left of an undamped mode whose frequency is 10 % lower or higher, and how wide the band around the frequency is
-//! in which it is at most 5 %, of the EI shapers with v = 5 %:
+//! Remaining share of an undamped mode whose frequency is 10 % lower or higher, and width of the band around the frequency
+//! in which it is at most 5 %; the EI shapers have v = 5 %:
 //!
 //! | | ZV | MZV | ZVD | ZVDD | EI | 2-hump EI | 3-hump EI |
 //! |---|---|---|---|---|---|---|---|
@@ -28,13 +28,13 @@
 //! Using Vector Diagrams to Generate Shaped Inputs*, J. Mechanical Design 116 (1994); with two and three humps: Singhose,
 //! Porter, Tuttle & Singer, *Vibration Reduction Using Multi-Hump Input Shapers*, same journal as the first, 119 (1997); for
 //! ζ > 0 the equations are solved here instead of using the curve fits of that. MZV: `shaper_defs.py` of Klipper.
-//! Averages: Biagiotti & Melchiorri, *FIR Filters for Online Trajectory Planning with Time- and Frequency-Domain
+//! Moving averages: Biagiotti & Melchiorri, *FIR Filters for Online Trajectory Planning with Time- and Frequency-Domain
 //! Specifications*, Control Engineering Practice 20 (2012).
 //!
 //! | | on a set-point as a function of time | on a stream of set-points |
 //! |---|---|---|
 //! | impulses | [`Impulses::shape`], exact | [`ShapingFilter`], times on the grid of samples |
-//! | averages | [`MovingAverages`], exact, of what can be integrated | [`MovingAverage`], one after the other |
+//! | averages | [`MovingAverages`], exact, for integrable set-points | [`MovingAverage`], one after the other |
 //!
 //! Both come to rest at exactly the target: values are summed as differences from one of them.
 //!

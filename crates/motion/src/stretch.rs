@@ -3,15 +3,15 @@ use crate::boxes::MAX_SAMPLES;
 use crate::{PlanError, Profile};
 use servobench_base::positive;
 
-/// Longest duration (s) of what is planned or stretched: its fourth power is still a normal number.
+/// Longest duration (s) of a planned or stretched move: its fourth power is still a normal number.
 pub(crate) const LONGEST: f64 = 1e60;
 
 impl Profile {
-    /// The same move in `duration` seconds: all boxes longer by the same factor k, hence velocity, acceleration, jerk
+    /// The same move in `duration` seconds: all moving averages longer by the same factor k, hence velocity, acceleration, jerk
     /// and snap lower by k, k², k³ and k⁴.
     ///
     /// A sampled plan is stretched to the first whole number of samples N' that is not shorter (within 1e-9 samples).
-    /// All boxes but the last become `⌊n·N'/N⌋`, the last takes the rest: never shorter than before, so that no peak
+    /// All averages but the last become `⌊n·N'/N⌋`, the last takes the rest: never shorter than before, so that no peak
     /// rises; and `⌊a⌋ + ⌊b⌋ ≤ ⌊a + b⌋` keeps their order. A move of zero distance stays as it is.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! A way through time whose highest derivative is constant piece by piece.
+//! A trajectory whose highest derivative is piecewise constant.
 use crate::online::Stretch;
 use crate::{Order, Piece, Segment};
 use servobench_base::{Setpoint, Stateful};
@@ -7,31 +7,31 @@ use servobench_base::{Setpoint, Stateful};
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Trajectory<const N: usize> {
     order: Order,
-    /// Starts of the segments (s): sums of the lengths, which looking a set-point up needs at once.
+    /// Starts of the segments (s): sums of the lengths, needed at once by the search for a set-point.
     starts: [f64; N],
-    /// Lengths of the segments (s). Differences of their starts would be other numbers: a second that begins after a day is known to
+    /// Lengths of the segments (s). Differences of their starts would differ: a second that begins after a day is known to
     /// 1e-11 s only.
     lengths: [f64; N],
-    /// Their states at the start, with the highest derivative that holds until the next.
+    /// Their states at the start, with the highest derivative until the next.
     anchors: [Setpoint; N],
     count: usize,
     duration: f64,
-    /// The state at the end, from which it goes on at its velocity.
+    /// The state at the end, which continues at its velocity.
     end: Setpoint,
 }
 
 impl<const N: usize> Trajectory<N> {
-    /// From `from`, through `stretches`, those without a length left out; at the end it is as `arrive` says of what they lead to,
-    /// so that nothing of their rounding is left.
+    /// From `from`, through `stretches`, without those of zero length; `arrive` gives the state at the end from the one that they reach,
+    /// so that no rounding of theirs remains.
     ///
-    /// More than `N` segments are a defect of the caller.
+    /// More than `N` segments are a bug in the caller.
     pub(crate) fn new(
         order: Order,
         from: Setpoint,
         stretches: impl IntoIterator<Item = Stretch>,
         arrive: impl FnOnce(Setpoint) -> Setpoint,
     ) -> Self {
-        // Counted beside what is filled: read back from there, the processor would wait for all of it to be written.
+        // Counted beside the stored fields: read back from there, the processor would wait for all of them to be written.
         let (mut state, mut count, mut duration) = (from, 0, 0.0);
         let mut way = Self {
             order,
@@ -79,7 +79,7 @@ impl<const N: usize> Trajectory<N> {
         Piece::forward(self.anchors[i], self.starts[i], self.lengths[i], self.end_of(i))
     }
 
-    /// When segment `i` ends (s).
+    /// End of segment `i` (s).
     fn end_of(&self, i: usize) -> f64 {
         if i + 1 < self.count { self.starts[i + 1] } else { self.duration }
     }
@@ -96,7 +96,7 @@ impl<const N: usize> Trajectory<N> {
         self.end
     }
 
-    /// Order: the derivative of position that is constant piece by piece.
+    /// Order: the derivative of position that is piecewise constant.
     #[must_use]
     pub const fn order(&self) -> Order {
         self.order
@@ -116,14 +116,14 @@ impl<const N: usize> Trajectory<N> {
         })
     }
 
-    /// The states at the starts of the segments, with the highest derivative that holds, and their lengths (s).
+    /// The states at the starts of the segments, with their highest derivatives, and their lengths (s).
     pub(crate) fn pieces(&self) -> impl Iterator<Item = (Setpoint, f64)> + '_ {
         self.anchors[..self.count].iter().copied().zip(self.lengths[..self.count].iter().copied())
     }
 
-    /// With `next` behind it, which begins where it ends.
+    /// Appends `next`, which begins where this one ends.
     ///
-    /// More than `N` segments of both are a defect of the caller.
+    /// More than `N` segments of both are a bug in the caller.
     pub(crate) fn then(mut self, next: &Self) -> Self {
         let mut start = self.duration;
         for i in 0..next.count {
@@ -138,9 +138,9 @@ impl<const N: usize> Trajectory<N> {
         self
     }
 
-    /// Whether the velocity never leaves the side of `sign`, but by rounding.
+    /// True if the velocity never leaves the side of `sign`, except by rounding.
     pub(crate) fn keeps_direction(&self, sign: f64) -> bool {
-        /// As a part of the highest velocity.
+        /// Relative to the highest velocity.
         const ROUNDING: f64 = 1e-11;
         let (mut lowest, mut highest) = (0.0_f64, 0.0_f64);
         for (i, anchor) in self.anchors[..self.count].iter().enumerate() {

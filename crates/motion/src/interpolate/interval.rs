@@ -5,7 +5,7 @@ use crate::PlanError;
 use crate::limits::in_range;
 use servobench_base::{ParamError, Setpoint, Stateful, positive};
 
-/// What the slow task commands at one of its ticks.
+/// Command of the slow task at one of its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Sample {
     /// Position (m or rad).
@@ -19,10 +19,10 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Largest accepted magnitude (SI): what is computed from it stays finite.
+    /// Largest accepted magnitude (SI): values computed from it stay finite.
     const HIGHEST: f64 = 1e30;
 
-    /// The sample, when all its values are finite and at most 1e30 in magnitude.
+    /// The sample, if all its values are finite and at most 1e30 in magnitude.
     pub(super) fn checked(self, index: u64) -> Result<Self, PlanError> {
         let Self { x, v, a, torque } = self;
         for (name, value) in [("x", x), ("v", v), ("a", a), ("torque", torque)] {
@@ -34,7 +34,7 @@ impl Sample {
     }
 }
 
-/// What the fast task reads.
+/// Command read by the fast task.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Command {
     /// Position and its derivatives; jerk and snap are the derivatives of the acceleration within the interval.
@@ -43,7 +43,7 @@ pub struct Command {
     pub torque: f64,
 }
 
-/// The polynomials of one interval, found once and read as often as needed.
+/// The polynomials of one interval, computed once and read as often as needed.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Interval {
     x: Polynomial,
@@ -58,7 +58,7 @@ impl Interval {
     /// The interval in the middle of the last [`Mode::points`] of `samples`, `period` (s) apart, the oldest first.
     ///
     /// # Errors
-    /// [`PlanError::Waiting`] when there are too few samples; [`PlanError::Sample`] with the place in `samples`, from 0, of
+    /// [`PlanError::Waiting`] when there are too few samples; [`PlanError::Sample`] with the index in `samples`, from 0, of
     /// one that is used and has a value that is not finite or above 1e30 in magnitude; [`PlanError`] for a period that is
     /// not between 1e-30 and 1e30 s.
     pub fn new(mode: Mode, period: f64, samples: &[Sample]) -> Result<Self, PlanError> {
@@ -102,7 +102,7 @@ impl Interval {
         }
     }
 
-    /// Velocity and acceleration are the derivatives of the position; the torque goes from `start` to `end`.
+    /// Velocity and acceleration are the derivatives of the position; the torque changes from `start` to `end`.
     fn derived(x: Polynomial, period: f64, start: Sample, end: Sample) -> Self {
         let v = x.rate(period);
         Self::independent(x, v, v.rate(period), period, start, end)
@@ -113,10 +113,10 @@ impl Interval {
         Self { x, v, a, j, s: j.rate(period), torque: Polynomial::linear(start.torque, end.torque) }
     }
 
-    /// The command when `fraction` of the interval has passed, 0 to 1.
+    /// The command at `fraction` of the interval, 0 to 1.
     ///
     /// # Errors
-    /// [`PlanError::Parameter`] when the fraction is not between 0 and 1: outside, the polynomial is not meant to be used.
+    /// [`PlanError::Parameter`] when the fraction is not between 0 and 1, where the polynomial is not valid.
     #[inline]
     pub fn at(&self, fraction: f64) -> Result<Command, PlanError> {
         if !(0.0..=1.0).contains(&fraction) {

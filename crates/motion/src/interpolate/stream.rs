@@ -4,7 +4,7 @@ use super::{Command, Interval, Mode, Sample};
 use crate::PlanError;
 use servobench_base::Stateful;
 
-/// Takes slow samples and gives commands within the newest complete interval; its size is fixed.
+/// Takes slow samples and returns commands within the newest complete interval; its size is fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Interpolator {
     #[state(constant)]
@@ -27,11 +27,11 @@ impl Interpolator {
         Ok(Self { mode, period, window: [Sample::default(); 6], received: 0, interval: None })
     }
 
-    /// Takes the next slow sample and moves on by one interval.
+    /// Takes the next slow sample and advances by one interval.
     ///
     /// # Errors
     /// [`PlanError::Sample`] with the number of the sample, from 0, when a value is not finite or above 1e30 in magnitude.
-    /// Nothing is changed then: the present interval stays.
+    /// Nothing changes then: the present interval stays.
     pub fn push(&mut self, sample: Sample) -> Result<(), PlanError> {
         let sample = sample.checked(self.received)?;
         self.window.rotate_left(1);
@@ -49,8 +49,8 @@ impl Interpolator {
         self.interval = None;
     }
 
-    /// The command when `fraction` of a slow period, 0 to 1, has passed since the newest sample: the set-point of
-    /// [`Mode::delay_samples`] periods before.
+    /// The command at `fraction` of a slow period, 0 to 1, after the newest sample: the set-point
+    /// [`Mode::delay_samples`] periods earlier.
     ///
     /// # Errors
     /// [`PlanError::Waiting`] until [`Mode::points`] samples are there; [`PlanError::Parameter`] for a fraction that is
@@ -59,20 +59,20 @@ impl Interpolator {
         match &self.interval {
             Some(interval) => interval.at(fraction),
             None => Err(PlanError::Waiting {
-                // Below the six points that a mode needs at most.
+                // Below the six points of the largest mode.
                 received: usize::try_from(self.received).unwrap_or(usize::MAX),
                 needed: self.mode.points(),
             }),
         }
     }
 
-    /// The newest complete interval, `None` while there are too few samples.
+    /// The newest complete interval; `None` while there are too few samples.
     #[must_use]
     pub const fn interval(&self) -> Option<&Interval> {
         self.interval.as_ref()
     }
 
-    /// How values between the samples are found.
+    /// Mode of interpolation between the samples.
     #[must_use]
     pub const fn mode(&self) -> Mode {
         self.mode

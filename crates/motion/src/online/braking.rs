@@ -1,4 +1,4 @@
-//! Braking for a while before the fastest way begins.
+//! Braking for a while before the fastest path begins.
 use super::DirectionalLimits;
 use super::first::State;
 use super::fourth::State4;
@@ -8,10 +8,10 @@ use super::third::State3;
 use crate::Order;
 use servobench_base::Setpoint;
 
-/// How often a time is halved.
+/// Number of times that a time is halved.
 const HALVINGS: usize = 12;
 
-/// A way on which an axis brakes, and holds that.
+/// A path on which an axis brakes, and holds that.
 pub(crate) struct Braking {
     from: Setpoint,
     path: Path<{ second::STRETCHES + 1 }>,
@@ -19,11 +19,11 @@ pub(crate) struct Braking {
 }
 
 impl Braking {
-    /// To the largest acceleration on the side of `sign`, and on with it.
+    /// Braking to the largest acceleration on the side of `sign`, which is then held.
     pub(crate) fn towards(order: Order, from: &Setpoint, sign: f64, limits: &DirectionalLimits) -> Self {
         let mut path = Path::EMPTY;
         let a = limits.acceleration.at(sign);
-        // Whoever holds it for longer than this has stopped.
+        // After this time an axis has stopped.
         let hold = 2.0 * from.v.abs() / a.abs();
         if order == Order::Third {
             let rise = sign * (a - from.a);
@@ -37,7 +37,7 @@ impl Braking {
         Self { from: *from, path, order }
     }
 
-    /// To no acceleration, at order 4.
+    /// Braking to zero acceleration, at order 4.
     pub(crate) fn calming(from: &Setpoint, limits: &DirectionalLimits) -> Self {
         let mut path = Path::EMPTY;
         let upper = Limits2 { a: Sides::both(limits.jerk), j: limits.snap };
@@ -56,24 +56,24 @@ impl Braking {
         Setpoint { x, v, a, j, s: 0.0 }
     }
 
-    /// How long it is at most (s).
+    /// Its longest duration (s).
     pub(crate) fn duration(&self) -> f64 {
         self.path.duration()
     }
 
-    /// When `left`, which sinks, is zero (s).
+    /// Time at which `left`, which decreases, is zero (s).
     pub(crate) fn end(&self, left: impl Fn(&Setpoint) -> f64) -> f64 {
         crate::root::increasing(0.0, self.duration(), |time| -left(&self.after(time)))
     }
 
-    /// When the acceleration has changed its side (s).
+    /// Time at which the acceleration has changed its sign (s).
     pub(crate) fn crossing(&self) -> f64 {
         let side = if self.from.a > 0.0 { 1.0 } else { -1.0 };
         self.end(|at| side * at.a)
     }
 }
 
-/// The highest value of `f` that is found on the way to the least time that has one, up to `longest`.
+/// The highest value of `f` found on the search for the smallest time that has one, up to `longest`.
 pub(crate) fn least(longest: f64, f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let parts = [1.0, 0.75, 0.5, 0.25];
     let (mut high, mut best) =

@@ -1,39 +1,39 @@
-//! What a way covers, by the highest derivative at its start.
+//! Sensitivity of the distance of a path to the highest derivative at its start.
 //!
-//! A way of order 3 leads the chain (p, v, a) to p₁ with neither v nor a; ∫p is what a chain of order 4 covers on it. A change du
+//! A path of order 3 leads the chain (p, v, a) to p₁ with zero v and a; ∫p is the distance of a chain of order 4 on it. A change du
 //! of the rate of a for a time dt, s before the end, changes a, v, p and ∫p there by du·dt times 1, s, s²/2 and s³/6. The
-//! switching times give way so that a, v and p arrive as before. So ∫(p − p₁) changes by
+//! switching times adapt so that a, v and p arrive as before. So ∫(p − p₁) changes by
 //!
 //! ```text
 //! λ(s)·du·dt,    λ(s) = s³/6 + c₂s² + c₁s + c₀,    zero at every switching time and at the end,
 //! ```
 //!
-//! since a switch that is moved must change nothing that is not made up for: the costate of optimal control (Pontryagin). A hold
-//! brings a to its limit whatever was before, so that λ on either side of it differs by a constant; a cruise does so
+//! since a moved switch may only change what others compensate: the costate of optimal control (Pontryagin). A hold
+//! brings a to its limit from any value, so that λ on either side of it differs by a constant; a cruise does so
 //! with v and a: a constant and a multiple of s. A change da at the start changes ∫(p − p₁) by λ(start)·da.
 //!
-//! The duration T changes the same way by a κ(s) = s² + k₁s + k₀ that is zero at every switching time but not at the end: that
+//! The duration T changes in the same way by a κ(s) = s² + k₁s + k₀ that is zero at every switching time but not at the end: that
 //! moves by dT = −κ(start)·da/(κ(0)·u), where u is the last rate. Together d∫p = λ(start)·da + p₁·dT.
 use super::second;
 
-/// How long the stretches up to the hold of v, or to the turn when there is none, last: up, hold of a, down.
+/// Durations of the stretches up to the hold of v, or to the turn without one: up, hold of a, down.
 type Away = [f64; 3];
 
-/// d∫p/da at the start of a way: `away`, for `cruise` at the highest v if that is reached, and `home` from there to `p`.
+/// d∫p/da at the start of a path: `away`, for `cruise` at the highest v if that is reached, and `home` from there to `p`.
 pub(crate) fn by_a(away: Away, cruise: Option<f64>, home: &second::Fastest, p: f64) -> f64 {
     let [up, hold, down] = away;
-    // Times before the end: switches at home, and of the way to it.
+    // Times before the end: switches on the path home, and on the path to it.
     let (home_down, home_hold, home_up) = (home.down, home.down + home.hold, home.duration());
     let third = home_up + cruise.unwrap_or(0.0);
     let second = third + down;
     let first = second + hold;
     let start = first + up;
-    // Zeros of λ and κ in the time between the holds of a, where they are those but for a constant.
+    // Zeros of λ and κ in the time between the holds of a, except for a constant.
     let before = if cruise.is_some() { home_up } else { second };
     let (lambda_home, kappa_home) = (other_zero(home_down, home_hold, before), home_hold + before - home_down);
     let (lambda, kappa) = match cruise {
         None => ([0.0, home_down, lambda_home], [home_down, kappa_home]),
-        // Zero at both ends of the way down to the cruise; the coefficient of s² is that of λ after it.
+        // Zero at both ends of the path down to the cruise; the coefficient of s² is that of λ after it.
         Some(_) => ([second, third, home_down + lambda_home - second - third], [second, third]),
     };
     let lambda = |s: f64| (s - lambda[0]) * (s - lambda[1]) * (s - lambda[2]) / 6.0;
@@ -59,7 +59,7 @@ mod tests {
     use super::super::second::Sides;
     use super::super::third::{self, Limits3, State3};
 
-    /// Oracle: the difference of two ways. Its error is the third derivative times 1e-10, and 1e-16/1e-5 by rounding.
+    /// Oracle: the difference of two paths. Its error is the third derivative times 1e-10, and 1e-16/1e-5 by rounding.
     #[test]
     fn what_a_way_covers_changes_by_that_much() {
         let free = Limits3 { v: Sides::both(1e3), a: Sides::both(1e3), j: 1.0 };

@@ -1,19 +1,19 @@
-//! The first time at which a target is met.
+//! First meeting with a target.
 use super::newton::{Bracket, Near};
 use super::path::{Path, Stretch};
 
 /// A product takes a fifth of the time of a quotient.
 pub(crate) const THIRD: f64 = 1.0 / 3.0;
 
-/// Parts of a stretch that are looked at one by one.
+/// Parts of a stretch that are examined separately.
 const PARTS: u32 = 4;
 
-/// Points at most that are looked at on a hill.
+/// Maximum number of points that are evaluated on a hill.
 const CLIMB: usize = 30;
 
-/// A state that a stretch leads on.
+/// A state that a stretch continues.
 pub(crate) trait State: Copy {
-    /// How many derivatives, from the highest on, are zero in a cruise.
+    /// Number of derivatives, from the highest on, that are zero in a cruise.
     const CRUISE: u8;
 
     /// The lowest of its integrals.
@@ -57,11 +57,11 @@ pub(crate) trait State: Copy {
 }
 
 /// The first time on `path` from `start` at which `beyond` is zero; `None` when it stays below, as it is at
-/// the start. It gives its value at a state, and its slope while the highest derivative is what it is there.
+/// the start. `beyond` gives its value at a state, and its slope at the present highest derivative.
 ///
-/// Who turns home later covers more than whoever turned before and waits at the target's velocity. Towards a target that
-/// moves away, or rests, that is more by any measure, and [`Bracket::root`] finds where it is enough. Towards one that moves
-/// the other way the waiting counts against it: what is beyond may rise, sink and rise again, and there can be several times.
+/// A path that turns home later covers more than one that turned before and waits at the target's velocity. Towards a target that
+/// moves away, or rests, that is more by any measure, and [`Bracket::root`] finds the time at which it is enough. Towards one that moves
+/// the other way the waiting counts against it: `beyond` may rise, sink and rise again, and there can be several times.
 pub(crate) fn meeting<S: State, const N: usize>(
     start: S,
     path: &Path<N>,
@@ -105,7 +105,7 @@ impl Point {
 
 /// A time between two points below zero at which `f` is not: on a hill that is high enough.
 ///
-/// The tangents at both sides of a hill meet above it. Where they do is looked at, and taken for that side to which it
+/// The tangents at both sides of a hill meet above it. That point is evaluated, and taken for the side to which it
 /// belongs, until a point is not below zero, or the tangents meet there.
 fn hill(f: &impl Fn(f64) -> (f64, f64), mut low: Point, mut high: Point) -> Option<Point> {
     for _ in 0..CLIMB {

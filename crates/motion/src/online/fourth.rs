@@ -1,8 +1,8 @@
-//! A fast way between two states of a chain of four integrators.
+//! A fast path between two states of a chain of four integrators.
 //!
-//! Towards the largest acceleration, and on with it, for a while τ; then the fastest way to the target's velocity
-//! ([`super::third`]). Where that would exceed the velocity limit, the limit is touched for an instant, with the jerk with
-//! which the target's position is met; where a touch at rest (jerk zero) is not far enough, it cruises.
+//! Towards the largest acceleration, which is then held, for a while τ; then the fastest path to the target's velocity
+//! ([`super::third`]). If that would exceed the velocity limit, the limit is touched for an instant, with the jerk for
+//! which the target's position is met; if a touch at rest (jerk zero) is not far enough, it cruises.
 use super::arrival::{NEGLIGIBLE, is_met, meet, rounding_within};
 use super::first::{State, THIRD, meeting};
 use super::newton::{Bracket, Near};
@@ -12,7 +12,7 @@ use super::third::{self, Limits3, State3};
 use super::watch::{ROUNDING, Watch};
 use crate::root::increasing;
 
-/// Stretches at most: there, a cruise, and back.
+/// Maximum number of stretches: there, a cruise, and back.
 pub(crate) const STRETCHES: usize = third::FASTEST + 1 + third::FASTEST;
 
 /// A state of four integrators in a row.
@@ -24,7 +24,7 @@ pub(crate) struct State4 {
     pub(crate) j: f64,
 }
 
-/// What velocity, acceleration, jerk and snap may be.
+/// Limits of velocity, acceleration, jerk and snap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Limits4 {
     pub(crate) v: Sides,
@@ -36,7 +36,7 @@ pub(crate) struct Limits4 {
 }
 
 impl Limits4 {
-    /// Those of the chain (v, a, j).
+    /// Limits of the chain (v, a, j).
     pub(crate) const fn upper(&self) -> Limits3 {
         Limits3 { v: self.a, a: Sides::both(self.j), j: self.d }
     }
@@ -78,12 +78,12 @@ impl State4 {
         State3 { p: self.v, v: self.a, a: self.j }
     }
 
-    /// Hands the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
+    /// Passes the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
     pub(crate) fn velocities<const N: usize>(self, path: &Path<N>, see: impl FnMut(f64)) {
         self.extremes(path, see, |_| ());
     }
 
-    /// The same, and the accelerations at theirs; gives the state at the end.
+    /// The same, and the accelerations at theirs; returns the state at the end.
     #[inline]
     fn extremes<const N: usize>(
         self,
@@ -117,22 +117,22 @@ impl State4 {
         state
     }
 
-    /// How velocity and acceleration keep their limits on `path`.
+    /// Compliance of velocity and acceleration with their limits on `path`.
     pub(crate) fn watched<const N: usize>(self, path: &Path<N>, limits: &Limits4) -> [Watch; 2] {
         let (mut velocity, mut acceleration) = (Watch::new(limits.v, self.v), Watch::new(limits.a, self.a));
         self.extremes(path, |v| velocity.see(v), |a| acceleration.see(a));
         [velocity, acceleration]
     }
 
-    /// Whether `path` keeps the limits, or comes back into them.
+    /// True if `path` keeps the limits, or comes back into them.
     fn keeps<const N: usize>(self, path: &Path<N>, limits: &Limits4) -> bool {
         self.watched(path, limits).iter().all(|watch| watch.fault <= ROUNDING)
     }
 }
 
-/// The way from `from` to `to`, which is at rest or passed at a constant velocity; `None` when this family has none.
+/// The path from `from` to `to`, which is at rest or passed at a constant velocity; `None` when this family has none.
 ///
-/// There is room for one more cruise at the end: that of [`cruise`] is where the way back begins, which is not led back first.
+/// There is room for one more cruise at the end: that of [`cruise`] is where the path back begins, which is not led back first.
 pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4, rounding: f64) -> Option<Path<STRETCHES>> {
     let (straight, is_rest) = rest(from.upper(), to.upper(), limits);
     let (missing, time) = (to.x - from.along(&straight).x, straight.duration());
@@ -153,13 +153,13 @@ pub(crate) fn fastest(from: State4, to: State4, limits: &Limits4, rounding: f64)
     meet([from, to], path, |x| through(from, State4 { x, ..to }, limits, &straight), &longer)
 }
 
-/// [`third::rest`] of the velocity and what is above it.
+/// [`third::rest`] of the velocity and its derivatives.
 pub(crate) fn rest(from: State3, to: State3, limits: &Limits4) -> (Path<{ third::STRETCHES }>, bool) {
     let rounding = rounding_within(limits.v, from.p.abs() + to.p.abs());
     third::rest(from, to, &limits.upper(), rounding)
 }
 
-/// The same, met but for what its pulses round.
+/// The same, met except for the rounding of its pulses.
 fn through(from: State4, to: State4, limits: &Limits4, direct: &Path<{ third::STRETCHES }>) -> Option<Path<STRETCHES>> {
     let Limits4 { v, a, j, d } = *limits;
     let upper = limits.upper();
@@ -174,7 +174,7 @@ fn through(from: State4, to: State4, limits: &Limits4, direct: &Path<{ third::ST
     if grows && let Some(path) = cruise(from, to, sign, limits) {
         return Some(path);
     }
-    // Up to the largest acceleration, and on with it until the velocity limit would be passed.
+    // Up to the largest acceleration, which is held until the velocity limit would be passed.
     let limit = State2 { v: a.at(sign), a: 0.0 };
     let mut away = Path::<{ second::STRETCHES + 1 }>::EMPTY;
     away.extend(&second::fastest(State2 { v: from.a, a: from.j }, limit, &Limits2 { a: Sides::both(j), j: d }));
@@ -206,7 +206,7 @@ fn through(from: State4, to: State4, limits: &Limits4, direct: &Path<{ third::ST
     if grows { None } else { cruise(from, to, sign, limits) }.or_else(|| touch(from, to, sign, limits))
 }
 
-/// The way with a cruise at the velocity limit on the side of `sign`, where that is not too far.
+/// The path with a cruise at the velocity limit on the side of `sign`, if that is not too far.
 fn cruise(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<STRETCHES>> {
     let (v, upper) = (limits.v, limits.upper());
     let limit = State3 { p: v.at(sign), v: 0.0, a: 0.0 };
@@ -224,10 +224,10 @@ fn cruise(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<
     Some(path)
 }
 
-/// The way that reaches the velocity limit on the side of `sign` for an instant.
+/// The path that reaches the velocity limit on the side of `sign` for an instant.
 ///
 /// The jerk there, −`sign`·jerk, is at most that with which the last stretch to the limit and the first one from it vanish:
-/// beyond, the limit is met in quite another way.
+/// beyond, the limit is met on a very different path.
 fn touch(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<STRETCHES>> {
     let upper = limits.upper();
     let near = [Near::nothing(), Near::nothing()];
@@ -248,7 +248,7 @@ fn touch(from: State4, to: State4, sign: f64, limits: &Limits4) -> Option<Path<S
     let mut path = Path::EMPTY;
     path.extend(&there);
     path.extend(&back);
-    // Both ways round at the size of what they cover.
+    // Both paths have rounding of the size of the distance that they cover.
     let covered = (limits.v.below + limits.v.above) * path.duration();
     let is_met = missed(&there, &back).abs() <= ROUNDING * (beyond + covered);
     (is_met && from.keeps(&path, limits)).then_some(path)

@@ -1,13 +1,13 @@
-//! From any state: the shortest way where it keeps the limits, the next best where it does not.
+//! Paths from any state: the shortest one if it keeps the limits, the next best otherwise.
 //!
 //! 1. [`fourth::fastest`].
-//! 2. First the acceleration to zero, as fast as it can; or, where the velocity limit is too near for that, through zero
-//!    with all jerk that there is. Then 1. The shortest part of that after which 1 keeps them is looked for by bisection, as
-//!    often as [`Effort`] says.
+//! 2. First the acceleration to zero, as fast as it can; or, if the velocity limit is too near for that, through zero
+//!    with the full jerk. Then 1. The shortest part of that after which 1 keeps the limits is found by bisection, in as
+//!    many steps as [`Effort`] allows.
 //! 3. The same braking on to zero acceleration and jerk, and by way of a velocity at which both are zero: the distance grows
 //!    with it from one limit to the other, so that there is one for every target.
 //!
-//! When none keeps the limits, the state has left no choice; then it is the one of 1 and 2 that exceeds them least.
+//! When none keeps the limits, the state has left no choice; then the one of 1 and 2 that exceeds them least is taken.
 use super::Effort;
 use super::first::State;
 use super::fourth::{self, Limits4, State4};
@@ -17,30 +17,30 @@ use super::third;
 use super::watch::ROUNDING;
 use crate::root::increasing;
 
-/// Stretches at most: back into the jerk limit, braking twice, and what [`fourth::fastest`] has.
+/// Maximum number of stretches: back into the jerk limit, braking twice, and those of [`fourth::fastest`].
 pub(crate) const STRETCHES: usize = 1 + 2 * second::STRETCHES + fourth::STRETCHES;
 
-/// A way, and how far it is beyond the limits, as a part of them.
+/// A path, and its relative excess over the limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Plan {
     pub(crate) path: Path<STRETCHES>,
-    /// At most.
+    /// Largest excess.
     pub(crate) excess: f64,
-    /// Without the way back from where it begins.
+    /// Excess without the path back from the beginning.
     fault: f64,
 }
 
-/// Where to, at a constant velocity within its limits.
+/// Goal at a constant velocity within its limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Goal {
     /// To this state.
     State(State4),
-    /// To this velocity, wherever that is.
+    /// To this velocity, wherever it is reached.
     Velocity(f64),
 }
 
 impl Effort {
-    /// How often the braking is halved.
+    /// Number of times that the braking is halved.
     const fn halvings(self) -> usize {
         match self {
             Self::Fast => 3,
@@ -50,7 +50,7 @@ impl Effort {
 }
 
 impl Goal {
-    /// True where an axis that keeps the direction of `from` may get there.
+    /// True if an axis that keeps the direction of `from` may get there.
     fn is_ahead(&self, from: State4) -> bool {
         match self {
             Self::State(to) => from.v * (to.x - from.x) > 0.0 && from.v * to.v >= 0.0,
@@ -71,7 +71,7 @@ impl Goal {
     }
 }
 
-/// The way from `from` to `goal`, whose distance is known to `rounding`.
+/// The path from `from` to `goal`, whose distance is known to `rounding`.
 pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, rounding: f64, effort: Effort) -> Plan {
     let mut back = Path::<STRETCHES>::EMPTY;
     let (excess, side) = Sides::both(limits.j).excess(from.j);
@@ -83,7 +83,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, rounding: f64, e
         let (excess, fault) = (velocity.most.max(acceleration.most), velocity.fault.max(acceleration.fault));
         Plan { path, excess, fault }
     };
-    // `brake` for a while, then the fastest way.
+    // `brake` for a while, then the fastest path.
     let after = |brake: &Path<{ second::STRETCHES }>, time: f64| {
         let rest = goal.fastest(start.until(brake, time).0, limits, rounding)?;
         let mut path = back;
@@ -121,7 +121,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, rounding: f64, e
             best = Some(plan);
         }
     }
-    // As long through zero as the velocity limit demands, and no longer: the other limit may be near, too.
+    // Through zero for as long as the velocity limit demands, and no longer: the other limit may be near, too.
     let calmed = |time: f64| {
         let mut path = Path::<{ 2 * second::STRETCHES }>::EMPTY;
         path.extend_until(&through_zero, time);
@@ -143,7 +143,7 @@ pub(crate) fn plan(from: State4, goal: &Goal, limits: &Limits4, rounding: f64, e
     best.unwrap_or(plan)
 }
 
-/// When the acceleration passes zero on `path`.
+/// Time at which the acceleration passes zero on `path`.
 fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
     let (mut state, mut start) = (from, 0.0);
     if from.a == 0.0 {
@@ -162,9 +162,9 @@ fn crossing(from: State4, path: &Path<{ second::STRETCHES }>) -> f64 {
     start
 }
 
-/// The plan with the shortest braking below `longest`; `braked` gives one only where it keeps the limits.
+/// The plan with the shortest braking below `longest`; `braked` gives one only if it keeps the limits.
 ///
-/// Too much of it may turn an axis round that otherwise keeps its direction, `turns_round`: then it is halved on.
+/// Too much braking may reverse an axis that otherwise keeps its direction, `turns_round`: then it is halved further.
 fn least_braking(
     whole: &Plan,
     longest: f64,
@@ -191,7 +191,7 @@ fn least_braking(
     best
 }
 
-/// From a constant velocity to another one and to that of `goal`; with a cruise where the limit is not far enough.
+/// From a constant velocity to another one and to that of `goal`; with a cruise if the limit is not far enough.
 fn by_way_of_a_velocity(from: State4, goal: &Goal, limits: &Limits4) -> Path<{ fourth::STRETCHES }> {
     let upper = limits.upper();
     let constant = |velocity: f64| third::State3 { p: velocity, v: 0.0, a: 0.0 };

@@ -1,16 +1,16 @@
 //! The root of an increasing function whose slope is known.
 use core::cell::Cell;
 
-/// Steps at most: bisection alone takes 60 to the rounding of the bounds.
+/// Maximum number of steps: bisection alone takes 60 to the rounding of the bounds.
 const MOST: usize = 100;
 
 /// The last step of Newton's method, as a part of the time: the one after it would be its square.
 const LAST: f64 = 1e-12;
 
-/// What must be left before that step, as a part of the largest value: it is more where the slope has no bounds.
+/// Largest remainder before that step, relative to the largest value: it is more where the slope has no bounds.
 const SMALL: f64 = 1e-11;
 
-/// The root that was found last: where the next one is looked for first, of a function that has changed little.
+/// The last root, at which the search for the next one begins, for a function that has changed little.
 #[derive(Debug)]
 pub(crate) struct Near(Cell<f64>);
 
@@ -19,26 +19,26 @@ impl Near {
         Self(Cell::new(time))
     }
 
-    /// Before there is any root.
+    /// Without any root yet.
     pub(crate) const fn nothing() -> Self {
         Self::to(f64::NAN)
     }
 }
 
-/// Where a root is looked for.
+/// Interval of a root.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bracket {
-    /// Where the function is below zero, by `missing`.
+    /// Time at which the function is below zero, by `missing`.
     pub(crate) low: f64,
     pub(crate) high: f64,
     pub(crate) missing: f64,
 }
 
 impl Bracket {
-    /// Where `f`, which increases and gives its value and its slope, is zero; `None` when it stays below.
+    /// Root of `f`, which increases and returns its value and its slope; `None` when it stays below zero.
     ///
     /// Newton's method as long as its steps stay in the bracket and halve, bisection elsewhere. It begins at the last root, or,
-    /// where that is not in the bracket, as if `f` grew with the power of the time of which `inverse` is the root.
+    /// if that is outside the bracket, as if `f` grew with the power of the time of which `inverse` is the root.
     pub(crate) fn root(&self, near: &Near, inverse: impl Fn(f64) -> f64, f: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         let Self { mut low, mut high, missing } = *self;
         let (mut time, mut is_reached) = (near.0.get(), false);
@@ -83,12 +83,12 @@ impl Bracket {
 mod tests {
     use super::*;
 
-    /// A function with its slope, its root, and how many times it is looked at.
+    /// A function with its slope, its root, and the number of its evaluations.
     type Case = (fn(f64) -> (f64, f64), f64, u32);
 
     const CASES: [Case; 4] = [
         (|x| (x * x * x - 2.0, 3.0 * x * x), 1.259_921_049_894_873_2, 8),
-        // A power is met at once, with one step that says so.
+        // A power is met at once, with one step that confirms it.
         (|x| (x * x * x - 1e-12, 3.0 * x * x), 1e-4, 3),
         (|x| if x < 0.7 { (x - 0.7, 1.0) } else { (1e3 * (x - 0.7), 1e3) }, 0.7, 8),
         (|x| (libm::sqrt(x) - 1e-3, 0.5 / libm::sqrt(x)), 1e-6, 30),

@@ -1,9 +1,9 @@
-//! At which velocity a target may be passed on the way to the next one.
+//! Velocity at which a target may be passed on the path to the next one.
 //!
-//! The fastest way from a state to the velocity w covers g(w). Who is to pass a target at w at the distance s, and is not to turn
-//! back before it, needs g(w) ≤ s: what is missing is made up for by going faster on the way. Let w_c be the velocity that is left
-//! when the derivatives above it are brought to zero at once. From there on g grows with w. Below, where there is nothing but
-//! braking, it first grows as w falls, since that takes longer, and then may shrink a little, since the last of it is slow:
+//! The fastest path from a state to the velocity w covers g(w). To pass a target at w at the distance s without turning
+//! back before it, an axis needs g(w) ≤ s: the rest is made up for by higher speed on the path. Let w_c be the velocity that remains
+//! when the derivatives above it are brought to zero at once. From there on g grows with w. Below, where the axis only
+//! brakes, it first grows as w falls, since that takes longer, and then may shrink a little, since the last of it is slow:
 //!
 //! ```text
 //! g(w)  |  ·˙˙·                 ·
@@ -14,11 +14,11 @@
 //! ```
 //!
 //! So g meets s once between w_c and the highest w, or once between zero and w_c, or nowhere. The root is bracketed, and
-//! found in a few looks, each of which is closed at orders 2 and 3 and a plan of order 3 at order 4.
+//! found in a few evaluations, each of which is in closed form at orders 2 and 3 and a plan of order 3 at order 4.
 //!
-//! That is the fastest way at once. Two things may make room for a higher speed, both of them by braking first
-//! ([`super::braking`]): a longer run-up, where the axis is braking already; and, at order 4, what keeps a state next to its velocity
-//! limit from passing it. There the speeds that can be passed need not be an interval. What comes of it is tried by a plan.
+//! That is the fastest path at once. Two things may permit a higher speed, both of them by braking first
+//! ([`super::braking`]): a longer run-up, if the axis is braking already; and, at order 4, keeping a state next to its velocity
+//! limit from passing it. There the possible passing speeds need not be an interval, and each is tried by a plan.
 use super::arrival::rounding_of;
 use super::braking::{Braking, least};
 use super::first::State;
@@ -37,33 +37,33 @@ use crate::root::{increasing, increasing_from};
 use crate::{Order, PlanError};
 use servobench_base::{Setpoint, non_negative};
 
-/// What rounding may take from a distance, as a part of it and of the positions between which it lies.
+/// Relative reduction of a distance by rounding, also relative to the positions between which it lies.
 const ROUNDING: f64 = 1e-12;
 
-/// By how much a speed that is reached by one way only is lowered, as a part of it, until a plan finds a way.
+/// Relative reductions of a speed that is reached by one path only, until a plan finds a path.
 const LOWER: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
-/// At how many times it is looked whether braking on until then helps, and how often the step between them is halved.
+/// Number of times at which the benefit of braking until then is tested, and of halvings of the step between them.
 const SAMPLES: u32 = 4;
 const STEPS: usize = 5;
 
-/// Into how many parts the highest speed is divided where no way is found that keeps the velocity limit.
+/// Number of parts of the highest speed that are tried if no path is found that keeps the velocity limit.
 const PARTS: u32 = 16;
 
-/// The highest speed, `most` at most (m/s or rad/s), to which the fastest way from the state `from` reaches before `x` (m or rad),
-/// so that `x` can be passed at it without turning back; `None` when there is none, as when a brake that has been put on cannot be
+/// The highest speed, `most` at most (m/s or rad/s), that the fastest path from the state `from` reaches before `x` (m or rad),
+/// so that `x` can be passed at it without turning back; `None` when there is none, as when braking that has begun cannot be
 /// released soon enough.
 ///
-/// It is a magnitude, towards `x`; an axis that moves away from `x` has to turn round once, to come to it. Where the way is just
-/// long enough, the speed is by about 1e-12 below the one with which it would be, so that rounding turns no axis round.
+/// It is a magnitude, towards `x`; an axis that moves away from `x` has to reverse once to reach it. If the path is just
+/// long enough, the speed is about 1e-12 below the exact one, so that rounding reverses no axis.
 ///
-/// What is promised is that the plan to `x` at this speed does not turn back. Whether it does is not monotonic in the speed, so that a
-/// higher one may pass, too. Who is braking may be faster at `x` after braking on first, for a longer run-up: that is looked for at
-/// a few times. And from a state of order 4 so near its velocity limit that the fastest way would pass it, the least braking that
-/// keeps it is halved a few times. In 30 000 random situations each a speed higher by more than 0.1 % of the limit passed in 0.2 % of
+/// The guarantee is that the plan to `x` at this speed does not turn back. That property is not monotonic in the speed, so that a
+/// higher one may be possible, too. An axis that is braking may be faster at `x` after braking further, for a longer run-up: that is
+/// tested at a few times. And from a state of order 4 so near its velocity limit that the fastest path would pass it, the least braking
+/// that keeps it is halved a few times. In 30 000 random situations each a speed higher by more than 0.1 % of the limit passed in 0.2 % of
 /// them at order 3, in 2 % at order 4; higher by 3 % at most at order 3, by 25 % at order 4; none at order 2.
 ///
-/// With [`braking_velocity`] for the distance of the next move as `most` it is what blending needs (`PLCopen` Motion Control,
+/// With [`braking_velocity`] for the distance of the next move as `most`, it serves blending (`PLCopen` Motion Control,
 /// part 1, `BufferMode`): the velocity at which one move ends and the next one begins. With
 /// [`RampLimits`](super::RampLimits) the limits are those [`towards`](super::RampLimits::towards) `x`.
 ///
@@ -78,15 +78,15 @@ const PARTS: u32 = 16;
 /// assert!((most - 0.4).abs() < 1e-11);
 /// let here = Setpoint::at_rest(0.5);
 /// assert_eq!(passing_velocity(Order::Second, &here, 0.66, &limits, most)?, Some(most));
-/// // Where nothing follows that has to be braked for, the way up to speed decides.
+/// // Without a need to brake for another position, the run-up decides.
 /// let fastest = passing_velocity(Order::Second, &here, 0.66, &limits, 1.0)?;
 /// assert!(fastest.is_some_and(|fastest| (fastest - 0.8).abs() < 1e-11));
 /// # Ok::<(), servobench_motion::PlanError>(())
 /// ```
 ///
 /// # Errors
-/// [`PlanError`] when [`Transition::plan`](super::Transition::plan) refuses the limits or the state; or `x` is no number within
-/// ±1e30, or `most` not positive or zero.
+/// [`PlanError`] when [`Transition::plan`](super::Transition::plan) refuses the limits or the state; or if `x` is not a number within
+/// ±1e30, or `most` is not positive or zero.
 pub fn passing_velocity(
     order: Order,
     from: &Setpoint,
@@ -103,11 +103,11 @@ pub fn passing_velocity(
     Ok(search.highest(from))
 }
 
-/// What is looked for.
+/// A search for the highest speed.
 struct Search<'a> {
     order: Order,
     x: f64,
-    /// Of the direction towards `x`.
+    /// Sign of the direction towards `x`.
     sign: f64,
     limits: &'a DirectionalLimits,
     most: f64,
@@ -118,7 +118,7 @@ impl Search<'_> {
     fn highest(&self, from: &Setpoint) -> Option<f64> {
         let calm = self.sign * calmed(self.order, from, self.limits);
         let Some(at_once) = self.by_the_fastest_way(from, calm) else {
-            // There is a way where nothing but the velocity limit makes the fastest one too long.
+            // There is a path if only the velocity limit makes the fastest one too long.
             let is_too_fast = calm > self.most;
             return if self.order == Order::Fourth && is_too_fast { self.by_trying(from) } else { None };
         };
@@ -129,7 +129,7 @@ impl Search<'_> {
             let is_highest = at_once >= self.most || !self.is_braking(from, calm);
             return Some(if is_highest { at_once } else { self.after_braking_on(from, at_once).unwrap_or(at_once) });
         }
-        // As little braking as the velocity limit asks for; either on through zero, or to no acceleration.
+        // As little braking as the velocity limit demands; either on through zero, or to zero acceleration.
         let braking = Braking::towards(self.order, from, -self.sign, self.limits);
         let calming = Braking::calming(from, self.limits);
         let ways = [(&braking, braking.crossing()), (&calming, calming.duration())];
@@ -138,7 +138,7 @@ impl Search<'_> {
         by_braking.or_else(|| self.by_trying(from))
     }
 
-    /// The highest speed that is found by plans, from the highest one down.
+    /// The highest speed found by plans, from the highest one down.
     fn by_trying(&self, from: &Setpoint) -> Option<f64> {
         let part = self.most / f64::from(PARTS);
         let mut low = (0..=PARTS).rev().map(|k| f64::from(k) * part).find(|speed| self.is_passed(from, *speed))?;
@@ -150,7 +150,7 @@ impl Search<'_> {
         Some(low)
     }
 
-    /// A higher speed than `at_once` by braking on first, for a longer run-up.
+    /// A higher speed than `at_once` by braking further, for a longer run-up.
     fn after_braking_on(&self, from: &Setpoint, at_once: f64) -> Option<f64> {
         let braking = Braking::towards(self.order, from, -self.sign, self.limits);
         // Until it would stand.
@@ -159,7 +159,7 @@ impl Search<'_> {
         if !self.is_nearer_braked(from, at_once) && !reaches_after(1.0) && !reaches_after(0.5) {
             return None;
         }
-        // Where the highest so far is not reached, no root is looked for.
+        // If the highest so far is not reached, no root is computed.
         let mut best = at_once;
         let mut higher = |time: f64| {
             let at = braking.after(time);
@@ -189,14 +189,14 @@ impl Search<'_> {
         if best > at_once { self.lowered(from, best).filter(|speed| *speed > at_once) } else { None }
     }
 
-    /// `speed`, or a little less, at which a plan passes `x` without turning back: it meets a speed that is reached by one way only
+    /// `speed`, or a little less, at which a plan passes `x` without turning back: a speed that is reached by one path only is met
     /// from next to it.
     fn lowered(&self, from: &Setpoint, speed: f64) -> Option<f64> {
         let lowered = LOWER.into_iter().map(|part| speed * (1.0 - part));
         lowered.into_iter().find(|speed| *speed > 0.0 && self.is_passed(from, *speed))
     }
 
-    /// Whether the plan that passes `x` at `speed` does so without turning back.
+    /// True if the plan that passes `x` at `speed` does not turn back.
     fn is_passed(&self, from: &Setpoint, speed: f64) -> bool {
         let &DirectionalLimits { velocity, acceleration, jerk, .. } = self.limits;
         let (distance, v) = (self.x - from.x, self.sign * speed);
@@ -217,7 +217,7 @@ impl Search<'_> {
         lowest >= -watch::ROUNDING * velocity.towards(self.sign)
     }
 
-    /// What the fastest way reaches from here, where that keeps the velocity limit and does not turn back.
+    /// Speed reached by the fastest path from here, if that keeps the velocity limit and does not turn back.
     fn kept(&self, from: &Setpoint) -> Option<f64> {
         let calm = self.sign * calmed(self.order, from, self.limits);
         let is_ahead = calm >= 0.0 && self.distance(from) >= 0.0;
@@ -242,7 +242,7 @@ impl Search<'_> {
         self.covered(from, speed) <= self.distance(from) - self.rounding(from)
     }
 
-    /// The highest speed that the fastest way reaches before `x`; `calm` is the one that is left when the acceleration is brought to
+    /// The highest speed that the fastest path reaches before `x`; `calm` is the one that remains when the acceleration is brought to
     /// zero at once.
     #[inline]
     fn by_the_fastest_way(&self, from: &Setpoint, calm: f64) -> Option<f64> {
@@ -261,7 +261,7 @@ impl Search<'_> {
             ((0.0, beyond(by_zero)), (calm, beyond(by_calm)))
         };
         let mut highest = increasing_from(low, high, beyond_at);
-        // Next to w_c what is covered rises so steeply that the numbers next to the root are too much.
+        // Next to w_c the distance rises so steeply that the numbers next to the root are too large.
         let mut step = f64::EPSILON * highest;
         while self.covered(from, highest) > distance && highest > low.0 {
             (highest, step) = ((highest - step).max(low.0), 2.0 * step);
@@ -269,7 +269,7 @@ impl Search<'_> {
         Some(highest)
     }
 
-    /// Whether the fastest way of order 4 to a speed keeps the limits of velocity, or comes back into them.
+    /// True if the fastest path of order 4 to a speed keeps the limits of velocity, or comes back into them.
     fn keeps_the_velocity(&self, from: &Setpoint, speed: f64) -> bool {
         if self.order < Order::Fourth {
             return true;
@@ -280,12 +280,12 @@ impl Search<'_> {
         velocity.fault <= watch::ROUNDING
     }
 
-    /// Whether it slows down on its way to `x`, if it is brought to a constant velocity at once.
+    /// True if it slows down on its path to `x` when brought to a constant velocity at once.
     fn is_braking(&self, from: &Setpoint, calm: f64) -> bool {
         self.sign * from.v > 0.0 && calm < self.sign * from.v
     }
 
-    /// Whether the fastest way to a speed covers less after braking on for an instant: how it changes by that is known as it is in
+    /// True if the fastest path to a speed covers less after braking further for an instant: the change is known in the same way as in
     /// [`second`] and [`super::costate`].
     fn is_nearer_braked(&self, from: &Setpoint, speed: f64) -> bool {
         let DirectionalLimits { acceleration, jerk, snap, .. } = *self.limits;
@@ -303,11 +303,11 @@ impl Search<'_> {
     }
 }
 
-/// The highest speed (m/s or rad/s) within its limit from which an axis without acceleration comes to a stop within `distance`
+/// The highest speed (m/s or rad/s) within its limit from which an axis without acceleration stops within `distance`
 /// (m or rad, its sign the direction).
 ///
 /// # Errors
-/// [`PlanError`] when [`Transition::plan`](super::Transition::plan) refuses the limits, or `distance` is no number within ±1e30.
+/// [`PlanError`] when [`Transition::plan`](super::Transition::plan) refuses the limits, or `distance` is not a number within ±1e30.
 pub fn braking_velocity(order: Order, distance: f64, limits: &DirectionalLimits) -> Result<f64, PlanError> {
     limits.check(order)?;
     within_range("distance", distance)?;
@@ -325,7 +325,7 @@ const fn limits4(limits: &DirectionalLimits) -> Limits4 {
     Limits4 { v: velocity, a: acceleration, j: jerk, d: snap }
 }
 
-/// What the fastest way from `from` to the velocity `to` covers.
+/// Distance of the fastest path from `from` to the velocity `to`.
 #[inline]
 fn covered(order: Order, from: &Setpoint, to: f64, limits: &DirectionalLimits) -> f64 {
     let DirectionalLimits { acceleration, jerk, .. } = *limits;
@@ -344,7 +344,7 @@ fn covered(order: Order, from: &Setpoint, to: f64, limits: &DirectionalLimits) -
     }
 }
 
-/// The velocity that is left when the derivatives above it are brought to zero at once.
+/// The velocity that remains when the derivatives above it are brought to zero at once.
 fn calmed(order: Order, from: &Setpoint, limits: &DirectionalLimits) -> f64 {
     match order {
         Order::Second => from.v,
@@ -361,14 +361,14 @@ fn calmed(order: Order, from: &Setpoint, limits: &DirectionalLimits) -> f64 {
     }
 }
 
-/// At order 3: after the way back into the limits of acceleration, from the position zero.
+/// At order 3: the state after the path back into the limits of acceleration, from the position zero.
 fn within_acceleration(from: &Setpoint, limits: &DirectionalLimits) -> State3 {
     let (excess, side) = limits.acceleration.excess(from.a);
     let start = State3 { p: 0.0, v: from.v, a: from.a };
     if excess > 0.0 { start.after(-side * limits.jerk, excess / limits.jerk) } else { start }
 }
 
-/// At order 4: after the way back into the limits of jerk, from the position zero.
+/// At order 4: the state after the path back into the limits of jerk, from the position zero.
 fn within_jerk(from: &Setpoint, limits: &DirectionalLimits) -> State4 {
     let (excess, side) = Sides::both(limits.jerk).excess(from.j);
     let start = State4 { x: 0.0, v: from.v, a: from.a, j: from.j };

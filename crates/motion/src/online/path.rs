@@ -1,8 +1,8 @@
-//! What a kernel plans: stretches of time in which the highest derivative of its chain is constant.
+//! Plan of a kernel: stretches of time in which the highest derivative of its chain is constant.
 
 /// One stretch: the `zeros` highest derivatives are zero, the one below them is `value`, for `length` (s).
 ///
-/// That a derivative is held is planned, and not left to what integration makes of it: a residue of the jerk of 1e-17 would be
+/// A held derivative is planned, and not left to the result of integration: a residue of the jerk of 1e-17 would be
 /// metres after a day of cruising.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Stretch {
@@ -20,7 +20,7 @@ impl Stretch {
     }
 }
 
-/// Up to `N` stretches, one after the other; paths are copied often, so that what they hold lies close.
+/// Up to `N` consecutive stretches; paths are copied often, so their data lies close together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Path<const N: usize> {
     values: [f64; N],
@@ -44,8 +44,8 @@ impl<const N: usize> Path<N> {
 
     /// Adds a stretch, unless it has no length.
     ///
-    /// Capacities are sums of what is added to them, so that there is always room. If that were wrong, the index would say so
-    /// in every build, where a sweep of the tests sees it.
+    /// Capacities are sums of the numbers of added stretches, so that there is always room. If that were wrong, the index would panic
+    /// in every build, and a sweep of the tests would find it.
     #[inline]
     fn add(&mut self, Stretch { value, length, zeros }: Stretch) {
         if length > 0.0 {
@@ -55,7 +55,7 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Adds all of another one.
+    /// Adds all stretches of another one.
     pub(crate) fn extend<const M: usize>(&mut self, other: &Path<M>) {
         for stretch in other.stretches() {
             self.add(stretch);
@@ -83,7 +83,7 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// How long it lasts (s).
+    /// Its duration (s).
     pub(crate) fn duration(&self) -> f64 {
         self.lengths[..self.count].iter().sum()
     }

@@ -1,4 +1,4 @@
-//! Limits as drives and function blocks have them: one acceleration to speed up with, another one to brake with.
+//! Limits of drives and function blocks: separate accelerations for speeding up and for braking.
 use super::second::Sides;
 use super::trapezoid::Rates;
 use super::watch::ROUNDING;
@@ -6,7 +6,7 @@ use super::{DirectionalLimits, check_limits};
 use crate::{Order, PlanError, Trajectory};
 use servobench_base::Setpoint;
 
-/// What a transition may not exceed, acceleration while the speed grows and while it falls; in the axis unit (m or rad).
+/// Limits of a transition, acceleration while the speed grows and while it falls; in the axis unit (m or rad).
 ///
 /// Profile acceleration and deceleration of a drive (CiA 402, objects 6083h and 6084h), `Acceleration` ("increasing energy of
 /// the motor") and `Deceleration` of a block (`PLCopen` Motion Control, part 1).
@@ -25,8 +25,8 @@ pub struct RampLimits {
 }
 
 impl RampLimits {
-    /// What they are for an axis that moves in the direction of `sign` only: what it speeds up with is then on one side, what
-    /// it brakes with on the other.
+    /// The limits for an axis that moves in the direction of `sign` only: acceleration is then on one side,
+    /// deceleration on the other.
     #[must_use]
     pub fn towards(&self, sign: f64) -> DirectionalLimits {
         let Self { acceleration, deceleration, .. } = *self;
@@ -37,24 +37,24 @@ impl RampLimits {
         })
     }
 
-    /// What keeps them in whatever direction the axis moves: the smaller of both accelerations.
+    /// Limits that keep these in either direction: the smaller of both accelerations.
     #[must_use]
     pub const fn either_way(&self) -> DirectionalLimits {
         self.with(Sides::both(self.acceleration.min(self.deceleration)))
     }
 
-    /// What they are at most for an axis that turns round once, to the direction of `sign`: it brakes on that side and may speed up
+    /// Bounds on the limits for an axis that reverses once, to the direction of `sign`: it brakes on that side and may speed up
     /// on it, and brakes on the other one.
     pub(crate) fn turning(&self, sign: f64) -> DirectionalLimits {
         let (larger, away) = (self.acceleration.max(self.deceleration), self.deceleration);
         self.with(if sign >= 0.0 { Sides { above: larger, below: away } } else { Sides { above: away, below: larger } })
     }
 
-    /// How far a state of `order` is beyond them, as a part of them; below zero where it is not.
+    /// Relative excess of a state of `order` over the limits; negative within them.
     pub(crate) fn excess_of(&self, order: Order, state: &Setpoint) -> f64 {
         let Setpoint { v, a, j, .. } = *state;
         let acceleration = if v * a > 0.0 { self.acceleration } else { self.deceleration };
-        // At rest the speed can but grow.
+        // At rest the speed can only grow.
         let acceleration = if v == 0.0 { self.acceleration } else { acceleration };
         let (beyond, side) = self.velocity.excess(v);
         let velocity = beyond / self.velocity.towards(side);
@@ -62,14 +62,14 @@ impl RampLimits {
         velocity.max(a.abs() / acceleration - 1.0).max(jerk)
     }
 
-    /// How far `way` is beyond them.
+    /// Relative excess of `way` over the limits.
     pub(crate) fn excess_on<const N: usize>(&self, way: &Trajectory<N>) -> f64 {
         let speeds = way.pieces().map(|(anchor, length)| anchor.v.abs().max(anchor.after(length).v.abs()));
         // The last bits of a velocity that is zero have a sign, too.
         let zero = ROUNDING * speeds.fold(0.0, f64::max);
         let mut most = f64::NEG_INFINITY;
         for (anchor, length) in way.pieces() {
-            // Where the acceleration, a + j·t + s·t²/2, turns round, and where the velocity does.
+            // Turning points of the acceleration, a + j·t + s·t²/2, and of the velocity.
             let middle = (-anchor.j / anchor.s).clamp(0.0, length);
             let middle = if middle.is_nan() { length } else { middle };
             for (start, end) in [(0.0, middle), (middle, length)] {
@@ -83,7 +83,7 @@ impl RampLimits {
         most
     }
 
-    /// The same of the acceleration to the side of `sign` in a time in which it does not turn round, with speeds up to `zero` as rest.
+    /// The same of the acceleration to the side of `sign` in a time without a turning point, with speeds up to `zero` as rest.
     fn excess_of_rise(&self, start: &Setpoint, length: f64, sign: f64, zero: f64) -> f64 {
         let Self { acceleration, deceleration, .. } = *self;
         let (smaller, larger) = (acceleration.min(deceleration), acceleration.max(deceleration));
@@ -92,7 +92,7 @@ impl RampLimits {
         if highest <= smaller * (1.0 + ROUNDING) {
             return highest / smaller - 1.0;
         }
-        // When it is the smaller one: j·t + s·t²/2 = rise, without cancellation.
+        // Time at which the smaller one holds: j·t + s·t²/2 = rise, without cancellation.
         let rise = sign * smaller - start.a;
         let root = libm::sqrt((start.j * start.j + 2.0 * start.s * rise).max(0.0));
         let passes = 2.0 * rise / (start.j + root.copysign(end.a - start.a));
@@ -100,7 +100,7 @@ impl RampLimits {
         let is_within = |state: &Setpoint| sign * state.a <= smaller;
         let first = sign * if is_within(start) { start.after(passes).v } else { start.v };
         let last = sign * if is_within(&end) { start.after(passes).v } else { end.v };
-        // In between the velocity grows to the side of `sign`: what is below zero is braking.
+        // In between the velocity grows to the side of `sign`: below zero that is braking.
         let is_beyond = if deceleration < acceleration { first < -zero } else { last > zero };
         highest / if is_beyond { smaller } else { larger } - 1.0
     }

@@ -1,10 +1,10 @@
-//! The fastest way between two states of a chain of two integrators.
+//! The fastest path between two states of a chain of two integrators.
 
 use super::arrival::{NEGLIGIBLE, rounding_within};
 use super::first::{State, THIRD};
 use super::path::Path;
 
-/// Stretches at most: a rate, a hold, and the other rate.
+/// Maximum number of stretches: a rate, a hold, and the other rate.
 pub(crate) const STRETCHES: usize = 3;
 
 /// A state of two integrators in a row: `v` and its rate `a`.
@@ -14,7 +14,7 @@ pub(crate) struct State2 {
     pub(crate) a: f64,
 }
 
-/// How far a quantity may go on either side of zero.
+/// Limits of a quantity on either side of zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sides {
     /// Largest magnitude below zero.
@@ -23,7 +23,7 @@ pub struct Sides {
     pub above: f64,
 }
 
-/// What `a` and its rate may be.
+/// Limits of `a` and its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Limits2 {
     pub(crate) a: Sides,
@@ -48,18 +48,18 @@ impl Sides {
         if sign > 0.0 { self.above } else { -self.below }
     }
 
-    /// How far `value` is beyond, above zero where it is; and on which side.
+    /// Excess of `value` over its limit, negative within it; and its side.
     pub(crate) fn excess(self, value: f64) -> (f64, f64) {
         if value > 0.0 { (value - self.above, 1.0) } else { (-value - self.below, -1.0) }
     }
 }
 
-/// The fastest way between two states: one rate, none, and the opposite one.
+/// The fastest path between two states: one rate, none, and the opposite one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fastest {
     /// The first rate.
     pub(crate) rate: f64,
-    /// How long each lasts.
+    /// Duration of each.
     pub(crate) up: f64,
     pub(crate) hold: f64,
     pub(crate) down: f64,
@@ -128,11 +128,11 @@ impl Fastest {
         0.5 * (from.v + to.v) + (to.a * to.a - from.a * from.a) / (4.0 * self.rate)
     }
 
-    /// How [`covered`](Self::covered) and what is covered before grow with the time for which `a` has changed at the rate `w` before.
+    /// Growth of [`covered`](Self::covered) plus the distance before it with the time for which `a` has changed at the rate `w` before.
     ///
-    /// It is the same from every state on this way: F(p, v, a) with v + a·∂F/∂v + u·∂F/∂a = 0 at the first rate u. Who goes on
-    /// at another rate w for dt before changes it by (w − u)·∂F/∂a·dt = (1 − w/u)·(v + a·∂F/∂v)·dt. As v rises by dv, the middle
-    /// of the way is reached dv/peak earlier: ∂F/∂v = up + hold/2 − (v in the middle)/peak.
+    /// It is the same from every state on this path: F(p, v, a) with v + a·∂F/∂v + u·∂F/∂a = 0 at the first rate u. Another
+    /// rate w for dt before changes it by (w − u)·∂F/∂a·dt = (1 − w/u)·(v + a·∂F/∂v)·dt. As v rises by dv, the middle
+    /// of the path is reached dv/peak earlier: ∂F/∂v = up + hold/2 − (v in the middle)/peak.
     #[inline]
     pub(crate) fn grows(&self, from: State2, to: State2, w: f64) -> f64 {
         let Self { rate, up, hold, peak, .. } = *self;
@@ -141,11 +141,11 @@ impl Fastest {
     }
 }
 
-/// One rate, a hold, and the other rate. Which comes first is told by the straight way between the two values of `a`: who has
-/// to gain more than that way gains goes up first (Athans & Falb, *Optimal Control*, §7.2).
+/// One rate, a hold, and the other rate. The direct path between the two values of `a` decides the first one: if the
+/// required gain exceeds that of the direct path, the first rate is upwards (Athans & Falb, *Optimal Control*, §7.2).
 ///
-/// The times are quotients, not products with 1/j: the rate times such a time is, but for few values, exactly the difference that
-/// it was made of, and nothing of it is left to be integrated over a hold.
+/// The times are quotients, not products with 1/j: the rate times such a time is, except for few values, exactly the difference
+/// from which it was computed, so that no residue is integrated over a hold.
 #[inline]
 pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Fastest {
     let straight = (to.a + from.a) * (to.a - from.a).abs() / (2.0 * limits.j);
@@ -167,8 +167,8 @@ pub(crate) fn way(from: State2, to: State2, limits: &Limits2) -> Fastest {
     }
 }
 
-/// The one rate that leads from `from` to the `a` of `to`, where that meets its `v`, which has the limits `v`, to rounding: the end of a way on which `from` lies,
-/// whose rounding [`way`] would make up for by pulses of the length √ε.
+/// The single rate that leads from `from` to the `a` of `to`, if that meets its `v`, which has the limits `v`, to rounding: the end of a
+/// path on which `from` lies, whose rounding [`way`] would make up for by pulses of the length √ε.
 #[inline]
 pub(crate) fn ramp(from: State2, to: State2, v: Sides, limits: &Limits2) -> Option<Fastest> {
     let rise = to.a - from.a;
@@ -179,12 +179,12 @@ pub(crate) fn ramp(from: State2, to: State2, v: Sides, limits: &Limits2) -> Opti
     is_met.then(|| Fastest { rate: limits.j.copysign(rise), up, hold: 0.0, down: 0.0, peak: rise.signum() * to.a })
 }
 
-/// The rest of a way from `from` to `to` as it is, where that is met to rounding; the fastest way elsewhere.
+/// The rest of a path from `from` to `to` as it is, if that is met to rounding; the fastest path otherwise.
 pub(crate) fn rest(from: State2, to: State2, v: Sides, limits: &Limits2) -> Path<STRETCHES> {
     ramp(from, to, v, limits).unwrap_or_else(|| way(from, to, limits)).path()
 }
 
-/// The fastest way from `from`, with `a` within its limits, to `to`.
+/// The fastest path from `from`, with `a` within its limits, to `to`.
 pub(crate) fn fastest(from: State2, to: State2, limits: &Limits2) -> Path<STRETCHES> {
     way(from, to, limits).path()
 }

@@ -1,9 +1,9 @@
-//! The fastest way between two states of a chain of three integrators.
+//! The fastest path between two states of a chain of three integrators.
 //!
-//! Who follows the fastest way to the velocity limit for a while τ, and the fastest way to the target's velocity and
-//! acceleration from there on, covers the more the longer τ is. The τ with which the target's position is met is the
-//! fastest way: one rate, the other, the first again, with holds where acceleration or velocity is at its limit. When the
-//! whole way to the velocity limit is not far enough, a cruise there makes up the rest.
+//! A path that follows the fastest one to the velocity limit for a while τ, and then the fastest one to the target's velocity and
+//! acceleration, covers the more the longer τ is. The τ for which the target's position is met is the
+//! fastest path: one rate, the other, the first again, with holds where acceleration or velocity is at its limit. If the
+//! whole path to the velocity limit is not far enough, a cruise there makes up the rest.
 use super::arrival::{NEGLIGIBLE, is_met, meet, rounding_within};
 use super::costate;
 use super::first::{State, THIRD, meeting};
@@ -12,7 +12,7 @@ use super::path::Path;
 use super::second::{self, Limits2, Sides, State2};
 use super::watch::Watch;
 
-/// Stretches of a fastest way at most: back into the limit of acceleration, there, a cruise, and back.
+/// Maximum number of stretches of a fastest path: back into the limit of acceleration, there, a cruise, and back.
 pub(crate) const FASTEST: usize = 1 + second::STRETCHES + 1 + second::STRETCHES;
 /// The same, and a cruise at the velocity of the target.
 pub(crate) const STRETCHES: usize = FASTEST + 1;
@@ -25,7 +25,7 @@ pub(crate) struct State3 {
     pub(crate) a: f64,
 }
 
-/// What `v`, `a` and the rate of `a` may be.
+/// Limits of `v`, `a` and the rate of `a`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Limits3 {
     pub(crate) v: Sides,
@@ -57,12 +57,12 @@ impl State for State3 {
 }
 
 impl State3 {
-    /// Hands the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
+    /// Passes the velocities at the turning points of `path` and at the ends of its stretches to `see`, in the order of time.
     pub(crate) fn velocities<const N: usize>(self, path: &Path<N>, see: impl FnMut(f64)) {
         self.extremes(path, see, |_| ());
     }
 
-    /// The same, and the accelerations at the ends; gives the state at the end.
+    /// The same, and the accelerations at the ends; returns the state at the end.
     #[inline]
     fn extremes<const N: usize>(
         self,
@@ -83,7 +83,7 @@ impl State3 {
         state
     }
 
-    /// Where `path` ends, and how far it is beyond these limits of `v` and `a`, as a part of them.
+    /// State at the end of `path`, and its relative excess over these limits of `v` and `a`.
     #[inline]
     pub(crate) fn excess<const N: usize>(self, path: &Path<N>, v: Sides, a: Sides) -> (Self, f64) {
         let (mut velocity, mut acceleration) = (Watch::new(v, self.v), Watch::new(a, self.a));
@@ -96,15 +96,15 @@ impl State3 {
     }
 }
 
-/// A fastest way.
+/// A fastest path.
 pub(crate) struct Fastest {
     pub(crate) path: Path<STRETCHES>,
-    /// The change of the integral of `p` over it with `a` where it begins.
+    /// Change of the integral of `p` over it with the initial `a`.
     pub(crate) by_a: f64,
 }
 
-/// Sets `path` to the fastest way from `from` to `to`, which is passed without acceleration at its velocity, and gives how far it is
-/// beyond the limits. The distance between both is known to `rounding`.
+/// Sets `path` to the fastest path from `from` to `to`, which is passed without acceleration at its velocity, and returns its excess
+/// over the limits. The distance between both is known to `rounding`.
 #[inline]
 pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, rounding: f64, path: &mut Path<STRETCHES>) -> f64 {
     let (_, is_rest) = find::<false, true>(from, to, limits, rounding, &Near::nothing(), path);
@@ -117,7 +117,7 @@ pub(crate) fn passing(from: State3, to: State3, limits: &Limits3, rounding: f64,
     from.excess(path, limits.v, limits.a).1
 }
 
-/// The fastest way from `from` to what `to` is above its position.
+/// The fastest path from `from` to the derivatives of `to`, at any position.
 pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits3) -> Path<N> {
     let mut path = Path::EMPTY;
     let start = led_back(from, limits, &mut path);
@@ -125,7 +125,7 @@ pub(crate) fn straight<const N: usize>(from: State3, to: State3, limits: &Limits
     path
 }
 
-/// Adds the way back into the limits of acceleration to `path`, and gives the state behind it.
+/// Adds the path back into the limits of acceleration to `path`, and returns the state behind it.
 #[inline]
 fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) -> State3 {
     let (excess, side) = limits.a.excess(from.a);
@@ -133,7 +133,7 @@ fn led_back<const N: usize>(from: State3, limits: &Limits3, path: &mut Path<N>) 
     from.along(path)
 }
 
-/// The fastest way from `from` to `to`. A target that is passed with an acceleration may be missed, as there may be no way of
+/// The fastest path from `from` to `to`. A target that is passed with an acceleration may be missed, as there may be no path of
 /// this kind.
 #[inline]
 pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETCHES> {
@@ -142,7 +142,7 @@ pub(crate) fn fastest(from: State3, to: State3, limits: &Limits3) -> Path<STRETC
     path
 }
 
-/// The rest of a way from `from` to `to` as it is, where that is met to rounding, and true; the fastest way elsewhere.
+/// The rest of a path from `from` to `to` as it is, if that is met to rounding, and true; the fastest path otherwise.
 #[inline]
 pub(crate) fn rest(from: State3, to: State3, limits: &Limits3, rounding: f64) -> (Path<STRETCHES>, bool) {
     let mut path = Path::EMPTY;
@@ -150,7 +150,7 @@ pub(crate) fn rest(from: State3, to: State3, limits: &Limits3, rounding: f64) ->
     (path, is_rest)
 }
 
-/// The same, where τ is `near` the one of the last way.
+/// The same, with τ `near` that of the last path.
 #[inline]
 pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Fastest {
     let mut way = Fastest { path: Path::EMPTY, by_a: 0.0 };
@@ -158,10 +158,10 @@ pub(crate) fn way(from: State3, to: State3, limits: &Limits3, near: &Near) -> Fa
     way
 }
 
-/// Adds the fastest way to `path`, which is empty, and gives its [`Fastest::by_a`] if that is wanted; and whether it is the straight
-/// way to what `to` is above its position, which with `REST` is taken where it meets that to rounding.
+/// Adds the fastest path to `path`, which is empty, and returns its [`Fastest::by_a`] if requested; and true if it is the direct
+/// path to the derivatives of `to`, which is taken with `REST` if it meets the position to rounding.
 ///
-/// Where a way is a function of its start, as in the roots of order 4, that would be a step in it.
+/// If a path is a function of its start, as in the roots of order 4, that would be a step in it.
 fn find<const BY_A: bool, const REST: bool>(
     from: State3,
     to: State3,
@@ -203,7 +203,7 @@ fn find<const BY_A: bool, const REST: bool>(
         (sign * (covered - to.p), sign * back.grows(turn.upper(), to.upper(), rate))
     };
     let time = if sign * to.v >= 0.0 {
-        // From where the ways part to where they are the same again.
+        // From where the paths part to where they are the same again.
         let bracket = Bracket {
             low: if there.rate * direct.rate > 0.0 { there.up.min(direct.up) } else { 0.0 },
             high: if there.rate * sign > 0.0 && sign * to.a <= 0.0 { there.up + there.hold } else { there.duration() },

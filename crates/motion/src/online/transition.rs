@@ -14,11 +14,11 @@ use crate::stretch::LONGEST;
 use crate::{Order, Piece, PlanError, Segment, Trajectory};
 use servobench_base::{Setpoint, Stateful};
 
-/// Stretches at most: those of a plan to a stop, at which there is neither a second way home nor a cruise, and those of one from
-/// rest, before which nothing is led back.
+/// Maximum number of stretches: those of a plan to a stop, which has neither a second path home nor a cruise, and those of one from
+/// rest, which needs no leading back.
 const STRETCHES: usize = ladder::STRETCHES + third::FASTEST;
 
-/// The way from one state to a target, in the axis unit (m or rad) and seconds from its start.
+/// The path from one state to a target, in the axis unit (m or rad) and seconds from its start.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Transition {
     way: Trajectory<STRETCHES>,
@@ -26,14 +26,14 @@ pub struct Transition {
 }
 
 impl Transition {
-    /// Plans the way from `from` to `target`.
+    /// Plans the path from `from` to `target`.
     ///
-    /// `from` may be any state: that of a running move, or one beyond the limits, which is led back in the shortest way. Its
-    /// snap does not matter, at order 3 its jerk neither, at order 2 its acceleration neither.
+    /// `from` may be any state: that of a running move, or one beyond the limits, which is led back on the shortest path. Its
+    /// snap does not matter, nor its jerk at order 3, nor its acceleration at order 2.
     ///
     /// # Errors
-    /// [`PlanError`] when a state is no number within ±1e30, a limit that the order uses is not positive or lies outside
-    /// 1e-30 … 1e30 (SI), or the velocity of the target is beyond its limits; and when the way would take more than 1e60 s.
+    /// [`PlanError`] when a state is not a number within ±1e30, a limit that the order uses is not positive or lies outside
+    /// 1e-30 … 1e30 (SI), or the velocity of the target is beyond its limits; and when the path would take more than 1e60 s.
     pub fn plan(
         order: Order,
         from: &Setpoint,
@@ -53,11 +53,11 @@ impl Transition {
 
     /// The same with one acceleration while the speed grows and another one while it falls.
     ///
-    /// Order 2 is the shortest way that keeps them. At orders 3 and 4 so is the way of an axis that keeps its direction, planned
-    /// [`towards`](RampLimits::towards) it. An axis that has to turn round brakes with the deceleration, passes zero with the smaller
+    /// Order 2 is the shortest path that keeps them. At orders 3 and 4 so is the path of an axis that keeps its direction, planned
+    /// [`towards`](RampLimits::towards) it. An axis that has to reverse brakes with the deceleration, passes zero with the smaller
     /// of both accelerations at most, and speeds up with the acceleration: at order 3 in the shortest time, at order 4 within about
-    /// 0.2 % of it. Who has to turn round more than once takes the shorter of the smaller one all the way
-    /// ([`either_way`](RampLimits::either_way)) and a stop, and from there. That takes up to five plans, at order 4 up to a dozen.
+    /// 0.2 % of it. To reverse more than once, the shorter of two paths is taken: one with the smaller acceleration throughout
+    /// ([`either_way`](RampLimits::either_way)), and one with a stop. That takes up to five plans, at order 4 up to a dozen.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).
@@ -77,17 +77,17 @@ impl Transition {
         turning::Request { order, target, limits, effort }.plan(from)
     }
 
-    /// With `next` behind it, which begins where it ends.
+    /// Appends `next`, which begins where this one ends.
     pub(super) fn then(self, next: &Self) -> Self {
         Self { way: self.way.then(&next.way), excess: self.excess.max(next.excess) }
     }
 
-    /// The same, known to be this far beyond the limits.
+    /// The same, with this known excess over the limits.
     pub(super) fn exceeding(self, excess: f64) -> Self {
         Self { excess: if excess > 2.0 * ROUNDING { excess } else { 0.0 }, ..self }
     }
 
-    /// What it is made of.
+    /// Its trajectory.
     pub(super) const fn way(&self) -> &Trajectory<STRETCHES> {
         &self.way
     }
@@ -107,7 +107,7 @@ impl Transition {
         Ok(Self { way, excess: excess.max(0.0) })
     }
 
-    /// The way along `path` to `a` and `j` at rest.
+    /// The path along `path` to `a` and `j` at rest.
     pub(super) fn through_rest<const N: usize>(
         order: Order,
         from: Setpoint,
@@ -120,7 +120,7 @@ impl Transition {
         Ok(Self { way, excess: 0.0 })
     }
 
-    /// The set-point `t` seconds after the start; before it the first one, from the end on the target, which goes on at its
+    /// The set-point `t` seconds after the start; before it the first one, from the end on the target, continued at its
     /// velocity. NaN counts as before the start.
     #[must_use]
     #[inline]
@@ -140,7 +140,7 @@ impl Transition {
         self.way.duration()
     }
 
-    /// True where the velocity never leaves the side of `sign`, but by rounding.
+    /// True if the velocity never leaves the side of `sign`, except by rounding.
     #[must_use]
     pub fn keeps_direction(&self, sign: f64) -> bool {
         self.way.keeps_direction(sign)
@@ -158,8 +158,8 @@ impl Transition {
         self.way.segments()
     }
 
-    /// How far it goes beyond the limits of velocity and acceleration, as a part of them. Zero, unless the state from which it
-    /// starts is beyond them, or leaves no way that is not.
+    /// Relative excess over the limits of velocity and acceleration. Zero, unless the state from which it
+    /// starts is beyond them, or leaves only paths that are.
     #[must_use]
     pub const fn excess(&self) -> f64 {
         self.excess
@@ -175,7 +175,7 @@ pub(super) fn check_state(order: Order, from: &Setpoint) -> Result<(), PlanError
     Ok(())
 }
 
-/// A path that does not take too long.
+/// The path, if it does not take too long.
 fn within_time<const N: usize>(path: &Path<N>) -> Result<&Path<N>, PlanError> {
     let value = path.duration();
     if value.is_nan() || value > LONGEST {
@@ -194,14 +194,14 @@ fn second_order(from: &Setpoint, target: &Target, velocity: Sides, rates: &Rates
         }
         Target::Velocity(v) => rates.ramp(from.v, *v, &mut path),
     }
-    // The speed never grows beyond where it begins.
+    // The speed never exceeds its initial value.
     let excess = Watch::new(velocity, from.v).most;
     Transition::new(Order::Second, Setpoint { a: 0.0, j: 0.0, s: 0.0, ..*from }, &path, target, excess)
 }
 
 fn third_order(from: &Setpoint, target: &Target, limits: &DirectionalLimits) -> Result<Transition, PlanError> {
     let DirectionalLimits { velocity, acceleration, jerk, .. } = *limits;
-    // The distance alone matters.
+    // Only the distance matters.
     let start = State3 { p: 0.0, v: from.v, a: from.a };
     let mut path = Path::EMPTY;
     let excess = match target {
@@ -247,7 +247,7 @@ mod tests {
     use super::*;
     use crate::Limits;
 
-    /// Found by the fuzz target: states so far beyond the limits that the way back left what `f64` can hold.
+    /// Found by the fuzz target: states so far beyond the limits that the path back left the range of `f64`.
     #[test]
     fn a_way_that_takes_too_long_is_refused() {
         let limits = Limits { velocity: 1.0, acceleration: 1.0, jerk: 1e-18, snap: 1e-28 };

@@ -9,17 +9,17 @@
 //! x₁ − x₀ = w²/2u − v₀²/2r₀ + w²/2d − v₁²/2r₁      w = √(2·(x₁ − x₀ + v₀²/2r₀ + v₁²/2r₁)·u·d/(u + d))
 //! ```
 //!
-//! gives the highest velocity w. The move is in that direction in which the ramp from v₀ straight to v₁ falls short of x₁; who
-//! has to go farther is the later at every velocity below, so that no other way is shorter (Athans & Falb, *Optimal Control*,
+//! gives the highest velocity w. The move is in the direction in which the ramp from v₀ directly to v₁ falls short of x₁; a
+//! longer path is later at every velocity below, so that no other path is shorter (Athans & Falb, *Optimal Control*,
 //! §7.2).
 use super::arrival::NEGLIGIBLE;
 use super::path::Path;
 use super::second::Sides;
 
-/// Stretches at most: two ramps, each through zero, and the cruise.
+/// Maximum number of stretches: two ramps, each through zero, and the cruise.
 pub(crate) const STRETCHES: usize = 5;
 
-/// The rates of the velocity, each by its own direction.
+/// The rates of the velocity, each by direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rates {
     /// While the speed grows.
@@ -29,7 +29,7 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// The same whether the speed grows or falls.
+    /// The same rates whether the speed grows or falls.
     pub(crate) const fn by_direction(acceleration: Sides) -> Self {
         Self { growing: acceleration, falling: acceleration }
     }
@@ -44,13 +44,13 @@ impl Rates {
         0.5 * v * v / self.towards(sign, v)
     }
 
-    /// What the ramp from `v` to `w` covers.
+    /// Distance of the ramp from `v` to `w`.
     pub(crate) fn covered(&self, v: f64, w: f64) -> f64 {
         let sign = direction(w - v);
         sign * (self.square(sign, w) - self.square(sign, v))
     }
 
-    /// The ramp from `v` to `w`, behind `path`.
+    /// Appends the ramp from `v` to `w` to `path`.
     pub(crate) fn ramp<const N: usize>(&self, v: f64, w: f64, path: &mut Path<N>) {
         let sign = direction(w - v);
         let mut from = v;
@@ -68,9 +68,9 @@ fn direction(difference: f64) -> f64 {
     if difference >= 0.0 { 1.0 } else { -1.0 }
 }
 
-/// The fastest way from the velocity `from` to the velocity `to` that covers `distance`, which is known to `rounding`, behind `path`.
+/// Appends the fastest path from the velocity `from` to the velocity `to` that covers `distance`, which is known to `rounding`, to `path`.
 ///
-/// Where the ramp alone covers it to rounding, it is the rest of a way on which the axis is, and taken: the root would make up for a
+/// If the ramp alone covers it to rounding, it is the rest of the present path, and taken: the root would make up for a
 /// part of 1e-16 by 1e-8 of the velocity.
 pub(crate) fn fastest(
     [from, to]: [f64; 2],

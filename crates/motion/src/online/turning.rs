@@ -1,14 +1,14 @@
-//! An axis that turns round, with one acceleration while its speed grows and another one while it falls.
+//! An axis that reverses, with one acceleration while its speed grows and another one while it falls.
 //!
 //! Let it come from below zero. Below zero it brakes, and its acceleration is at most the deceleration; above zero it speeds
-//! up, with the acceleration at most. So at zero it has the smaller of both at most. A way that turns round once is one of two:
+//! up, with the acceleration at most. So at zero it has the smaller of both at most. A path that reverses once is one of two:
 //!
-//! - with the larger one all the way, where that keeps the rule of its own accord;
-//! - or, where that would pass zero with too much, it passes zero with the smaller one and is two ways in a row, each with limits
-//!   that do not change: to v = 0 with that acceleration, and from there. At order 3 nothing is left to be chosen, at order 4 the
+//! - with the larger one all along, if that happens to keep the rule;
+//! - or, if that would pass zero with too much, it passes zero with the smaller one and is two consecutive paths, each with
+//!   constant limits: to v = 0 with that acceleration, and from there. At order 3 no choice remains, at order 4 the
 //!   jerk at zero: [`Request::jerk_at_zero`].
 //!
-//! The smaller one all the way, and a stop before the other way begins, are for who turns round more than once.
+//! The smaller one all along, and a stop before the other path begins, serve an axis that reverses more than once.
 use super::arrival::rounding_within;
 use super::first::State;
 use super::second::Sides;
@@ -19,13 +19,13 @@ use crate::{Order, PlanError};
 use core::f64::consts::FRAC_1_SQRT_2;
 use servobench_base::Setpoint;
 
-/// How often the range is cut by a third in which the jerk at zero is looked for: what it costs is flat there.
+/// Number of cuts by a third of the range of the jerk at zero: its cost is flat there.
 const THIRDS: usize = 12;
 
-/// How often the step is halved by which another jerk is tried.
+/// Number of halvings of the step by which another jerk is tried.
 const STEPS: usize = 4;
 
-/// What is asked for, in a plan of order 3 or 4.
+/// A request for a plan of order 3 or 4.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Request<'a> {
     pub(crate) order: Order,
@@ -34,20 +34,20 @@ pub(crate) struct Request<'a> {
     pub(crate) effort: Effort,
 }
 
-/// A way, and how far it is beyond the limits, as a part of them; negative where it is not.
+/// A path, and its relative excess over the limits; negative within them.
 struct Candidate {
     way: Transition,
     excess: f64,
 }
 
 impl Request<'_> {
-    /// The shortest of the ways that keep the limits; where there is none, the one that exceeds them least.
+    /// The shortest of the paths that keep the limits; without one, that which exceeds them least.
     pub(crate) fn plan(&self, from: &Setpoint) -> Result<Transition, PlanError> {
         if let Some(planned) = self.one_way(from)? {
             return Ok(planned);
         }
         let judged = |way: Transition| Candidate { way, excess: self.limits.excess_on(way.way()) };
-        // What the start is beyond them belongs to every way.
+        // The excess of the start belongs to every path.
         let allowed = self.limits.excess_of(self.order, from).max(0.0) + ROUNDING;
         let is_kept = |one: &Candidate| one.excess <= allowed;
         let wide = judged(self.towards_target(from, self.limits.turning(-self.heading(from)))?);
@@ -73,7 +73,7 @@ impl Request<'_> {
         Transition::plan(self.order, from, self.target, &limits, self.effort)
     }
 
-    /// In which direction an axis that does not turn round moves.
+    /// Direction of an axis that does not reverse.
     fn heading(&self, from: &Setpoint) -> f64 {
         let state = &[from.v, from.a, from.j][..self.order.derivative() - 1];
         let towards = match self.target {
@@ -83,7 +83,7 @@ impl Request<'_> {
         state.iter().chain(&towards).find(|value| **value != 0.0).map_or(1.0, |value| value.signum())
     }
 
-    /// The shortest way that does not turn round, if there is one.
+    /// The shortest path that does not reverse, if there is one.
     fn one_way(&self, from: &Setpoint) -> Result<Option<Transition>, PlanError> {
         let sign = self.heading(from);
         let limits = self.limits.towards(sign);
@@ -91,7 +91,7 @@ impl Request<'_> {
         Ok((limits == self.limits.either_way() || planned.way().keeps_direction(sign)).then_some(planned))
     }
 
-    /// The way that passes zero once, with the smaller of both accelerations.
+    /// The path that passes zero once, with the smaller of both accelerations.
     fn through_zero(&self, from: &Setpoint) -> Result<Option<Transition>, PlanError> {
         if self.order == Order::Third {
             return self.through(from, 0.0);
@@ -120,7 +120,7 @@ impl Request<'_> {
         Ok(best)
     }
 
-    /// The way that passes zero once with the smaller acceleration and the jerk `j`, in the direction of the turn, if there is one.
+    /// The path that passes zero once with the smaller acceleration and the jerk `j`, in the direction of the turn, if there is one.
     fn through(&self, from: &Setpoint, j: f64) -> Result<Option<Transition>, PlanError> {
         let sign = self.heading(from);
         let a = -sign * self.limits.acceleration.min(self.limits.deceleration);
@@ -134,7 +134,7 @@ impl Request<'_> {
         Ok(onwards.way().keeps_direction(-sign).then(|| to_zero.then(&onwards)))
     }
 
-    /// With which jerk, a magnitude, an axis of order 4 passes zero with the smaller acceleration, and with which one at most. It is
+    /// Jerk, a magnitude, with which an axis of order 4 passes zero at the smaller acceleration, and the largest possible one. It is
     /// towards the larger one.
     ///
     /// On one side of zero the larger acceleration is left (or reached), with the jerk q at zero not at rest; on the other side the
@@ -168,7 +168,7 @@ impl Request<'_> {
         [0.5 * (low + high), most]
     }
 
-    /// The fastest way to v = 0 with the acceleration `a` and, at order 4, the jerk `j`; there may be none.
+    /// The fastest path to v = 0 with the acceleration `a` and, at order 4, the jerk `j`; there may be none.
     fn through_rest(&self, from: &Setpoint, a: f64, j: f64, sides: Sides) -> Result<Option<Transition>, PlanError> {
         let RampLimits { velocity, jerk, snap, .. } = *self.limits;
         let path = if self.order == Order::Third {
@@ -188,7 +188,7 @@ impl Request<'_> {
         Transition::through_rest(self.order, Setpoint { s: 0.0, ..start }, &path, a, j).map(Some)
     }
 
-    /// To a stop, and from there.
+    /// The path to a stop, and from there.
     fn by_a_stop(&self, from: &Setpoint) -> Result<Transition, PlanError> {
         let limits = self.limits.towards(self.heading(from));
         let stop = Transition::plan(self.order, from, &Target::Velocity(0.0), &limits, self.effort)?;

@@ -1,7 +1,7 @@
-//! Whether a quantity keeps its limits on a way, or comes back into them.
+//! Compliance of a quantity with its limits on a path, or its return into them.
 use super::second::Sides;
 
-/// What rounding may add to a limit, as a part of it.
+/// Relative excess over a limit that rounding may cause.
 pub(crate) const ROUNDING: f64 = 1e-11;
 
 /// Watches the values that a quantity has, at its turning points at least, in the order of time.
@@ -10,14 +10,14 @@ pub(crate) struct Watch {
     sides: Sides,
     /// Largest part by which it was beyond a limit; below zero while it was inside.
     pub(crate) most: f64,
-    /// The same without the way back from where it began.
+    /// The same without the return from its first value.
     pub(crate) fault: f64,
-    /// While it comes back: how far it still is beyond, and on which side.
+    /// Excess and side while it comes back.
     returning: Option<(f64, f64)>,
 }
 
 impl Watch {
-    /// From its first value on.
+    /// Starts with its first value.
     pub(crate) fn new(sides: Sides, first: f64) -> Self {
         let (part, side) = parts(sides, first);
         let is_beyond = part > ROUNDING;
@@ -41,7 +41,7 @@ impl Watch {
     }
 }
 
-/// How far `value` is beyond its limit, as a part of that, and on which side.
+/// Relative excess of `value` over its limit, and its side.
 fn parts(sides: Sides, value: f64) -> (f64, f64) {
     let (excess, side) = sides.excess(value);
     (excess / sides.towards(side), side)

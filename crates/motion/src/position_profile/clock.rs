@@ -1,34 +1,34 @@
-//! When commands can be sent: once per cycle of a bus.
+//! Instants of commands: once per cycle of a bus.
 //!
-//! A drive on a bus gets a command at the instants `first + k·period` and at no others. A table is put on them in two steps. Its ends
-//! are moved inwards to the nearest instants, along the velocities V_s and V_e that the axis has there anyway:
+//! A drive on a bus gets a command at the instants `first + k·period` and at no others. A table is moved to them in two steps. Its ends
+//! are moved inwards to the nearest instants, along the velocities V_s and V_e that the axis has there:
 //!
 //! ```text
 //! t_0' = the first instant not before t_0,   p_0' = p_0 + V_s·(t_0' − t_0)
 //! t_N' = the last instant not after t_N,     p_N' = p_N − V_e·(t_N − t_N')
 //! ```
 //!
-//! Then the commands are sent, and their ramps end, at instants: [`ClockedPlateaus`](super::ClockedPlateaus) meets every position all
-//! the same, wherever between two instants its time is, as long as there is an instant between one and the next.
+//! Then the commands are sent, and their ramps end, at instants: [`ClockedPlateaus`](super::ClockedPlateaus) still meets every
+//! position, whatever its time between two instants, as long as there is an instant between one and the next.
 use crate::PlanError;
 use crate::limits::in_range;
 use crate::pvt::{Knot, checked};
 use servobench_base::{ParamError, Stateful, finite, positive};
 
-/// The instants at which commands can be sent.
+/// The instants of commands.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Clock {
     first: f64,
     period: f64,
 }
 
-/// Part of a period by which a time may miss an instant and still be taken for it.
+/// Share of a period within which a time counts as an instant.
 const NEAR: f64 = 1e-6;
-/// Periods at most of which a table may be long.
+/// Longest table, in periods.
 const LONGEST: f64 = 1e9;
 
 impl Clock {
-    /// Every `period` (s), one of them at `first` (s).
+    /// A clock that ticks every `period` (s), once at `first` (s).
     ///
     /// # Errors
     /// [`PlanError`] for a period that is not positive or out of range, and a time that is not finite.
@@ -43,7 +43,7 @@ impl Clock {
         self.period
     }
 
-    /// The instant that is nearest to `t` (s), by its number.
+    /// Number of the instant nearest to `t` (s).
     pub(super) fn nearest(&self, t: f64) -> f64 {
         libm::round(self.place(t))
     }
@@ -63,7 +63,7 @@ impl Clock {
         (t - self.first) / self.period
     }
 
-    /// Moves the ends of `knots` inwards to instants; the clock from the first of them on, and how many periods there are up to the
+    /// Moves the ends of `knots` inwards to instants; returns the clock from the first of them on, and the number of periods up to the
     /// last.
     pub(super) fn align(self, knots: &mut [Knot], start: f64, end: f64) -> Result<(Self, f64), PlanError> {
         checked(knots)?;
@@ -92,8 +92,8 @@ pub(super) fn behind(place: f64) -> f64 {
     libm::ceil(place - NEAR)
 }
 
-/// Moves the points between the ends that are to be kept to the front, behind the first, and the last one behind them; how many
-/// there are.
+/// Moves the points between the ends that are kept to the front, behind the first, and the last one behind them; returns their
+/// number.
 pub(super) fn thin(knots: &mut [Knot], mut is_kept: impl FnMut(&Knot) -> bool) -> usize {
     let (last, mut count) = (knots.len() - 1, 1);
     for i in 1..last {

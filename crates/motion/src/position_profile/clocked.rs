@@ -1,4 +1,4 @@
-//! Both options for a drive that gets commands at the instants of a clock.
+//! Both options for a drive with commands at the instants of a clock.
 use super::clock::{Clock, before, behind, thin};
 use super::share::{Demand, PlateauShare};
 use super::{Command, Spline, VelocityRamp};
@@ -9,8 +9,8 @@ use servobench_base::{Setpoint, positive};
 
 /// Option 1 at instants: a plateau of velocity in each segment, and ramps between them that begin and end at instants.
 ///
-/// The ramp at a point lasts from an instant b_i to an instant e_i, within the shares α of the segments beside it where an instant is
-/// in them, and over the point in any case: with the times in periods
+/// The ramp at a point lasts from an instant b_i to an instant e_i, within the shares α of the segments beside it if they contain
+/// an instant, and over the point in any case: with the times in periods
 ///
 /// ```text
 /// b_i = min(⌈t_i − α·dT_i⌉, ⌊t_i⌋)      e_i = max(⌊t_i + α·dT_(i+1)⌋, ⌈t_i⌉), at least b_i + 1
@@ -19,13 +19,13 @@ use servobench_base::{Setpoint, positive};
 /// ```
 ///
 /// The third is the area below the velocity from point to point. Ramps do not overlap, so that A_(i−1) + B_i ≤ dT_i/2: the system is
-/// diagonally dominant. Where all ramps would begin and end at instants anyway it is that of [`Plateaus`](super::Plateaus).
+/// diagonally dominant. If all ramps begin and end at instants anyway, it is that of [`Plateaus`](super::Plateaus).
 ///
 /// A point is left out when no instant is between it and one before it, or less than a period is left for the ramps at the ends: with
-/// one command in a period not all of them can be met. The axis then passes it by as the points around it have it.
+/// one command in a period not all of them can be met. The axis then passes it as the points around it determine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockedPlateaus<'a> {
-    /// With the velocity of the plateau before each point.
+    /// Points with the velocity of the plateau before each.
     knots: &'a [Knot],
     alpha: f64,
     end: f64,
@@ -33,9 +33,9 @@ pub struct ClockedPlateaus<'a> {
 }
 
 impl<'a> ClockedPlateaus<'a> {
-    /// Solves for the velocities of the plateaus of `knots`, and writes into `knots` the points that are kept.
+    /// Solves for the velocities of the plateaus of `knots`, and writes the points that are kept into `knots`.
     ///
-    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` says which share α of a segment it is at either
+    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` gives the share α of a segment at either
     /// end in which velocity changes. `scratch` holds a value for each point.
     ///
     /// # Errors
@@ -66,7 +66,7 @@ impl<'a> ClockedPlateaus<'a> {
         Self::solve_at(knots, start, end, alpha, clock, scratch)
     }
 
-    /// With `alpha`, through `knots` that are all kept, of which the first and the last are at instants.
+    /// Solves with `alpha`, through `knots` that are all kept, of which the first and the last are at instants.
     fn solve_at(
         knots: &'a mut [Knot],
         start: f64,
@@ -94,8 +94,8 @@ impl<'a> ClockedPlateaus<'a> {
         Ok(Self { knots, alpha, end, clock })
     }
 
-    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `end`, `alpha` and `clock` has left its points, for
-    /// who cannot keep what it gave; nothing is looked at again.
+    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `end`, `alpha` and `clock` has left its points, if
+    /// its result cannot be kept; nothing is checked again.
     #[must_use]
     pub fn solved(knots: &'a [Knot], end: f64, alpha: f64, clock: Clock) -> Self {
         let first = knots.first().map_or(0.0, |knot| clock.nearest(knot.t));
@@ -126,20 +126,20 @@ impl<'a> ClockedPlateaus<'a> {
         self.ramps().map(|ramp| ramp.command())
     }
 
-    /// The ramp that was begun last at `t` (s), found in log N steps; the first one before it.
+    /// The last ramp that has begun at `t` (s), found in log N steps; the first one before it.
     #[must_use]
     pub fn ramp_at(&self, t: f64) -> VelocityRamp {
         self.ramp(self.begun(t))
     }
 
-    /// The polynomial that holds at `t` (s): of a ramp, of the plateau behind it, or of the velocity V_e at the end.
+    /// The polynomial at `t` (s): of a ramp, of the plateau behind it, or of the velocity V_e at the end.
     #[must_use]
     pub fn piece(&self, t: f64) -> Piece {
         let i = self.begun(t);
         let ramp = self.ramp(i);
         let (VelocityRamp { begin, from, to, .. }, end) = (ramp, ramp.end());
         let knot = self.knots[i];
-        // A position that is known: that of the point, which lies within the ramp.
+        // A known position: that of the point, which lies within the ramp.
         let slope = ramp.slope();
         let place = Setpoint { x: knot.x, v: from + slope * (knot.t - begin), a: slope, ..Setpoint::default() };
         if t < end {
@@ -158,7 +158,7 @@ impl<'a> ClockedPlateaus<'a> {
         VelocityRamp { begin, length, from: velocity(i), to: velocity(i + 1) }
     }
 
-    /// The number of the ramp that was begun last at `t` (s).
+    /// Number of the last ramp that has begun at `t` (s).
     fn begun(&self, t: f64) -> usize {
         // A ramp begins before its point, and after the one before.
         let behind = self.knots.partition_point(|knot| knot.t <= t).min(self.knots.len() - 1);
@@ -166,7 +166,7 @@ impl<'a> ClockedPlateaus<'a> {
     }
 }
 
-/// Where the ramp from one plateau to the next begins and ends, and the point in it (periods).
+/// Beginning and end of the ramp from one plateau to the next, and the point in it (periods).
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     begin: f64,
@@ -188,7 +188,7 @@ impl Corner {
         Self { begin, point, end: end.max(begin + 1.0) }
     }
 
-    /// The part of the velocity's step that is made at the point, summed up before and after it (periods).
+    /// The part of the velocity's step that is made at the point, integrated before and after it (periods).
     fn before(&self) -> f64 {
         let part = self.point - self.begin;
         part * part / (2.0 * (self.end - self.begin))
@@ -203,7 +203,7 @@ impl Corner {
 /// Option 2 at instants: the cubic spline, followed in steps of velocity from instant to instant.
 ///
 /// Of `rate` commands per second the k-th is sent at the last instant not behind `k/rate`, and none twice: the velocity is the spline's
-/// at each, and a straight line in between.
+/// at each, and linear in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockedSpline<'a> {
     table: Table<'a>,
@@ -214,10 +214,10 @@ pub struct ClockedSpline<'a> {
 }
 
 impl<'a> ClockedSpline<'a> {
-    /// Solves for the velocities of the spline of `knots`, the ends of which are moved to instants and their neighbours left out where
-    /// they are within half a period of them, and writes into `knots` the points that are kept.
+    /// Solves for the velocities of the spline of `knots`, the ends of which are moved to instants and their neighbours left out if
+    /// they are within half a period of them, and writes the points that are kept into `knots`.
     ///
-    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `rate` the commands per second (1/s); of more than there are
+    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `rate` the commands per second (1/s); if there are fewer
     /// instants, one is sent at each. `scratch` holds a value for each point.
     ///
     /// # Errors
@@ -238,7 +238,7 @@ impl<'a> ClockedSpline<'a> {
     }
 
     /// The steps along the spline of `knots` in which an earlier [`solve`](Self::solve) with this `rate` and `clock` has left its points,
-    /// for who cannot keep what it gave; nothing is looked at again.
+    /// if its result cannot be kept; nothing is checked again.
     #[must_use]
     pub fn solved(knots: &'a [Knot], rate: f64, clock: Clock) -> Self {
         let [first, last] = [knots.first(), knots.last()].map(|knot| knot.map_or(0.0, |knot| clock.nearest(knot.t)));
@@ -258,12 +258,12 @@ impl<'a> ClockedSpline<'a> {
         ClockedSteps { way: self, next: 0.0, velocity: self.table.segment(0).v, cursor: self.table.cursor() }
     }
 
-    /// The step that was begun last at `t` (s), found in log N steps; the first one before it, and the last one behind the end.
+    /// The last step that has begun at `t` (s), found in log N steps; the first one before it, and the last one behind the end.
     #[must_use]
     pub fn ramp_at(&self, t: f64) -> VelocityRamp {
         let Self { table, clock, cycles, step } = *self;
         let place = before(clock.place(t)).clamp(0.0, cycles - 1.0);
-        // The last command that is sent not behind this instant.
+        // The last command sent at or before this instant.
         let last = libm::ceil((place + 1.0) / step) - 1.0;
         let k = if before(last * step) > place { last - 1.0 } else { last };
         let [begin, end] = [k, k + 1.0].map(|k| clock.time(before(k * step).min(cycles)));
@@ -277,7 +277,7 @@ impl<'a> ClockedSpline<'a> {
 pub struct ClockedSteps<'a> {
     way: ClockedSpline<'a>,
     next: f64,
-    /// Velocity of the drive when the next command comes (m/s or rad/s).
+    /// Velocity of the drive at the next command (m/s or rad/s).
     velocity: f64,
     cursor: Cursor<Table<'a>>,
 }

@@ -1,23 +1,23 @@
-//! What the drive is told.
+//! Commands to the drive.
 
 use servobench_base::Stateful;
-/// A command of the profile velocity mode: from `t` on go to `velocity` with `acceleration`, then stay there.
+/// A command of the profile velocity mode: from `t` on change to `velocity` with `acceleration`, then stay there.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Command {
     /// Time at which it is sent (s).
     pub t: f64,
     /// Velocity to reach (m/s or rad/s).
     pub velocity: f64,
-    /// Magnitude of acceleration and deceleration alike (m/s² or rad/s²); zero if the velocity stays what it is.
+    /// Magnitude of both acceleration and deceleration (m/s² or rad/s²); zero if the velocity does not change.
     pub acceleration: f64,
 }
 
-/// A straight line of velocity: what a drive makes of a [`Command`] that it gets at `begin` and has obeyed after `length`.
+/// A linear change of velocity: the response of a drive to a [`Command`] received at `begin` and completed after `length`.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct VelocityRamp {
-    /// When it begins (s).
+    /// Start (s).
     pub begin: f64,
-    /// How long it takes (s), above zero.
+    /// Duration (s), above zero.
     pub length: f64,
     /// Velocity at its beginning (m/s or rad/s).
     pub from: f64,
@@ -26,7 +26,7 @@ pub struct VelocityRamp {
 }
 
 impl VelocityRamp {
-    /// When it ends (s).
+    /// End (s).
     #[must_use]
     pub fn end(&self) -> f64 {
         self.begin + self.length

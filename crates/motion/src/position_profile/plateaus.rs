@@ -17,7 +17,7 @@ impl<'a> Plateaus<'a> {
     /// Solves for the velocities of `knots`, of which the first one is the position at the start, and writes them
     /// there.
     ///
-    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` says which share α of a segment it is at either end in which
+    /// `start` and `end` are the velocities V_s and V_e (m/s or rad/s), `share` gives the share α of a segment at either end in which
     /// velocity changes. `scratch` holds a value for each point.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl<'a> Plateaus<'a> {
         eliminate(knots, start, end, alpha, scratch);
         let mut behind = knots[last].v.unwrap_or(end);
         for i in (1..last).rev() {
-            // What is stored is V_i before substitution; W_i takes its place as soon as V_i is known.
+            // The stored value is V_i before substitution; W_i replaces it as soon as V_i is known.
             let here = knots[i].v.unwrap_or(0.0) - scratch[i] * behind;
             let share = share(&knots[i - 1], &knots[i], &knots[i + 1]);
             knots[i].v = Some(share * behind + (1.0 - share) * here);
@@ -61,15 +61,15 @@ impl<'a> Plateaus<'a> {
         Ok(Self { knots, alpha })
     }
 
-    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `alpha` has left its velocities, for who
-    /// cannot keep what it gave; nothing is looked at again.
+    /// The profile of `knots` in which an earlier [`solve`](Self::solve) with this `alpha` has left its velocities, if
+    /// its result cannot be kept; nothing is checked again.
     #[must_use]
     pub const fn solved(knots: &'a [Knot], alpha: f64) -> Self {
         Self { knots, alpha }
     }
 
-    /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, as for
-    /// NaN; from the last one on it goes on at V_e.
+    /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, also for
+    /// NaN; from the last one on it continues at V_e.
     #[must_use]
     pub fn at(&self, t: f64) -> Setpoint {
         self.piece(t).at(t)
@@ -127,12 +127,12 @@ impl<'a> Plateaus<'a> {
     }
 }
 
-/// The share dT_i/(dT_i + dT_(i+1)) of the segment before a point in the time of the two beside it.
+/// The share dT_i/(dT_i + dT_(i+1)) of the segment before a point in the time of both neighbours.
 fn share(before: &Knot, here: &Knot, behind: &Knot) -> f64 {
     (here.t - before.t) / (behind.t - before.t)
 }
 
-/// First sweep: V_i + scratch(i)·V_(i+1) = what is stored in point i, for the segments i = 1 … N, each in the point at
+/// First sweep: V_i + scratch(i)·V_(i+1) = the stored value of point i, for the segments i = 1 … N, each in the point at
 /// its end. With α ≤ 1/2 the coefficients beside the pivot sum up to less than it.
 fn eliminate(knots: &mut [Knot], start: f64, end: f64, alpha: f64, scratch: &mut [f64]) {
     let last = knots.len() - 1;

@@ -1,4 +1,4 @@
-//! How often commands must be sent.
+//! Rate of the commands.
 use super::Spline;
 use crate::PlanError;
 use crate::limits::in_range;
@@ -9,11 +9,11 @@ const KERNEL: f64 = 1.732_050_807_568_877_2 / 216.0;
 
 impl Spline<'_> {
     /// The lowest whole number of commands per second (1/s) at which the drive stays within `allowed` (m or rad) of
-    /// the spline, as [`Stepped::largest_error`](super::Stepped::largest_error) announces it; at one command per
+    /// the spline, by [`Stepped::largest_error`](super::Stepped::largest_error); at one command per
     /// second less it would not.
     ///
-    /// The error depends on where the points fall between the commands, and may therefore be small by chance at a
-    /// still lower rate. The search begins at the rate at which it is small wherever they fall,
+    /// The error depends on the positions of the points between the commands, and may therefore be small by chance at a
+    /// still lower rate. The search begins at the rate at which it is small for all positions,
     ///
     /// ```text
     /// |E| ≤ h²/12·max|a − a(t_0)| + h³·(√3/216·Σ|Δj| + max|j|/12),
@@ -22,8 +22,8 @@ impl Spline<'_> {
     /// and bisects downwards from there.
     ///
     /// # Errors
-    /// [`PlanError`] if `allowed` is not positive, or so small that more commands per second were needed than 2^32, or than the times
-    /// of the table are known for.
+    /// [`PlanError`] if `allowed` is not positive, or so small that it needs more commands per second than 2^32, or than the resolution
+    /// of the table's times permits.
     pub fn lowest_rate(self, allowed: f64) -> Result<u32, PlanError> {
         let allowed = in_range("allowed", positive("allowed", allowed)?, "give the error in m or rad")?;
         let (square, cube) = self.error_bound();
@@ -35,7 +35,7 @@ impl Spline<'_> {
         } else if highest >= 1.0 && self.stepped(highest)?.largest_error() <= allowed {
             highest
         } else {
-            // No error below this one can be promised.
+            // No lower error can be guaranteed.
             let lowest = square / (highest * highest) + cube / (highest * highest * highest);
             let remedy = if highest < f64::from(u32::MAX) {
                 "allow a larger error, or let the table begin at time 0"
@@ -63,7 +63,7 @@ impl Spline<'_> {
         Ok(enough)
     }
 
-    /// Coefficients of h² and h³ in the bound that holds wherever the points fall between the commands.
+    /// Coefficients of h² and h³ in the bound for all positions of the points between the commands.
     fn error_bound(self) -> (f64, f64) {
         let (table, last) = (self.table(), self.table().knots().len() - 1);
         let first = table.segment(0);
@@ -85,9 +85,9 @@ mod tests {
     use crate::pvt::Knot;
     use servobench_base::Setpoint;
 
-    /// The table that is worst for its jumps of jerk: one command per second meets every rise of the jerk where B3 is
+    /// The table with the worst jumps of jerk: one command per second meets every rise of the jerk where B3 is
     /// largest, θ = 1/2 − √3/6, and every fall where it is smallest, 1/2 + √3/6, so that all of them add up. The
-    /// acceleration comes back to the same two values, and the way itself is the spline through its points.
+    /// acceleration returns to the same two values, and the path itself is the spline through its points.
     #[test]
     fn the_bound_holds_and_is_reached_within_a_tenth() {
         let theta = 0.5 - 3.0_f64.sqrt() / 6.0;

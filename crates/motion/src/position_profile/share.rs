@@ -1,13 +1,13 @@
 //! The share of plateaus in which velocity changes, chosen within limits.
 //!
-//! A small share α takes a high acceleration, a large one a high velocity: of a single segment from rest to rest
+//! A small share α needs a high acceleration, a large one a high velocity: for a single segment from rest to rest
 //!
 //! ```text
 //! V = p/(T·(1 − α))       a = V/(α·T)
 //! ```
 //!
-//! The share that is chosen takes the smallest part of both limits, max(|V|/V_max, |a|/a_max) over the whole table. In a table of several
-//! segments that part need not have one minimum over α: it is looked for on a grid of 64 shares, and then beside the best of them.
+//! The chosen share needs the smallest part of both limits, max(|V|/V_max, |a|/a_max) over the whole table. In a table of several
+//! segments that part may have several minima over α: the search covers a grid of 64 shares, and then the neighbourhood of the best.
 use super::Command;
 use crate::PlanError;
 use crate::limits::{RANGE, in_range};
@@ -18,7 +18,7 @@ const GRID: u32 = 64;
 /// Steps by the golden ratio beside the best share of the grid: each leaves 0.62 of the interval.
 const STEPS: u32 = 40;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// The share that is taken unless another one is better.
+/// Share that is chosen unless another one is better.
 const FIRST: f64 = 0.25;
 
 /// The largest velocity (m/s or rad/s) and acceleration (m/s² or rad/s²) of a profile.
@@ -29,7 +29,7 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    /// That of `commands`, which begin at velocity `start`.
+    /// Demand of `commands`, which begin at velocity `start`.
     pub(super) fn of(commands: impl Iterator<Item = Command>, start: f64) -> Self {
         let none = Self { velocity: start.abs(), acceleration: 0.0 };
         commands.fold(none, |most, command| Self {
@@ -42,10 +42,10 @@ impl Demand {
 /// The share α of a segment at either end in which the velocity of plateaus changes.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum PlateauShare {
-    /// This one, above 0 and up to 1/2, which leaves no plateau.
+    /// A given share, above 0 and up to 1/2, which leaves no plateau.
     Given(f64),
-    /// The one that takes the smallest part of both limits, which may be more than the whole. The profile is solved about 150 times to find
-    /// it.
+    /// The share that needs the smallest part of both limits, which may exceed the whole. The profile is solved about 150 times to
+    /// find it.
     SmallestPartOf {
         /// Largest velocity (m/s or rad/s), above 0.
         velocity: f64,
@@ -61,7 +61,7 @@ impl From<f64> for PlateauShare {
 }
 
 impl PlateauShare {
-    /// The share, where `demand` says what a profile takes with one.
+    /// Finds the share; `demand` gives the demand of a profile with one.
     ///
     /// # Errors
     /// [`PlanError`] of `demand`, and for a share or a limit out of its range.
@@ -81,7 +81,7 @@ impl PlateauShare {
     }
 }
 
-/// `share` if it is a share of a segment that leaves room for the other end.
+/// `share` if it is a share of a segment that leaves space for the other end.
 fn checked(share: f64) -> Result<f64, PlanError> {
     if (RANGE.0..=0.5).contains(&share) {
         return Ok(share);

@@ -25,8 +25,8 @@ impl<'a> Spline<'a> {
         Ok(Self { table: Table::new(knots)? })
     }
 
-    /// The spline of `knots` in which an earlier [`solve`](Self::solve) has left its velocities, for who cannot keep what it
-    /// gave; nothing is looked at again.
+    /// The spline of `knots` in which an earlier [`solve`](Self::solve) has left its velocities, if its result
+    /// cannot be kept; nothing is checked again.
     #[must_use]
     pub const fn solved(knots: &'a [Knot]) -> Self {
         Self { table: Table::solved(knots) }
@@ -38,11 +38,11 @@ impl<'a> Spline<'a> {
         self.table
     }
 
-    /// The spline as it is followed by `rate` commands per second (1/s).
+    /// The spline, followed by `rate` commands per second (1/s).
     ///
     /// # Errors
-    /// [`PlanError`] if `rate` is not positive or out of range, or so high that the times of the table do not tell two
-    /// commands apart.
+    /// [`PlanError`] if `rate` is not positive or out of range, or so high that the times of the table do not separate two
+    /// commands.
     pub fn stepped(self, rate: f64) -> Result<Stepped<'a>, PlanError> {
         let rate = in_range("rate", positive("rate", rate)?, "give commands per second")?;
         let (resolution, highest) = (self.resolution(), self.highest_rate());
@@ -50,26 +50,26 @@ impl<'a> Spline<'a> {
             let remedy = "send fewer commands, or let the table begin at time 0";
             return Err(PlanError::OutOfRange { name: "rate", value: rate, lowest: RANGE.0, highest, remedy });
         }
-        // A last interval that is no more than rounding belongs to the one before.
+        // A last interval of mere rounding belongs to the one before.
         let intervals = (self.table.duration() - resolution) * rate;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number below 2^43")]
         let count = (libm::ceil(intervals) as u64).max(1);
         Ok(Stepped { table: self.table, rate, count })
     }
 
-    /// The highest rate (1/s) for which the times of the table are known well enough.
+    /// The highest rate (1/s) for which the resolution of the table's times is sufficient.
     pub(super) fn highest_rate(self) -> f64 {
         1e-3 / self.resolution()
     }
 
-    /// What rounding of the times may amount to (s).
+    /// Rounding of the times (s).
     fn resolution(self) -> f64 {
         let knots = self.table.knots();
         4.0 * f64::EPSILON * knots[0].t.abs().max(knots[knots.len() - 1].t.abs())
     }
 }
 
-/// A [`Spline`] as a drive follows it that gets a command every 1/rate seconds.
+/// A [`Spline`] followed by a drive with a command every 1/rate seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stepped<'a> {
     table: Table<'a>,
@@ -78,7 +78,7 @@ pub struct Stepped<'a> {
 }
 
 impl<'a> Stepped<'a> {
-    /// The commands, from that of the first point on. The last one takes what time is left, so that the drive has the
+    /// The commands, from that of the first point on. The last one takes the remaining time, so that the drive has the
     /// end velocity at the last point.
     #[must_use]
     pub fn commands(self) -> SteppedCommands<'a> {
@@ -86,13 +86,13 @@ impl<'a> Stepped<'a> {
         SteppedCommands { way: self, next: 0, velocity: self.table.segment(0).v, cursor }
     }
 
-    /// Position of the drive minus the spline's at each point (m or rad), from the first on: exact but for rounding.
+    /// Position of the drive minus the spline's at each point (m or rad), from the first on: exact except for rounding.
     #[must_use]
     pub fn point_errors(self) -> PointErrors<'a> {
         PointErrors { way: self, next: 0, grid: Grid::new(&self), ends: self.table.cursor() }
     }
 
-    /// What the position of the drive differs from the spline's at most, at any time (m or rad): exact but for
+    /// Largest difference between the positions of the drive and the spline at any time (m or rad): exact except for
     /// rounding.
     #[must_use]
     pub fn largest_error(&self) -> f64 {
@@ -162,7 +162,7 @@ impl Grid {
         Self { segment: 0, jerk: first.j, sum: 0.0, a_start: first.a }
     }
 
-    /// The error at command `k`, a whole number not below the one asked for before.
+    /// The error at command `k`, a whole number not below the previous one.
     fn error(&mut self, way: &Stepped<'_>, k: f64) -> f64 {
         let (knots, t) = (way.table.knots(), way.time(k));
         while self.segment + 2 < knots.len() && knots[self.segment + 1].t <= t {
@@ -184,7 +184,7 @@ impl Grid {
 pub struct SteppedCommands<'a> {
     way: Stepped<'a>,
     next: u64,
-    /// Velocity of the drive when the next command comes (m/s or rad/s).
+    /// Velocity of the drive at the next command (m/s or rad/s).
     velocity: f64,
     cursor: Cursor<Table<'a>>,
 }
@@ -232,12 +232,12 @@ impl PointErrors<'_> {
         let (start, until) = (way.time(k), way.time(k + 1.0));
         let at_command = self.grid.error(&way, k);
         let now = table.segment(self.grid.segment).after((start - knots[self.grid.segment].t).max(0.0));
-        // From the command on, the velocity of the drive goes in a straight line.
+        // From the command on, the velocity of the drive changes linearly.
         let (s, slope) = (point.t - start, (self.ends.at(until).v - now.v) / (until - start));
         let error = at_command + (s * now.v + s * s / 2.0 * slope - (point.x - now.x));
         let mut largest = error.abs();
         if self.grid.segment + 1 == i {
-            // Else the command lies before the point before, which has looked at all from there on.
+            // Otherwise the command lies before the previous point, which has covered everything from there on.
             let leave = Leave { error: at_command, velocity: 0.0, acceleration: slope - now.a, jerk: now.j };
             largest = largest.max(leave.largest_within(s));
         }
@@ -251,7 +251,7 @@ impl PointErrors<'_> {
     }
 }
 
-/// How the drive leaves the spline: error and its derivatives, those of the drive minus the spline's; the jerk is the
+/// Departure of the drive from the spline: error and its derivatives, those of the drive minus the spline's; the jerk is the
 /// spline's, as the drive has none.
 struct Leave {
     error: f64,

@@ -3,12 +3,12 @@ use super::Knot;
 use crate::Piece;
 use servobench_base::Setpoint;
 
-/// A way that follows its own polynomials between the points of a table.
+/// A path with its own polynomials between the points of a table.
 pub trait Knotted {
     /// The points, two at least, in the order of time.
     fn knots(&self) -> &[Knot];
 
-    /// The polynomial that holds at `t` (s), a time between the points `segment` and `segment + 1`; behind the last
+    /// The polynomial at `t` (s), a time between the points `segment` and `segment + 1`; behind the last
     /// point `segment` is its number.
     ///
     /// # Panics
@@ -21,17 +21,17 @@ pub(super) fn segment_at(knots: &[Knot], t: f64) -> usize {
     knots.partition_point(|knot| knot.t <= t).saturating_sub(1)
 }
 
-/// Reads a way at one time after another.
+/// Reads a path at one time after another.
 ///
-/// As long as times increase, it only ever steps from one point to the next, so that a whole table of N points and M
-/// samples takes N + M steps; a time before the last one makes it look the point up again, in log N steps. The
-/// set-points are bit for bit those of the way itself.
+/// As long as times increase, it only steps from one point to the next, so that a whole table of N points and M
+/// samples takes N + M steps; a time before the last one causes a new search for the point, in log N steps. The
+/// set-points are bit for bit those of the path itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor<W> {
     way: W,
     segment: usize,
     piece: Piece,
-    /// The time that the piece was looked up for, from which on it is known to hold (s).
+    /// Time for which the piece was looked up, from which on it is known to apply (s).
     from: f64,
 }
 
@@ -50,7 +50,7 @@ impl<W: Knotted> Cursor<W> {
         self.piece(t).at(t)
     }
 
-    /// The polynomial that holds at `t` (s).
+    /// The polynomial at `t` (s).
     #[inline]
     pub fn piece(&mut self, t: f64) -> Piece {
         if !(t >= self.from && self.piece.holds(t)) {
@@ -72,7 +72,7 @@ impl<W: Knotted> Cursor<W> {
         self.from = t;
     }
 
-    /// The way that is read.
+    /// The path.
     pub const fn way(&self) -> &W {
         &self.way
     }

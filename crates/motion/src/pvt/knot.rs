@@ -3,19 +3,19 @@ use crate::PlanError;
 use crate::limits::RANGE;
 use servobench_base::Stateful;
 
-/// Where to be at what time, and how fast.
+/// Time, position and velocity of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Knot {
     /// Time (s), later than that of the point before by at least 1e-30 s.
     pub t: f64,
     /// Position (m or rad), absolute.
     pub x: f64,
-    /// Velocity (m/s or rad/s); without it the way to this point is linear.
+    /// Velocity (m/s or rad/s); without it the path to this point is linear.
     pub v: Option<f64>,
 }
 
 impl Knot {
-    /// Position `x` (m or rad) at time `t` (s), the velocity to be chosen or the approach linear.
+    /// Position `x` (m or rad) at time `t` (s), with a velocity to be chosen or a linear approach.
     #[must_use]
     pub const fn new(t: f64, x: f64) -> Self {
         Self { t, x, v: None }

@@ -1,11 +1,11 @@
-//! The way through a table: cubic and linear segments.
+//! The path through a table: cubic and linear segments.
 use super::cursor::segment_at;
 use super::{Cursor, Knot, Knotted, checked};
 use crate::limits::RANGE;
 use crate::{Piece, PlanError};
 use servobench_base::Setpoint;
 
-/// A move through points that the caller keeps, any number of them.
+/// A move through any number of points that the caller keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Table<'a> {
     knots: &'a [Knot],
@@ -26,8 +26,8 @@ impl<'a> Table<'a> {
         Self { knots }
     }
 
-    /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, as for
-    /// NaN; from the last one on it goes on at the velocity of that point, zero if it has none.
+    /// The set-point at `t` (s), found in log N steps. Before the first point it is that of the first point, also for
+    /// NaN; from the last one on it continues at the velocity of that point, zero if it has none.
     ///
     /// For many in the order of time: [`cursor`](Self::cursor).
     #[must_use]
@@ -48,19 +48,19 @@ impl<'a> Table<'a> {
     }
 
     /// Set-points every `sample_time` (s) from the first point on, the last one at or behind the last point; NaN and
-    /// what is not positive give that of the first point only.
+    /// non-positive times give that of the first point only.
     pub fn samples(self, sample_time: f64) -> impl Iterator<Item = Setpoint> + 'a {
         let start = self.knots[0].t;
         let count = if sample_time > 0.0 { libm::ceil(self.duration() / sample_time * (1.0 - 1e-12)) } else { 0.0 };
         let mut cursor = self.cursor();
-        // Counted as a float: the number of samples may leave every integer, and the caller then takes some of them.
+        // Counted as a float: the number of samples may exceed every integer, and the caller then takes some of them.
         (0..)
             .map(|k: u64| k as f64)
             .take_while(move |k| *k <= count)
             .map(move |k| cursor.at(if k == 0.0 { start } else { start + k * sample_time }))
     }
 
-    /// From the first point to the last (s).
+    /// Time from the first point to the last (s).
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.knots[self.knots.len() - 1].t - self.knots[0].t

@@ -35,8 +35,8 @@ pub(crate) fn set_ends(knots: &mut [Knot], start: f64, end: f64) -> Result<(), P
     Ok(())
 }
 
-/// Gives each point the mean velocity of the segments before and behind it, the first and the last one `start` and
-/// `end` (m/s or rad/s).
+/// Sets the velocity of each point to the mean of the segments before and behind it, that of the first and the last one to `start`
+/// and `end` (m/s or rad/s).
 ///
 /// # Errors
 /// [`PlanError`] for fewer than two points, and names the first one that is not finite or not later than the one
@@ -50,9 +50,9 @@ pub fn average(knots: &mut [Knot], start: f64, end: f64) -> Result<(), PlanError
     Ok(())
 }
 
-/// Makes the acceleration jump less at each point, in `passes` passes of the formulas F2 and F1 over the velocities
-/// that the points have; those of the first and the last point stay. See [the module](super) for how fast that
-/// converges.
+/// Reduces the jumps of acceleration at the points, in `passes` passes of the formulas F2 and F1 over the velocities
+/// of the points; those of the first and the last point stay. See [the module](super) for the
+/// convergence.
 ///
 /// # Errors
 /// [`PlanError`] names the first point without a velocity; otherwise as [`average`].
@@ -79,7 +79,7 @@ pub fn smooth(knots: &mut [Knot], passes: usize) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// Gives each point the velocity with which the acceleration is continuous at all of them, the first and the last one
+/// Sets the velocities of the points so that the acceleration is continuous at all of them, those of the first and the last one to
 /// `start` and `end` (m/s or rad/s): the cubic spline through the points. `scratch` holds a value for each point.
 ///
 /// # Errors

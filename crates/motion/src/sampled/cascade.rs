@@ -37,7 +37,7 @@ impl Cascade {
     }
 
     /// The set-point of this sample, at which `highest` is sent (acceleration, jerk or snap by order, SI); then the chain
-    /// goes on to the next one.
+    /// advances to the next one.
     #[inline]
     pub fn step(&mut self, highest: f64) -> Setpoint {
         let now = self.sending(highest);
@@ -45,7 +45,7 @@ impl Cascade {
         now
     }
 
-    /// The set-point `steps` samples later, at which `highest` is still sent as in all before: in closed form, so that the rounding
+    /// The set-point `steps` samples later, with the same `highest` sent in all of them: in closed form, so that the rounding
     /// of a long run is that of one step.
     #[inline]
     #[must_use]
@@ -53,7 +53,7 @@ impl Cascade {
         after(self.sending(highest), self.sample_time, steps as f64)
     }
 
-    /// Goes on by all samples of `run`.
+    /// Advances by all samples of `run`.
     pub fn skip(&mut self, run: Run) {
         self.state = self.ahead(run.value, run.count);
     }
@@ -64,8 +64,8 @@ impl Cascade {
         self.sending(0.0)
     }
 
-    /// From now on at rest at `x` (m or rad), where a move has ended: what its rounding has left in velocity, acceleration and
-    /// jerk would go on for ever.
+    /// Comes to rest at `x` (m or rad), where a move has ended: its rounding in velocity, acceleration and
+    /// jerk would otherwise last for ever.
     pub const fn settle(&mut self, x: f64) {
         self.state = Setpoint::at_rest(x);
     }
@@ -87,7 +87,7 @@ impl Cascade {
     }
 }
 
-/// `start` after `steps` samples of `ts` in which the snap, or what else is highest, stays: m steps of an Euler chain add up
+/// `start` after `steps` samples of `ts` with a constant highest derivative: m steps of an Euler chain add up
 /// to binomial coefficients where Taylor's series has powers.
 #[inline]
 pub(crate) fn after(start: Setpoint, ts: f64, steps: f64) -> Setpoint {

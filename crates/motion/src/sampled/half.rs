@@ -1,15 +1,15 @@
-//! The first half of a move, and what its samples do.
+//! The first half of a move, and the effect of its samples.
 //!
 //! All in units of the sample time and of the limit of the highest derivative: u_i with |u_i| ≤ 1 at sample i. At time k its
-//! m-th integral by the cascade is `Σ u_i·(C(k − i, m) − C(k − i − 1, m))`, as C(t, m) is what a unit sent from time 0 on has made
-//! of it at t. The move ends at rest at time N, the n-th integral at the distance.
+//! m-th integral by the cascade is `Σ u_i·(C(k − i, m) − C(k − i − 1, m))`, as C(t, m) is the m-th integral at t of a unit sent
+//! from time 0 on. The move ends at rest at time N, the n-th integral at the distance.
 //!
 //! # Half a move is enough
 //!
-//! Taken backwards in time a move is a move: u'_i = ±u_(N−1−i), with − at even orders and + at odd ones, ends at rest on the
-//! same distance. Its m-th integral at k is, but for the sign, that of the move at N + m − 1 − k: the same values, so that it
+//! A move reversed in time is a move: u'_i = ±u_(N−1−i), with − at even orders and + at odd ones, ends at rest at the
+//! same distance. Its m-th integral at k is, except for the sign, that of the move at N + m − 1 − k: the same values, so that it
 //! keeps the limits. These are convex; the mean of both moves keeps them too,
-//! gets as far, and is its own reflection. **Nothing is lost by looking only at moves with u_i = ±u_(N−1−i)**: unknown is the
+//! covers the same distance, and is its own reflection. **Moves with u_i = ±u_(N−1−i) are therefore enough**: unknown is the
 //! first half. Of the conditions of rest at the end, Σ i^p·u_i = 0 for p < n − 1, symmetry leaves none at order 2, Σ u_i = 0
 //! at order 3 and Σ (N − 1 − 2i)·u_i = 0 at order 4.
 use super::cascade;
@@ -23,7 +23,7 @@ pub(super) struct At {
 }
 
 impl At {
-    /// What u = 1 in the samples from `p` to `q` makes of it.
+    /// Effect of u = 1 in the samples from `p` to `q`.
     pub(super) fn weight(self, p: f64, q: f64) -> f64 {
         integral(self.m, self.k - p) - integral(self.m, self.k - q)
     }
@@ -51,7 +51,7 @@ impl Half {
         if self.is_odd() { libm::ceil(0.5 * self.samples) } else { libm::floor(0.5 * self.samples) }
     }
 
-    /// What u = 1 in the samples from `p` to `q` makes of the distance, together with its reflection; the middle sample is its own.
+    /// Effect of u = 1 in the samples from `p` to `q` on the distance, together with its reflection; the middle sample is its own.
     pub(super) fn gain(&self, p: f64, q: f64) -> f64 {
         let end = At { m: self.order, k: self.samples };
         let (there, back) = (end.weight(p, q), end.weight(self.samples - q, self.samples - p));
@@ -59,7 +59,7 @@ impl Half {
         if self.is_odd() { there + back - twice } else { there - back }
     }
 
-    /// What it makes of the one condition of rest that symmetry leaves.
+    /// Its effect on the one condition of rest that symmetry leaves.
     pub(super) fn rest(&self, p: f64, q: f64) -> f64 {
         match self.order {
             2 => 0.0,
@@ -74,7 +74,7 @@ impl Half {
     }
 }
 
-/// C(t, m), what a unit that began t samples ago has made of its m-th integral; zero before.
+/// C(t, m), the m-th integral of a unit that began t samples ago; zero before.
 fn integral(m: usize, t: f64) -> f64 {
     const INVERSE: [f64; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
     let t = t.max(0.0);

@@ -1,9 +1,9 @@
-//! Why no move gets farther: a bound in plain sums.
+//! Proof that no move covers more: a bound in plain sums.
 //!
 //! Let λ_r be any dual variable for limit r, y any dual variable for the condition of rest. With the slopes
 //!
 //! ```text
-//! s_i = c_i − y·e_i − Σ_r λ_r·w_r,i      what a unit of u_i adds to the distance, c_i, beyond what it costs
+//! s_i = c_i − y·e_i − Σ_r λ_r·w_r,i      contribution of a unit of u_i to the distance, c_i, beyond its cost
 //! x   = Σ_i c_i·u_i = Σ_i s_i·u_i + Σ_r λ_r·(w_r·u)  ≤  Σ_i |s_i| + Σ_r B_r·|λ_r|
 //! ```
 //!
@@ -13,15 +13,15 @@
 //! # Stretches at a limit
 //!
 //! A program of few cells pays only at the ends of a stretch in which the move rests at a limit, where the optimum pays at
-//! every sample in it. What dual variables λ_k of the m-th integral take off the slope at i, `h_i = Σ_k λ_k·C(k − 1 − i, m − 1)`, is
-//! turned round by an m-th difference, `λ_(i+m) = Σ_b (−1)^b·C(m, b)·h_(i+b)`: every h has its dual variables, also the one that
-//! leaves all slopes before the stretch what they are and those in it zero. Before the stretch it is a polynomial of degree
+//! every sample in it. The reduction of the slope at i by dual variables λ_k of the m-th integral, `h_i = Σ_k λ_k·C(k − 1 − i, m − 1)`, is
+//! inverted by an m-th difference, `λ_(i+m) = Σ_b (−1)^b·C(m, b)·h_(i+b)`: every h has its dual variables, also the one that
+//! leaves all slopes before the stretch unchanged and makes those in it zero. Before the stretch it is a polynomial of degree
 //! m − 1, whose m-th difference is zero.
 use super::half::{At, Half, after};
 use super::reach::{Cell, Reach};
 use std::vec::Vec;
 
-/// Prices, and the slopes that they leave.
+/// Dual variables, and the slopes that they leave.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Duals {
     /// λ.
@@ -46,15 +46,15 @@ impl Stretch {
     }
 }
 
-/// Part of its limit from which on an integral counts as at it.
+/// Share of its limit from which on an integral counts as at it.
 const AT_LIMIT: f64 = 1.0 - 1e-6;
 
-/// Part of all dual variables of a stretch below which one is rounding.
+/// Share of all dual variables of a stretch below which one is rounding.
 const NO_DUAL: f64 = 1e-9;
 
 impl Duals {
     /// The better of the dual variables of the program, the condition of rest first, and of those spread over the stretches at a
-    /// limit, with what no move exceeds by them.
+    /// limit, with their bound on every move.
     pub(super) fn of(reach: &Reach, cells: &[Cell], limits: &[At], duals: &[f64]) -> (Self, f64) {
         let limits = limits.iter().copied().zip(duals[1..].iter().copied()).filter(|(_, dual)| *dual != 0.0);
         let mut plain = Self { limits: limits.collect(), rest: duals[0], slopes: Vec::new(), stretches: Vec::new() };
@@ -69,7 +69,7 @@ impl Duals {
         if better < at_most { (spread, better) } else { (plain, at_most) }
     }
 
-    /// What no move exceeds.
+    /// Bound that no move exceeds.
     pub(super) fn at_most(&self, bounds: &[f64]) -> f64 {
         let paid: f64 = self.limits.iter().map(|(at, dual)| bounds[at.m - 1] * dual.abs()).sum();
         paid + self.slopes.iter().map(|slope| slope.abs()).sum::<f64>()
@@ -116,8 +116,8 @@ impl Duals {
         self.stretches.push(stretch);
     }
 
-    /// Where the cells are to be cut: about the samples between which a slope changes its sign, outside the stretches; and in
-    /// them where a dual variable has the wrong one, as the move should have left the limit there.
+    /// Places where the cells are to be cut: about the samples between which a slope changes its sign, outside the stretches; and in
+    /// them at dual variables with the wrong sign, as the move should have left the limit there.
     pub(super) fn cuts(&self) -> Vec<f64> {
         let mut cuts = Vec::new();
         let settled = |i: f64| self.stretches.iter().any(|stretch| i >= stretch.start && i < stretch.end);

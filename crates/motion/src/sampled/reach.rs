@@ -1,8 +1,8 @@
-//! Whether N samples reach a distance: a linear program that grows until the answer is known.
+//! Reachability of a distance in N samples: a linear program that grows until the answer is known.
 //!
-//! The half ([`half`](super::half)) is cut into a few cells of equal u, first about where the continuous optimum switches, and few limits
-//! are looked at. What the solution exceeds is added ([`Reach::exceeded`]); when nothing is, cells are cut where the dual variables
-//! want another sign of u ([`proof`](super::proof)). That ends with one of two answers, each of which stands without the
+//! The half ([`half`](super::half)) is cut into a few cells of equal u, first about where the continuous optimum switches, with few
+//! limits. Limits that the solution exceeds are added ([`Reach::exceeded`]); when there are none, cells are cut where the dual variables
+//! require another sign of u ([`proof`](super::proof)). That ends with one of two answers, each of which is valid without the
 //! program:
 //!
 //! - a move that keeps every limit at every sample, and gets as far as the distance;
@@ -12,11 +12,11 @@ use super::proof::Duals;
 use super::simplex::Program;
 use std::vec::Vec;
 
-/// Part by which a limit may be exceeded, or the distance be missed, before the move is scaled to it: the rounding of the
+/// Share by which a limit may be exceeded, or the distance be missed, before the move is scaled to it: the rounding of the
 /// program.
 pub(super) const ROUNDING: f64 = 1e-11;
 
-/// Excess (a part of the limit) below which cells are cut: dual variables far from a move are no advice.
+/// Excess (a share of the limit) below which cells are cut: dual variables far from a move are no guide.
 const NEAR: f64 = 1e-3;
 
 /// Cells and rounds up to which the program grows; up to 300 samples random requests need fewer.
@@ -59,7 +59,7 @@ impl Reach<'_> {
         self.bounds[self.half.order - 1]
     }
 
-    /// Whether the distance is reached. `switches` are the times (samples) about which the highest derivative is expected to
+    /// Answer to the question. `switches` are the times (samples) about which the highest derivative is expected to
     /// switch.
     pub(super) fn answer(&self, switches: impl Iterator<Item = f64>) -> Answer {
         let free = self.half.free();
@@ -125,13 +125,13 @@ impl Reach<'_> {
         gains.sum()
     }
 
-    /// By what part the cells exceed a limit at most, and when: first, most and last in each stretch of excess.
+    /// Largest relative excess of the cells over a limit, and its times: first, most and last in each stretch of excess.
     fn exceeded(&self, cells: &[Cell]) -> (f64, Vec<At>) {
         let half = &self.half;
         let mut watches: Vec<Watch> =
             (1..half.order).map(|m| Watch::new(m, self.bounds[m - 1], half.last(m))).collect();
         let (mut start, mut state) = (0.0, [0.0; 4]);
-        // Behind the cells the middle sample, and what the cascade is late by.
+        // Behind the cells the middle sample, and the delay of the cascade.
         let middle = Cell { end: half.free() + 3.0, u: 0.0 };
         for cell in cells.iter().copied().chain([middle]) {
             state[0] = cell.u;
@@ -164,7 +164,7 @@ struct Watch {
     bound: f64,
     last: f64,
     excess: f64,
-    /// Of the stretch of excess that is under way: its first time, its peak and the time of it, its last time.
+    /// The current stretch of excess: its first time, its peak and the time of that, its last time.
     stretch: Option<(f64, (f64, f64), f64)>,
     found: Vec<At>,
 }
@@ -211,7 +211,7 @@ mod tests {
         usize::try_from(whole(k)).unwrap()
     }
 
-    /// What no move of N samples exceeds by `duals`, from the chain itself: the whole move instead of its half, costs added
+    /// Bound by `duals` that no move of N samples exceeds, from the chain itself: the whole move instead of its half, costs added
     /// up backwards integrator by integrator instead of by binomial coefficients.
     fn at_most(duals: &Duals, bounds: &[f64], total: usize) -> f64 {
         let n = bounds.len();
@@ -226,7 +226,7 @@ mod tests {
             costs[m][mirrored] += 0.5 * sign * dual;
             paid += dual.abs() * bounds[m - 1];
         }
-        // What a unit at sample i makes of x, and what it costs.
+        // Contribution of a unit at sample i to x, and its cost.
         let (mut worth, mut cost) = (vec![0.0; total], vec![0.0; total]);
         let mut adjoint = vec![0.0; n + 1];
         let mut value = vec![0.0; n + 1];
@@ -242,7 +242,7 @@ mod tests {
                 value[m] += value[m + 1];
             }
         }
-        // Conditions of rest take off any polynomial of degree n − 2: the one that the slopes of the half stand for.
+        // Conditions of rest remove any polynomial of degree n − 2: the one that the slopes of the half stand for.
         let slope = |i: usize| {
             let mirrored = total - 1 - i;
             let (at, sign) =
@@ -262,7 +262,7 @@ mod tests {
     }
 
     proptest! {
-        /// One sample less than what is planned is proven not to do, by sums over the whole chain.
+        /// One sample less than planned is proven to be impossible, by sums over the whole chain.
         #[test]
         fn no_move_of_a_sample_less_gets_there(
             order in (0..3_usize).prop_map(|i| [Order::Second, Order::Third, Order::Fourth][i]),

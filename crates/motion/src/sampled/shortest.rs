@@ -1,4 +1,4 @@
-//! The sampled move of the fewest samples, whatever its shape.
+//! The sampled move of the fewest samples, of any shape.
 use super::half::Half;
 use super::reach::{Answer, Cell, Reach};
 use super::symmetric::SymmetricMove;
@@ -8,10 +8,10 @@ use crate::{Limits, Order, Peaks, Piece, PlanError, Profile};
 use servobench_base::Setpoint;
 use std::vec::Vec;
 
-/// A rest-to-rest move whose highest derivative may be another one at every sample, in the fewest samples in which the
+/// A rest-to-rest move whose highest derivative may change at every sample, in the fewest samples in which the
 /// distance can be reached within the limits.
 ///
-/// [`Profile::plan_fewest`] is bound to boxes. This one begins where the continuous optimum switches, and lets a linear program
+/// [`Profile::plan_fewest`] is bound to moving averages. This one begins where the continuous optimum switches, and lets a linear program
 /// find the amplitudes for one number of samples after the other, until one reaches the distance and the one below is
 /// proven not to.
 ///
@@ -29,18 +29,18 @@ use std::vec::Vec;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shortest {
-    /// The move in the fewest samples of the boxes, which is this one if nothing shorter was found.
+    /// The move in the fewest samples by moving averages, which is the result if nothing shorter was found.
     boxes: Profile,
     sample_time: f64,
     samples: u64,
     at_least: u64,
     runs: Vec<Run>,
     peaks: Peaks,
-    /// `None` where the move is that of the boxes.
+    /// `None` if the move is that of the averages.
     symmetric: Option<SymmetricMove>,
 }
 
-/// Samples up to which a move is searched: each is looked at for every number of samples that is tried.
+/// Largest number of samples of a searched move: each is evaluated for every number that is tried.
 const MOST: f64 = 131_072.0;
 
 /// Numbers of samples without an answer after which the search ends.
@@ -94,8 +94,8 @@ impl Shortest {
         self.samples
     }
 
-    /// A number of samples below which no move reaches the distance, whatever its shape: equal to [`samples`](Self::samples) where
-    /// this move is proven to be the shortest, lower where the search ended without a proof, 1 where it did not begin.
+    /// A number of samples below which no move reaches the distance, of any shape: equal to [`samples`](Self::samples) if
+    /// this move is proven to be the shortest, lower if the search ended without a proof, 1 if it did not begin.
     #[must_use]
     pub const fn at_least(&self) -> u64 {
         self.at_least
@@ -137,7 +137,7 @@ impl Shortest {
         self.peaks
     }
 
-    /// Largest magnitudes when executed one way.
+    /// Largest magnitudes under one `execution`.
     #[must_use]
     pub fn peaks_by(&self, execution: Execution) -> Peaks {
         self.symmetric.as_ref().map_or(self.peaks, |own| own.peaks(execution, &self.runs))
@@ -179,8 +179,8 @@ impl Search {
         Reach { half, bounds: &self.bounds }.answer(self.continuous.segments().map(|segment| segment.start * pace))
     }
 
-    /// Up from the continuous optimum to a number that will do, but is below `known`; then down to one that will not. A number
-    /// that will do makes every larger one do, by a sample of rest.
+    /// Up from the continuous optimum to a number that suffices, but is below `known`; then down to one that does not. A number
+    /// that suffices makes every larger one suffice, by a sample of rest.
     fn between(&mut self, known: f64) {
         let mut samples = libm::ceil(self.continuous.duration() / self.sample_time).min(known - 1.0).max(1.0);
         let mut unknown = 0;

@@ -6,7 +6,7 @@
 //!
 //! Zero keeps all bounds, so that the primal simplex method starts there and needs no first phase; each a_r·x is a variable
 //! too, basic at first. A variable outside the basis rests at a bound, or still at zero. The tableau is dense: the programs
-//! here have some forty rows and columns. What it answers is checked by whoever asked, on both sides
+//! here have some forty rows and columns. The caller checks the answer, on both sides
 //! ([`reach`](super::reach)): a rounding in here can cost an optimum, never a limit.
 use std::vec::Vec;
 
@@ -22,22 +22,22 @@ pub(super) struct Program {
     row_bounds: Vec<f64>,
 }
 
-/// The largest value is taken at `x`, and `duals` prove it.
+/// The `x` of the largest value, and the `duals` that prove it.
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     pub(super) x: Vec<f64>,
-    /// λ_r, by how much the value grows with what row r is bound by: c·x ≤ Σ_j d_j·|c_j − Σ_r λ_r·a_rj| + Σ_r b_r·|λ_r| for
-    /// every x that keeps the bounds, whatever λ; with this one it is an equation at the largest.
+    /// λ_r, the growth of the value with the bound of row r: c·x ≤ Σ_j d_j·|c_j − Σ_r λ_r·a_rj| + Σ_r b_r·|λ_r| for
+    /// every x that keeps the bounds, for any λ; with this one it is an equation at the largest.
     pub(super) duals: Vec<f64>,
 }
 
-/// Part of the largest entry below which an entry is rounding.
+/// Share of the largest entry below which an entry is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// Smallest entry that is divided by.
+/// Smallest divisor.
 const PIVOT: f64 = 1e-9;
 
-/// Steps after which the tableau is made anew.
+/// Steps after which the tableau is recomputed.
 const RENEWAL: usize = 60;
 
 /// Steps without a gain after which the first column that gains is taken instead of the steepest (Bland 1977).
@@ -56,7 +56,7 @@ impl Program {
         debug_assert_eq!(self.rows.len(), self.row_bounds.len() * self.objective.len(), "one entry for each column");
     }
 
-    /// Solves it; `None` when the method does not come to an end.
+    /// Solves it; `None` when the method does not terminate.
     pub(super) fn solve(&self) -> Option<Solution> {
         let mut tableau = Tableau::of(self);
         tableau.enter_equations();
@@ -84,10 +84,10 @@ struct Tableau {
     /// Row r: the coefficients of basic variable r.
     entries: Vec<f64>,
     objective: Vec<f64>,
-    /// Which variable each row and each column stands for.
+    /// Variable of each row and of each column.
     basic: Vec<usize>,
     others: Vec<usize>,
-    /// By variable.
+    /// Bounds by variable.
     bounds: Vec<f64>,
     values: Vec<f64>,
     scales: Vec<f64>,
@@ -97,7 +97,7 @@ struct Tableau {
     idle: usize,
 }
 
-/// The largest magnitude, or one where all are zero.
+/// The largest magnitude, or one if all are zero.
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     let largest = values.fold(0.0, |most: f64, value| most.max(value.abs()));
     if largest > 0.0 { largest } else { 1.0 }
@@ -158,7 +158,7 @@ impl Tableau {
         }
     }
 
-    /// One step uphill; false when there is none.
+    /// One step uphill; false without one.
     fn improve(&mut self) -> bool {
         let gain = |j: usize| {
             let (slope, variable) = (self.objective[j], self.others[j]);
@@ -174,7 +174,7 @@ impl Tableau {
         let Some(j) = candidate else { return false };
         let direction = if self.objective[j] > 0.0 { 1.0 } else { -1.0 };
         let entering = self.others[j];
-        // To its own bound, or to where a basic variable meets its own; of those that meet theirs together, but for rounding
+        // To its own bound, or to that of a basic variable; of those that are reached together, except for rounding
         // (Harris 1973), the one with the largest entry.
         let own = self.bounds[entering] - direction * self.values[entering];
         let (mut together, mut leaving, mut step) = (own, None, own);
@@ -212,13 +212,13 @@ impl Tableau {
         true
     }
 
-    /// How far basic variable `r` may go in a direction.
+    /// Range of basic variable `r` in a direction.
     fn room(&self, r: usize, direction: f64) -> f64 {
         let variable = self.basic[r];
         (self.bounds[variable] - self.values[variable].copysign(self.values[variable] * direction)).max(0.0)
     }
 
-    /// The tableau of the same basis anew from the program, without the rounding of the steps that led to it.
+    /// The tableau of the same basis, recomputed from the program, without the rounding of the steps that led to it.
     fn renewed(&self, program: &Program) -> Self {
         let mut fresh = Self::of(program);
         let mut waiting: Vec<usize> = (0..self.columns).filter(|x| self.basic.contains(x)).collect();
@@ -286,7 +286,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Oracle: duality. The solution keeps all bounds, and what its dual variables say that nothing exceeds is what it reaches.
+        /// Oracle: duality. The solution keeps all bounds, and reaches the bound that its dual variables prove.
         #[test]
         fn the_duals_prove_the_largest_value(
             objective in prop::collection::vec(-1.0..1.0_f64, 1..9),

@@ -1,4 +1,4 @@
-//! A move by its first half: the exact hold of it, and what is sent sample by sample.
+//! A move by its first half: its exact hold, and the samples that are sent.
 use super::reach::Cell;
 use super::shortest::whole;
 use super::{Execution, Run, cascade};
@@ -20,7 +20,7 @@ pub(super) struct SymmetricMove {
 /// A stretch with one highest derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Held {
-    /// Since the start of the move, and how long (samples; half ones at the middle).
+    /// Start, counted from that of the move, and length (samples; half ones at the middle).
     start: f64,
     count: f64,
     /// At the start.
@@ -48,11 +48,11 @@ impl SymmetricMove {
             piece.state = state;
             state = state.after(piece.count * sample_time);
         }
-        // The amplitude is the one that is half way in the middle.
+        // The amplitude that covers half of the distance in the middle.
         let amplitude = 0.5 * distance / state.x;
         for piece in &mut pieces {
             let scaled = piece.state.scaled(amplitude);
-            // The sum makes a plain zero of a negative one.
+            // The sum turns a negative zero into a positive one.
             piece.state = sending(order, scaled, 0.0 + highest(order, &scaled));
         }
         Self { order, distance, sample_time, duration: samples * sample_time, pieces }

@@ -4,14 +4,14 @@ use crate::PlanError;
 use crate::limits::in_range;
 use servobench_base::{Setpoint, finite, positive};
 
-/// `N` moving averages, 1 to 4, of lengths `T1 … Tn` (s): each gives out the mean of its input over the last `T_k` seconds.
+/// `N` moving averages, 1 to 4, of lengths `T1 … Tn` (s): each outputs the mean of its input over the last `T_k` seconds.
 ///
 /// ```text
 /// H(s) = ∏ (1 − e^(−s·T_k))/(s·T_k) = 1/(sᴺ·∏T)·Σ_S (−1)^|S|·e^(−s·ΣS)       over the subsets S of the lengths
 /// ```
 ///
-/// So the output is a sum of 2ᴺ shifted copies of the N-fold integral of the input. A step comes out as the profile through
-/// these boxes, of order N.
+/// So the output is a sum of 2ᴺ shifted copies of the N-fold integral of the input. A step becomes the profile of order N with
+/// these lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingAverages<const N: usize> {
     /// In ascending order.
@@ -81,7 +81,7 @@ impl<const N: usize> MovingAverages<N> {
         Ok(Setpoint { x, v: rate(0), a: rate(1), j: rate(2), s: rate(3) }.scaled(distance))
     }
 
-    /// Residual vibration of a mode, in parts of that without averages, at the end of the last one:
+    /// Residual vibration of a mode, relative to that without averages, at the end of the last one:
     /// `∏ |1 − e^((−ζω + jω_d)·T_k)|/(ω·T_k)`.
     ///
     /// Zero for an undamped mode when a length is a whole number of periods.
@@ -98,10 +98,10 @@ impl<const N: usize> MovingAverages<N> {
     }
 }
 
-/// Averages at most.
+/// Maximum number of averages.
 const MOST: usize = 4;
 
-/// Derivative `k` of the density; 0 where it is made of impulses.
+/// Derivative `k` of the density; 0 if it consists of impulses.
 fn rate(lengths: &[f64], t: f64, k: usize) -> f64 {
     match lengths {
         _ if k == 0 => density(lengths, t),

@@ -15,7 +15,7 @@ use core::f64::consts::PI;
 /// `A_2, A_3, t_2, w_1, w_2`.
 type Unknowns = [f64; 5];
 
-/// The three impulses in the time unit 1/ω; `None` where no solution with positive amplitudes is found.
+/// The three impulses in the time unit 1/ω; `None` if no solution with positive amplitudes is found.
 pub(super) fn solve(zeta: f64, tolerable: f64) -> Option<[Impulse; 3]> {
     let low = libm::acos(-(1.0 - tolerable) / (1.0 + tolerable)) / PI;
     let undamped = [(1.0 - tolerable) / 2.0, (1.0 + tolerable) / 4.0, PI, low, 2.0 - low];

@@ -11,7 +11,7 @@ pub struct ShapingFilter<const N: usize> {
     taps: [(usize, f64); Impulses::MOST],
     count: usize,
     memory: [Setpoint; N],
-    /// Where the newest set-point is.
+    /// Index of the newest set-point.
     newest: usize,
     received: u64,
 }
@@ -42,11 +42,11 @@ impl<const N: usize> ShapingFilter<N> {
         Ok(Self { taps, count, memory: [rest; N], newest: 0, received: 0 })
     }
 
-    /// Takes the next set-point and gives the shaped one of the same instant.
+    /// Takes the next set-point and returns the shaped one of the same instant.
     ///
     /// # Errors
     /// [`PlanError::Sample`] with the number of the set-point, from 0, when a value is not finite or above 1e150 in
-    /// magnitude. Nothing is changed then.
+    /// magnitude. Nothing changes then.
     pub fn next(&mut self, setpoint: Setpoint) -> Result<Setpoint, PlanError> {
         let setpoint = checked(self.received, setpoint)?;
         self.received += 1;

@@ -7,7 +7,7 @@
 //! Q(w) = Σ A_i·e^(ζw·(t_i − t_n+2) + j√(1−ζ²)·w·t_i)                  the residual of the modes of frequency w is |Q(w)|
 //!
 //! Q(w) = 0 (complex)                 at each of the n + 1 zeros        for A_2 … A_n+2 (A_1 the rest of one), t_2 … t_n+2 (t_1 = 0),
-//! |Q(w)| = v and d|Q|/dw = 0         at each of the n tops             and zeros and tops but the middle one of them, which is 1
+//! |Q(w)| = v and d|Q|/dw = 0         at each of the n tops             and zeros and tops except the middle one of them, which is 1
 //! ```
 //!
 //! are 4n + 2 equations for as many unknowns. With two humps the mode is at the zero between them, with three at the top of
@@ -20,7 +20,7 @@ use super::Impulse;
 use super::newton::damped;
 use core::f64::consts::PI;
 
-/// The impulses in the time unit 1/ω, of a shaper with `IMPULSES − 2` humps and so `N = 4·IMPULSES − 6` unknowns; `None` where no
+/// The impulses in the time unit 1/ω, of a shaper with `IMPULSES − 2` humps and so `N = 4·IMPULSES − 6` unknowns; `None` if no
 /// solution with positive amplitudes is found.
 pub(super) fn solve<const IMPULSES: usize, const N: usize>(zeta: f64, tolerable: f64) -> Option<[Impulse; IMPULSES]> {
     const { assert!(IMPULSES >= 3 && N == 4 * IMPULSES - 6, "as many equations as unknowns") };
@@ -30,7 +30,7 @@ pub(super) fn solve<const IMPULSES: usize, const N: usize>(zeta: f64, tolerable:
     Some(Unknowns::of(&y).impulses)
 }
 
-/// The unknowns by their names.
+/// The unknowns by name.
 struct Unknowns<'a, const IMPULSES: usize> {
     impulses: [Impulse; IMPULSES],
     /// Zeros and tops in turn, without the middle one.

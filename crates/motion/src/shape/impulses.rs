@@ -6,7 +6,7 @@ use crate::limits::in_range;
 use core::f64::consts::SQRT_2;
 use servobench_base::{ParamError, Setpoint, positive};
 
-/// A part of the input and how much later it comes.
+/// A part of the input and its delay.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Impulse {
     /// Delay (s).
@@ -23,7 +23,7 @@ pub struct Impulses {
 }
 
 impl Impulses {
-    /// Number of impulses that is kept at most.
+    /// Maximum number of impulses.
     pub const MOST: usize = 32;
 
     /// Zero vibration: two impulses.
@@ -32,8 +32,8 @@ impl Impulses {
         Self::geometric(vibration, 1.0, [1.0, 1.0])
     }
 
-    /// Modified zero vibration: three impulses over three quarters of a damped period, which leave nothing at the modelled
-    /// frequency and forgive a little more than ZV.
+    /// Modified zero vibration: three impulses over three quarters of a damped period, without residual vibration at the modelled
+    /// frequency and slightly more robust than ZV.
     #[must_use]
     pub fn mzv(vibration: &Vibration) -> Self {
         Self::geometric(vibration, 0.75, [1.0, SQRT_2, 1.0])
@@ -139,7 +139,7 @@ impl Impulses {
     }
 
     /// The shaper with its times on whole multiples of `sample_time` (s): each impulse is split between the two samples
-    /// beside it so that the sum and the first moment ΣA·t, the delay of a ramp, stay what they are.
+    /// beside it so that the sum and the first moment ΣA·t, the delay of a ramp, do not change.
     ///
     /// Its [`residual`](Self::residual) is that of the [`ShapingFilter`](super::ShapingFilter).
     ///
@@ -170,10 +170,10 @@ impl Impulses {
         Ok(grid)
     }
 
-    /// Adds an impulse at its place in time, or to the one that is there; `Err` with the capacity when there is no place.
+    /// Adds an impulse at its time, or to the one that is there; `Err` with the capacity when it is full.
     fn add(&mut self, impulse: Impulse) -> Result<(), usize> {
         let place = self.iter().take_while(|known| known.time < impulse.time).count();
-        // The first that is not earlier; where it is not later either, it is the same instant.
+        // The first that is not earlier; if it is not later either, it is the same instant.
         if place < self.count && self.impulses[place].time <= impulse.time {
             self.impulses[place].amplitude += impulse.amplitude;
             return Ok(());
@@ -207,16 +207,16 @@ impl Impulses {
 
     /// The shaped set-point at `t` (s): Σ A_i·`setpoint`(t − t_i), position and all derivatives.
     ///
-    /// Exact, and exactly at the target `duration` after the move's end. The amplitude of the undelayed part is taken as
-    /// what the others leave of one.
+    /// Exact, and exactly at the target `duration` after the move's end. The amplitude of the undelayed part is computed as
+    /// one minus the others.
     #[must_use]
     pub fn shape(&self, t: f64, setpoint: impl Fn(f64) -> Setpoint) -> Setpoint {
         blend(setpoint(t), self.iter().skip(1).map(|Impulse { time, amplitude }| (amplitude, setpoint(t - time))))
     }
 
-    /// Residual vibration of a mode, in parts of that without a shaper: `e^(−ζω·t_n)·|Σ A_i·e^((ζω + jω_d)·t_i)|`.
+    /// Residual vibration of a mode, relative to that without a shaper: `e^(−ζω·t_n)·|Σ A_i·e^((ζω + jω_d)·t_i)|`.
     ///
-    /// Over the frequencies of modes it is the sensitivity curve of the shaper.
+    /// As a function of the mode's frequency it is the sensitivity curve of the shaper.
     #[must_use]
     pub fn residual(&self, vibration: &Vibration) -> f64 {
         let (omega_d, last) = (vibration.omega_d(), self.duration());

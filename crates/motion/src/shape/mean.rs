@@ -5,11 +5,11 @@ use servobench_base::{ParamError, Setpoint};
 
 /// A moving average of as many samples as its memory `M` holds: an array, a slice of one, or on the heap a `Vec`.
 ///
-/// A step through averages of n1 … n4 samples, one after the other, is the sampled move of order 4 with these boxes: its
-/// backward differences are those of the forward-Euler cascade. The set-points of a step say nothing of its derivatives,
-/// which are impulses; [`MovingAverages::of_step`](super::MovingAverages::of_step) does.
+/// A step through averages of n1 … n4 samples, one after the other, is the sampled move of order 4 with these lengths: its
+/// backward differences are those of the forward-Euler cascade. The set-points of a step do not contain its derivatives,
+/// which are impulses; those of [`MovingAverages::of_step`](super::MovingAverages::of_step) do.
 ///
-/// The sum is built anew for every block of `length` samples, forwards within the block and backwards over the one
+/// The sum is recomputed for every block of `length` samples, forwards within the block and backwards over the one
 /// before it, as differences from the first of the newer block: nothing drifts, and a rest gives exactly its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingAverage<M> {
@@ -39,11 +39,11 @@ impl<M: AsRef<[Setpoint]> + AsMut<[Setpoint]>> MovingAverage<M> {
         Ok(Self { memory, filled, base: rest, sum: Setpoint::default(), received: 0 })
     }
 
-    /// Takes the next set-point and gives the mean of it and those before it.
+    /// Takes the next set-point and returns the mean of it and those before it.
     ///
     /// # Errors
     /// [`PlanError::Sample`] with the number of the set-point, from 0, when a value is not finite or above 1e150 in
-    /// magnitude. Nothing is changed then.
+    /// magnitude. Nothing changes then.
     pub fn next(&mut self, setpoint: Setpoint) -> Result<Setpoint, PlanError> {
         let setpoint = checked(self.received, setpoint)?;
         self.received += 1;

@@ -1,10 +1,10 @@
-//! Newton's method for the equations of a shaper, and the way to a damped mode.
+//! Newton's method for the equations of a shaper, and continuation to a damped mode.
 
-/// First step of the damping ratio, halved where Newton's method fails, and the smallest that is tried.
+/// First step of the damping ratio, halved if Newton's method fails, and the smallest step.
 const STEP: (f64, f64) = (0.05, 1e-4);
 
-/// From the solution `y` of an undamped mode to that of the damping ratio `zeta`, which is raised in steps; each has to pass
-/// `is_shaper`. `None` where one is not found.
+/// Continues the solution `y` of an undamped mode to that of the damping ratio `zeta`, which is raised in steps; each has to pass
+/// `is_shaper`. `None` if one is not found.
 pub(super) fn damped<const N: usize>(
     zeta: f64,
     mut y: [f64; N],
@@ -23,14 +23,14 @@ pub(super) fn damped<const N: usize>(
     Some(y)
 }
 
-/// Where the `equations` vanish, from `y` on; `None` when they do not.
+/// Root of the `equations`, starting from `y`; `None` without convergence.
 fn newton<const N: usize>(mut y: [f64; N], equations: impl Fn(&[f64; N]) -> [f64; N]) -> Option<[f64; N]> {
     // Three to six steps are usual.
     for _ in 0..30 {
         let f = equations(&y);
         let mut rows = [[0.0; N]; N];
         for column in 0..N {
-            // The error of a central difference, h², times that of the remaining step is what Newton leaves.
+            // Newton's method leaves the error of a central difference, h², times that of the remaining step.
             let h = 1e-5;
             let [mut above, mut below] = [y, y];
             above[column] += h;
@@ -53,7 +53,7 @@ fn newton<const N: usize>(mut y: [f64; N], equations: impl Fn(&[f64; N]) -> [f64
             return Some(y);
         }
     }
-    // Rounding may keep the last step above the bound: what counts is that the equations hold.
+    // Rounding may keep the last step above the bound: only the equations must hold.
     equations(&y).iter().all(|f| f.abs() < 1e-13).then_some(y)
 }
 

@@ -1,4 +1,4 @@
-//! The input shapers by their names.
+//! The input shapers by name.
 use super::{Impulses, Vibration};
 use crate::PlanError;
 
@@ -32,10 +32,10 @@ servobench_config::choices! {
 }
 
 impl Shaper {
-    /// Part of the vibration that the extra-insensitive shapers leave by default.
+    /// Default of the part of the vibration that the extra-insensitive shapers leave.
     pub const TOLERABLE: f64 = 0.05;
 
-    /// The shaper of this kind, with `tolerable` where it has that.
+    /// The shaper of this kind, with `tolerable` if it has that.
     #[must_use]
     pub const fn new(kind: ShaperKind, tolerable: f64) -> Self {
         match kind {
@@ -76,7 +76,7 @@ impl Shaper {
 }
 
 impl ShaperKind {
-    /// Whether it is an extra-insensitive shaper, which leaves a part of the vibration that is asked for.
+    /// True for an extra-insensitive shaper, which leaves a chosen part of the vibration.
     #[must_use]
     pub const fn has_tolerable(self) -> bool {
         Shaper::new(self, Shaper::TOLERABLE).tolerable().is_some()

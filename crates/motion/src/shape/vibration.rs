@@ -1,4 +1,4 @@
-//! The vibration that is to be avoided.
+//! The vibration to be avoided.
 use crate::PlanError;
 use crate::limits::in_range;
 use servobench_base::{ParamError, positive};
