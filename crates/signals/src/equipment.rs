@@ -1,68 +1,68 @@
-//! What an axis has, and with it which signals, from whom and how often.
+//! Equipment of an axis, and thereby its signals, their writers and rates.
 use servobench_base::{Coordinate, Rate};
 
-/// What an axis has.
+/// Equipment of an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Equipment {
     /// Coordinate of the load.
     pub axis: Coordinate,
     /// Coordinate of the motor.
     pub motor_coordinate: Coordinate,
-    /// Whether there is a body between motor and load.
+    /// True with a body between motor and load.
     pub table: bool,
-    /// Whether something disturbs the motor, and the load.
+    /// True for the motor, and for the load, if something disturbs it.
     pub disturbed: [bool; 2],
-    /// Whether the load meets stops at the ends of its travel.
+    /// True if the load meets stops at the ends of its travel.
     pub end_stops: bool,
     /// Effects of the inverter beside the voltage that it gives.
     pub inverter: InverterEffects,
-    /// Whether there is a fieldbus between the motion task and the drive.
+    /// True with a fieldbus between the motion task and the drive.
     pub bus: bool,
-    /// What the motor has beside its equations.
+    /// Effects of the motor beside its equations.
     pub effects: MotorEffects,
-    /// Which sensors err, so that what they say is not what is there.
+    /// Sensors with errors, whose readings differ from the true values.
     pub erring: Erring,
-    /// What the firmware commands; `None` without firmware.
+    /// Amplifier commanded by the firmware; `None` without firmware.
     pub amplifier: Option<Amplifier>,
-    /// What the motor has: by the firmware, or by an FMU in its place.
+    /// Quantities of the motor, from the firmware or from an FMU in its place.
     pub motor: Motor,
 }
 
-/// Effects of an inverter that an ideal one lacks, as far as they have signals.
+/// Effects that an ideal inverter lacks, as far as they have signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct InverterEffects {
     /// Its devices have losses.
     pub losses: bool,
-    /// It switches.
+    /// Its devices switch.
     pub switching: bool,
     /// The voltage of its DC link changes.
     pub link: bool,
 }
 
-/// What a motor has beside its equations, as far as that has signals.
+/// Effects of a motor beside its equations, as far as they have signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MotorEffects {
-    /// Whether there is a loss in its iron.
+    /// True with a loss in its iron.
     pub iron_loss: bool,
-    /// Whether winding and housing warm up.
+    /// True if winding and housing warm up.
     pub thermal_model: bool,
 }
 
-/// Which sensors err.
+/// Sensors with errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Erring {
-    /// The encoder on the motor, and that on the load where it closes the position loop.
+    /// The encoder on the motor, and that on the load if it closes the position loop.
     pub encoders: [bool; 2],
-    /// The current sensors, or the angle by which their currents are known.
+    /// The current sensors, or the angle for the conversion of their currents.
     pub current: bool,
-    /// The velocity, which the drive measures by a method of its own.
+    /// The velocity, which the drive measures by a separate method.
     pub velocity: bool,
 }
 
-/// What there is of a motor.
+/// Available quantities of a motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motor {
-    /// Nothing: it is off, or follows the set-point exactly.
+    /// None: it is off, or follows the set-point exactly.
     Motion,
     /// An effort.
     Effort,
@@ -70,7 +70,7 @@ pub enum Motor {
     Currents,
 }
 
-/// What the firmware commands.
+/// Amplifier commanded by the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amplifier {
     /// The currents of a synchronous motor.
@@ -125,7 +125,7 @@ presences! {
 }
 
 impl Presence {
-    /// Whether an axis with `equipment` has it.
+    /// True if an axis with `equipment` has the signal.
     #[must_use]
     pub fn holds(self, equipment: &Equipment) -> bool {
         match self {
@@ -156,15 +156,15 @@ impl Presence {
 /// Stage of the loop that writes a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writer {
-    /// The task: what moves, tables and function blocks want of the axis.
+    /// The task: requests of moves, tables and function blocks to the axis.
     Task,
     /// The motion task behind a fieldbus.
     MotionTask,
     /// The fieldbus.
     Fieldbus,
-    /// The master on it, which fills the time between two samples of the motion task.
+    /// The master on the bus, which interpolates between two samples of the motion task.
     Master,
-    /// The generator of set-points, or what interpolates them.
+    /// The generator of set-points, or their interpolation.
     SetPoint,
     /// The mechanics.
     Mechanics,
@@ -174,9 +174,9 @@ pub enum Writer {
     VelocityLoop,
     /// The current loop.
     CurrentLoop,
-    /// The current loop, or the controller that stands in its place.
+    /// The current loop, or the controller that replaces it.
     Commander,
-    /// What is measured from outside.
+    /// A measurement from outside.
     Measurement,
     /// Inverter and motor, or the ideal source.
     PowerStage,
@@ -188,20 +188,20 @@ pub enum Writer {
     Encoder,
 }
 
-/// How often the writers renew what they write.
+/// Rates of the writers.
 #[derive(Debug, Clone, Copy)]
 pub struct Rates {
     /// Base rate of the run.
     pub base: Rate,
-    /// Of the motion task behind a fieldbus.
+    /// Rate of the motion task behind a fieldbus.
     pub task: Rate,
-    /// Of the fieldbus.
+    /// Rate of the fieldbus.
     pub bus: Rate,
-    /// Of the position loop.
+    /// Rate of the position loop.
     pub position: Rate,
-    /// Of the velocity loop.
+    /// Rate of the velocity loop.
     pub velocity: Rate,
-    /// Of the current loop.
+    /// Rate of the current loop.
     pub current: Rate,
 }
 
@@ -229,7 +229,7 @@ impl Writer {
         }
     }
 
-    /// How often it writes.
+    /// Rate at which it writes.
     #[must_use]
     pub const fn rate(self, rates: &Rates) -> Rate {
         match self {

@@ -1,23 +1,23 @@
-//! All that is known at one tick.
+//! The state of a run at one tick.
 use servobench_base::{Dq, Request, RequestKind, Setpoint, Stateful};
 use servobench_plant::BodyState;
 use servobench_plant::inverter::{LinkPower, Ripple};
 use servobench_plant::pmsm::{Power, Temperatures};
 
-/// All that is known at tick k, before the integration to k+1. In the axis coordinate unless said otherwise.
+/// All values at tick k, before the integration to k+1. In the axis coordinate unless noted.
 #[derive(Debug, Clone, Copy, Default, Stateful)]
 pub struct Instant {
-    /// Request of the task to the load, where it is for a position or a velocity.
+    /// Request of the task to the load, if it is for a position or a velocity.
     pub request: Setpoint,
-    /// The effort that it wants of the motor.
+    /// Requested effort of the motor.
     pub requested_effort: f64,
-    /// Which of them it wants.
+    /// Kind of the request.
     pub request_kind: RequestKind,
-    /// Set-point of the motion task, before it goes over the bus.
+    /// Set-point of the motion task, before the bus.
     pub task: Setpoint,
-    /// Actual position as the master reads it.
+    /// Actual position read by the master.
     pub bus_position: f64,
-    /// What the master puts out, in units of the axis.
+    /// Output of the master, in units of the axis.
     pub put_out: Setpoint,
     /// The effort beside it (motor coordinate).
     pub put_out_effort: f64,
@@ -29,31 +29,31 @@ pub struct Instant {
     pub table: BodyState,
     /// The load.
     pub load: BodyState,
-    /// What the load is to follow.
+    /// Position that the load is to follow.
     pub reference: f64,
-    /// What the motor is to follow.
+    /// Position that the motor is to follow.
     pub motor_reference: f64,
     /// Reference less position, of motor and load.
     pub following_error: [f64; 2],
     /// Velocity command.
     pub velocity_reference: f64,
-    /// What the velocity loop asks for (motor coordinate).
+    /// Effort requested by the velocity loop (motor coordinate).
     pub effort_reference: f64,
-    /// What the motor gives (motor coordinate).
+    /// Effort of the motor (motor coordinate).
     pub effort: f64,
     /// Currents of the motor.
     pub current: Dq,
-    /// Length of their vector over the tick that ends here, where the inverter switches.
+    /// Length of their vector over the tick that ends here, with a switching inverter.
     pub ripple: Ripple,
-    /// q-axis current that is asked for.
+    /// Requested q-axis current.
     pub current_reference: f64,
-    /// What the current loop computes at this tick.
+    /// Voltage computed by the current loop at this tick.
     pub voltage_reference: Dq,
-    /// What the inverter gives over the coming tick.
+    /// Voltage of the inverter over the coming tick.
     pub voltage: Dq,
     /// Mean powers over the tick that ends here.
     pub power: Power,
-    /// Temperatures of the motor; zero where nothing warms up.
+    /// Temperatures of the motor; zero without warming.
     pub temperatures: Temperatures,
     /// Mean loss of the inverter over the tick that ends here.
     pub inverter_loss: f64,
@@ -71,22 +71,22 @@ pub struct Instant {
     pub load_disturbance: f64,
     /// Effort of the end stops on the load over the coming tick.
     pub end_stop: f64,
-    /// What the encoders of motor and load say.
+    /// Positions measured by the encoders of motor and load.
     pub measured_position: [f64; 2],
-    /// Velocity of the motor as the velocity loop saw it at its last cycle, where a method of the drive measures it.
+    /// Velocity of the motor at the last cycle of the velocity loop, if a separate method of the drive measures it.
     pub measured_velocity: f64,
-    /// Currents of the motor as the current loop measured them at its last cycle.
+    /// Currents of the motor, measured at the last cycle of the current loop.
     pub measured_current: Dq,
-    /// What hardware says of itself at this tick.
+    /// Alarms of the hardware at this tick.
     pub alarms: Alarms,
-    /// Which limits bind at this tick.
+    /// Limits that bind at this tick.
     pub binds: PerLimit<bool>,
-    /// In which share of the ticks since the last row they did.
+    /// Share of the ticks since the last row in which each of them bound.
     pub saturation: PerLimit<f64>,
 }
 
 impl Instant {
-    /// Takes the request of the task. Where it wants no position, that is where the load is.
+    /// Takes the request of the task. Without a requested position, the position is that of the load.
     #[inline]
     pub fn ask(&mut self, request: Request) {
         let here = self.load.position;
@@ -101,27 +101,27 @@ impl Instant {
     }
 }
 
-/// What hardware says of itself.
+/// Alarms of the hardware.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Stateful)]
 pub struct Alarms {
     /// The DC link has less than half of its voltage.
     pub collapsed_link: bool,
     /// The encoder of the motor has found that its signals cannot be trusted.
     pub motor_encoder: bool,
-    /// That of the load has.
+    /// The encoder of the load has found the same.
     pub load_encoder: bool,
 }
 
-/// Something for each limit that is watched.
+/// A value for each monitored limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct PerLimit<T> {
-    /// Voltage limit, which the current loop keeps to or the inverter enforces.
+    /// Voltage limit, which the current loop keeps or the inverter enforces.
     pub voltage: T,
-    /// Current limit, which cuts what the velocity loop asks for.
+    /// Current limit, which cuts the request of the velocity loop.
     pub current: T,
     /// Effort limit of the velocity loop.
     pub effort: T,
-    /// Speed limit of the drive, which cuts what the position loop, or the master, asks for; no channel shows its share.
+    /// Speed limit of the drive, which cuts the request of the position loop, or of the master; no channel shows its share.
     pub speed: T,
     /// Velocity limit of the master; no channel shows its share.
     pub master: T,

@@ -1,6 +1,6 @@
-//! The signals of an axis: what a run records at every tick, what FMUs are wired to, what metrics are made of and viewers show.
+//! The signals of an axis: recorded at every tick of a run, wired to FMUs, used by metrics and shown by viewers.
 //!
-//! The [list](Signal) has a line for each: name, unit, writer, when there is one, meaning, and how it follows from an [`Instant`].
+//! The [list](Signal) has a line for each: name, unit, writer, presence, meaning, and its computation from an [`Instant`].
 mod equipment;
 mod instant;
 mod selection;

@@ -1,4 +1,4 @@
-//! The signals that are kept of an axis, and where they stand in a row.
+//! The signals of an axis that are kept, and their places in a row.
 use crate::equipment::{Equipment, Rates};
 use crate::instant::Instant;
 use crate::signal::{COUNT, Signal, row};
@@ -18,7 +18,7 @@ pub struct Selection {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the axis has no signal `{signal}`")]
 pub struct NotRecorded {
-    /// It.
+    /// The signal.
     pub signal: Signal,
 }
 
@@ -32,10 +32,10 @@ impl Selection {
         Self { signals, specs, kept }
     }
 
-    /// Of these those `wanted`, in the order of [`Signal`]; all when the list is empty.
+    /// Selects the `wanted` of these, in the order of [`Signal`]; all when the list is empty.
     ///
     /// # Errors
-    /// [`NotRecorded`] for what is not among them.
+    /// [`NotRecorded`] for a signal that is not among these.
     pub fn of(&self, wanted: &[Signal]) -> Result<Self, NotRecorded> {
         if wanted.is_empty() {
             return Ok(self.clone());
@@ -49,7 +49,7 @@ impl Selection {
         Ok(self.only(&sorted))
     }
 
-    /// Of these those of `wanted` that are among them, in the order of `wanted`.
+    /// Selects those of `wanted` that are among these, in the order of `wanted`.
     #[must_use]
     pub fn only(&self, wanted: &[Signal]) -> Self {
         let places: Vec<usize> = wanted.iter().filter_map(|signal| self.place(*signal)).collect();
@@ -66,25 +66,25 @@ impl Selection {
         &self.signals
     }
 
-    /// What a recording says of each.
+    /// Descriptions of the signals for a recording.
     #[must_use]
     pub fn specs(&self) -> &[ChannelSpec] {
         &self.specs
     }
 
-    /// Whether `signal` is among them.
+    /// True if `signal` is among these.
     #[must_use]
     pub fn has(&self, signal: Signal) -> bool {
         self.place(signal).is_some()
     }
 
-    /// Where `signal` is among them.
+    /// Place of `signal` among these.
     #[must_use]
     pub fn place(&self, signal: Signal) -> Option<usize> {
         self.signals.iter().position(|one| *one == signal)
     }
 
-    /// A recorder of them, for [`write_row`](crate::write_row), with room for `rows` rows.
+    /// A recorder of these signals, for [`write_row`](crate::write_row), with room for `rows` rows.
     #[must_use]
     pub fn recorder(&self, about: About, rate: Rate, rows: usize) -> Recorder {
         let columns = self.signals.iter().map(|signal| *signal as usize).collect();

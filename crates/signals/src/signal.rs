@@ -35,19 +35,19 @@ macro_rules! signals {
                 match self { $(Self::$signal => Unit::$unit $(($power))?,)+ }
             }
 
-            /// Who writes it.
+            /// Stage that writes it.
             #[must_use]
             pub const fn writer(self) -> Writer {
                 match self { $(Self::$signal => Writer::$writer,)+ }
             }
 
-            /// When an axis has it.
+            /// Condition under which an axis has it.
             #[must_use]
             pub const fn presence(self) -> Presence {
                 match self { $(Self::$signal => Presence::$presence,)+ }
             }
 
-            /// What it means, in words.
+            /// Its meaning, in words.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self { $(Self::$signal => $meaning,)+ }
@@ -63,10 +63,10 @@ macro_rules! signals {
             },)+]
         }
 
-        /// The same at place `at` of their columns.
+        /// Writes the same at place `at` of their columns.
         #[inline]
         fn put(now: &Instant, columns: &mut [Column; COUNT], at: usize) {
-            // Once for all of them.
+            // One check for all of them.
             assert!(at < BLOCK, "a block has no row {at}");
             $(columns[Signal::$signal as usize][at] = {
                 let $now = now;
@@ -76,7 +76,7 @@ macro_rules! signals {
     };
 }
 
-/// How many there are.
+/// Number of signals.
 pub(crate) const COUNT: usize = Signal::ALL.len();
 
 signals! {
@@ -209,7 +209,7 @@ signals! {
 }
 
 impl Signal {
-    /// What a recording says of it.
+    /// Its description for a recording.
     #[must_use]
     pub fn spec(self, equipment: &Equipment, rates: &Rates) -> ChannelSpec {
         let writer = self.writer();

@@ -1,15 +1,15 @@
-//! In which unit a signal is.
+//! Units of signals.
 use crate::equipment::{Amplifier, Equipment};
 use std::fmt;
 
 /// The unit of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// That of the axis, m or rad, per second to this power.
+    /// Unit of the axis, m or rad, per second to this power.
     Axis(u8),
-    /// Of an effort of the motor: N or N·m.
+    /// Unit of an effort of the motor: N or N·m.
     MotorEffort,
-    /// Of an effort on the load: N or N·m.
+    /// Unit of an effort on the load: N or N·m.
     LoadEffort,
     /// A.
     Ampere,
@@ -19,7 +19,7 @@ pub enum Unit {
     Watt,
     /// °C.
     Celsius,
-    /// That of what an ideal source puts out: V, or that of its effort.
+    /// Unit of the output of an ideal source: V, or that of its effort.
     Output,
     /// A pure number.
     One,
@@ -48,7 +48,7 @@ impl Unit {
     }
 }
 
-/// On any axis: U is its unit, E that of the motor's effort, F that of an effort on the load.
+/// For any axis: U is its unit, E that of the motor's effort, F that of an effort on the load.
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
