@@ -1,4 +1,4 @@
-//! What readers of Apache Arrow see of a recording: each column with unit, writer and rate.
+//! A recording for readers of Apache Arrow: each column with unit, writer and rate.
 //!
 //! They look for an Arrow schema in the file's key-value metadata, under `ARROW:schema`: the IPC message of the schema behind
 //! the continuation mark and its length, in base64. Source: Apache Arrow, *Columnar Format*, "Encapsulated message format";
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 /// Key of the schema.
 pub(crate) const KEY: &str = "ARROW:schema";
-/// What an encapsulated message begins with.
+/// Beginning of an encapsulated message.
 const CONTINUATION: [u8; 4] = [0xff; 4];
 
 /// The schema of `recording`, as the value of [`KEY`]; `None` if it were longer than a message can be.
@@ -28,7 +28,7 @@ pub(crate) fn schema(recording: &Recording) -> Option<String> {
     encoded(std::iter::once(time).chain(channels).collect())
 }
 
-/// A column with what is known of it.
+/// A column with its metadata.
 pub(crate) fn field(name: &str, kind: DataType, may_be_missing: bool, metadata: &[(&str, String)]) -> Field {
     let metadata: HashMap<_, _> = metadata.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
     Field::new(name, kind, may_be_missing).with_metadata(metadata)

@@ -3,7 +3,7 @@ use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
 
-/// What a channel is, before it has values.
+/// Description of a channel, without values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelSpec {
@@ -13,14 +13,14 @@ pub struct ChannelSpec {
     pub unit: String,
     /// Stage of the loop that writes it: `set-point`, `position loop`, `mechanics`.
     pub writer: String,
-    /// How often the writer renews it; between renewals the value is held.
+    /// Rate at which the writer renews it; between renewals the value is held.
     pub rate: Rate,
 }
 
 /// A channel and its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// What it is.
+    /// Its description.
     pub spec: ChannelSpec,
     /// One value per recorded instant (SI).
     pub values: Values,

@@ -1,8 +1,8 @@
 //! Columns of numbers as pages of a Parquet file.
 //!
-//! A page holds the bytes of its numbers by significance, all first bytes in front, compressed as LZ4 block: what a smooth signal has in
-//! common from one instant to the next stands side by side, and the rest, which does not compress, is passed over. The library's own
-//! writer makes the same bytes, as a test of [`write`](crate::write) has it, and takes longer.
+//! A page holds the bytes of its numbers by significance, all first bytes in front, compressed as an LZ4 block: the bytes that a smooth
+//! signal shares from one instant to the next are adjacent, and the rest, which does not compress, is passed over. The library's own
+//! writer makes the same bytes, as a test of [`write`](crate::write) shows, and takes longer.
 //!
 //! Source: Apache Parquet, *File Format*, `PageHeader` in `parquet.thrift`, "Byte Stream Split (`BYTE_STREAM_SPLIT` = 9)";
 //! Apache Thrift, *Thrift Compact protocol encoding*.
@@ -22,9 +22,9 @@ const PAGE: usize = 20_480;
 const WIDTH: usize = size_of::<f64>();
 /// Bytes that are collected before they go to the file: while they are hashed they are still in the cache.
 const COLLECTED: usize = 1 << 18;
-/// Bytes of a page header at most.
+/// Maximum size of a page header (bytes).
 const LONGEST_HEADER: usize = 48;
-/// Type of a page with values, first version; the encodings of the values, and of the levels that they do not have.
+/// Type of a page with values, first version; the encodings of the values, and of the levels, which are absent.
 const DATA_PAGE: usize = 0;
 const BYTE_STREAM_SPLIT: usize = 9;
 const LEVELS: usize = 3;
@@ -32,16 +32,16 @@ const LEVELS: usize = 3;
 /// Takes the pages of a file in their order.
 pub(crate) struct Pages<W> {
     sink: W,
-    /// What has been made and not yet written is at the front, `collected` bytes of it; there is room for one page more.
+    /// Bytes not yet written are at the front, `collected` of them; there is room for one page more.
     buffer: Vec<u8>,
     collected: usize,
     written: u64,
-    /// The page under way, split.
+    /// The current page, split.
     split: Vec<u8>,
 }
 
 impl<W: Write> Pages<W> {
-    /// Those of a file, from the first byte on, which goes to `sink`.
+    /// Pages of a file, from the first byte on, which goes to `sink`.
     pub(crate) fn new(sink: W) -> Self {
         let longest = LONGEST_HEADER + lz4_flex::block::get_maximum_output_size(PAGE * WIDTH);
         Self { sink, buffer: vec![0; COLLECTED + longest], collected: 0, written: 0, split: vec![0; PAGE * WIDTH] }
@@ -63,7 +63,8 @@ impl<W: Write> Pages<W> {
         Ok(())
     }
 
-    /// Adds the pages of `values`, and gives what the file's footer says of them; with `range`, their least and largest, positive or zero.
+    /// Adds the pages of `values`, and returns their metadata for the file's footer; with `range`, their least and largest, positive or
+    /// zero.
     ///
     /// # Errors
     /// Those of the sink.
@@ -89,7 +90,7 @@ impl<W: Write> Pages<W> {
             .set_num_values(i64::try_from(values.len())?)
             .set_data_page_offset(i64::try_from(start)?);
         if let Some([least, most]) = range {
-            // A reader may hold either zero for the other: the format asks for the lower one as the least.
+            // A reader may take either zero for the other: the format requires the lower one as the least.
             let least = if least == 0.0 { -0.0 } else { least };
             let range = ValueStatistics::new(Some(least), Some(most), None, Some(0), false);
             builder = builder.set_statistics(Statistics::from(range.with_backwards_compatible_min_max(true)));
@@ -97,11 +98,11 @@ impl<W: Write> Pages<W> {
         builder.build()
     }
 
-    /// Adds a page, and gives the bytes that it would have if it were not compressed.
+    /// Adds a page, and returns its uncompressed size in bytes.
     fn add_page(&mut self, values: &[f64]) -> ParquetResult<usize> {
         let split = &mut self.split[..values.len() * WIDTH];
         split_by_significance(values, split);
-        // Behind a header as long as it will be, most likely.
+        // Behind a header of the most probable length.
         let start = self.collected + header(split.len(), split.len() / 2, values.len()).len();
         let packed = lz4_flex::block::compress_into(split, &mut self.buffer[start..])
             .map_err(|error| ParquetError::General(error.to_string()))?;
@@ -116,7 +117,7 @@ impl<W: Write> Pages<W> {
         Ok(unpacked)
     }
 
-    /// Hands on what is collected, if that is as much as `enough`.
+    /// Writes the collected bytes to the sink, if there are `enough`.
     fn hand_on(&mut self, enough: usize) -> io::Result<()> {
         if self.collected >= enough {
             self.sink.write_all(&self.buffer[..self.collected])?;
@@ -126,7 +127,7 @@ impl<W: Write> Pages<W> {
         Ok(())
     }
 
-    /// The sink, to which everything was handed on.
+    /// The sink, to which everything was written.
     ///
     /// # Errors
     /// Those of the sink.
@@ -139,7 +140,7 @@ impl<W: Write> Pages<W> {
 
 /// The header of a page of `values` numbers that has `packed` bytes and unpacks to `unpacked`.
 pub(crate) fn header(unpacked: usize, packed: usize, values: usize) -> Vec<u8> {
-    // The type of a field and its distance to the one before: fields 1, 2, 3 and 5 of the page, 1 to 4 of what it says of its values.
+    // The type of a field and its distance to the one before: fields 1, 2, 3 and 5 of the page, 1 to 4 of its data page header.
     const INTEGER: u8 = 0x15;
     const OF_VALUES: u8 = 0x2c;
     const END: u8 = 0;

@@ -1,7 +1,7 @@
 //! Thinning that keeps every extreme.
 use crate::recording::Recording;
 
-/// Indices that are left when `values` are thinned to a minimum/maximum envelope of `buckets` buckets, ascending.
+/// Indices that remain when `values` are thinned to a minimum/maximum envelope of `buckets` buckets, ascending.
 ///
 /// The values are cut into `buckets` runs whose lengths differ by one at most. Of each run the first smallest and the
 /// first largest value stay, at their own indices, and so do the very first and the very last value. Nothing is

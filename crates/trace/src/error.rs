@@ -1,15 +1,15 @@
-//! What can go wrong between a recording and its file.
+//! Errors of writing and reading recordings.
 use servobench_files::{quoted, with_short_quotes};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a recording was not written or read.
+/// Reasons why a recording was not written or read.
 #[derive(Debug, Error)]
 pub enum TraceError {
     /// The operating system refused.
     #[error("cannot {action} `{}`: {source}", .path.display())]
     Io {
-        /// What was tried: `create`, `write`, `put in its place`, `read`.
+        /// Action that failed: `create`, `write`, `put in its place`, `read`.
         action: &'static str,
         /// File it was tried on.
         path: PathBuf,
@@ -29,7 +29,7 @@ pub enum TraceError {
     NameTaken {
         /// Name of the channel.
         name: String,
-        /// What has the name already.
+        /// Owner of the name.
         by: &'static str,
     },
     /// Channels differ in length.
@@ -44,12 +44,12 @@ pub enum TraceError {
         /// Number of values in the first channel.
         expected: usize,
     },
-    /// The file is no Parquet file.
+    /// The file is not a Parquet file.
     #[error("`{}` is not a Parquet file: {}", .path.display(), with_short_quotes(.reason))]
     NotParquet {
         /// The file.
         path: PathBuf,
-        /// What the decoder missed.
+        /// Reason of the decoder.
         reason: String,
     },
     /// A Parquet file, but not one of ours, or not all of it.
@@ -57,7 +57,7 @@ pub enum TraceError {
     Missing {
         /// The file.
         path: PathBuf,
-        /// What is missing: a metadata key or a column.
+        /// The missing part: a metadata key or a column.
         missing: String,
     },
     /// Written by another version.
@@ -76,17 +76,17 @@ pub enum TraceError {
         /// Format that this build reads and writes.
         known: &'static str,
     },
-    /// The file's content is not what was written.
+    /// The file's content is not as it was written.
     #[error("`{}` is damaged or was edited: {reason}; write it again by running its scenario", .path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The mistake, in words.
         reason: String,
     },
 }
 
-/// How a format that is not read stands to those that are.
+/// Age of an unknown format relative to those that are read.
 fn age(found: &str, former: &str) -> &'static str {
     match (found.parse::<u32>(), former.parse::<u32>()) {
         (Ok(found), Ok(former)) if found < former => "older",

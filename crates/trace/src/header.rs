@@ -1,9 +1,9 @@
-//! What a recording file says of itself: the file's key-value metadata.
+//! Key-value metadata of a recording file.
 //!
 //! | key | value |
 //! |---|---|
 //! | `servobench.format` | version of this layout, [`FORMAT`] |
-//! | `servobench.recording` | JSON: all of a [`Recording`] but the values |
+//! | `servobench.recording` | JSON: all of a [`Recording`] except the values |
 //! | `ARROW:schema` | unit, writer and rate of each column for readers of Apache Arrow, see [`arrow`](crate::arrow) |
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
@@ -15,7 +15,7 @@ use servobench_base::Rate;
 
 /// Version of the layout.
 pub(crate) const FORMAT: &str = "3";
-/// The version before, which is read too: it has neither calls, nor how moves end.
+/// The version before, which is read too: it has neither calls, nor endings of moves.
 pub(crate) const FORMER_FORMAT: &str = "2";
 /// Key of the version.
 pub(crate) const FORMAT_KEY: &str = "servobench.format";
@@ -30,7 +30,7 @@ pub(crate) struct Header {
     engine: String,
     axis_unit: String,
     bodies: Vec<String>,
-    /// Left out where every key of the scenario has the value of its file.
+    /// Left out if every key of the scenario has the value of its file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     overrides: Vec<String>,
     /// Rate of the recorded instants (Hz).
@@ -41,16 +41,16 @@ pub(crate) struct Header {
     moves: Vec<Move>,
     events: Vec<Event>,
     signals: Vec<Signal>,
-    /// Left out where no function block is called.
+    /// Left out if no function block is called.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     calls: Vec<Call>,
-    /// Left out where no quantity went from limit to limit.
+    /// Left out if no quantity alternated between limits.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     limit_reversals: Vec<LimitReversals>,
-    /// Left out where the log is empty.
+    /// Left out if the log is empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<LogEntry>,
-    /// Left out where nothing is coupled.
+    /// Left out if nothing is coupled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coupling: Option<CouplingEstimate>,
 }

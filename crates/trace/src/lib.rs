@@ -1,5 +1,5 @@
-//! `Recording`: what a run leaves behind. Channels with unit, rate and writer, all sampled at one rate; the moves that
-//! were made; the events that happened; the signals that have one value out of a few; what the parts said of themselves. As a file it
+//! `Recording`: the result of a run. Channels with unit, rate and writer, all sampled at one rate; the executed
+//! moves; events; signals that have one value out of a few; log messages of the parts. As a file it
 //! is Parquet, which every data tool opens.
 //!
 //! A row is written at tick k **before** the integration to k+1, so all its values belong to the same instant.

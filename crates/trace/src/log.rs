@@ -1,4 +1,4 @@
-//! What the parts of a run say of themselves, kept within limits: a line that is said at every step would fill the memory.
+//! Log messages of the parts of a run, kept within limits: a line repeated at every step would fill the memory.
 use crate::number;
 use serde::{Deserialize, Serialize};
 use servobench_base::Severity;
@@ -8,35 +8,35 @@ use std::collections::{BTreeMap, VecDeque};
 const FIRST: usize = 300;
 /// Lines of one source that are kept from the end.
 const LAST: usize = 300;
-/// How often a line is kept as it is said; after that it is counted.
+/// Number of times that a repeated line is kept; after that it is counted.
 const SINGLE: u64 = 10;
-/// Different lines of one source that are counted.
+/// Number of different lines of one source that are counted.
 const DIFFERENT: usize = 1_000;
 /// Bytes of a line that are kept.
 const LONGEST: usize = 2_000;
 
-/// What a part of a run said, in its own words: a line, or how often it was said again.
+/// A log message of a part of a run, in its own words: a line, or a count of its repetitions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogEntry {
-    /// Who said it: `FMU load`.
+    /// Its source: `FMU load`.
     pub source: String,
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
-    /// When it was said (s), for the first time if it was more than once.
+    /// Time of the message (s), or of the first of several.
     #[serde(with = "number")]
     pub start: f64,
-    /// When it was said for the last time (s).
+    /// Time of the last one (s).
     #[serde(with = "number")]
     pub end: f64,
-    /// How often it was said between `start` and `end`.
+    /// Number of messages between `start` and `end`.
     pub times: u64,
     /// The line.
     pub text: String,
 }
 
 impl LogEntry {
-    /// The line with how often it was said, if it was more than once.
+    /// The line with its count, if there are several.
     #[must_use]
     pub fn words(&self) -> String {
         let Self { end, times, text, .. } = self;
@@ -44,23 +44,23 @@ impl LogEntry {
     }
 }
 
-/// What one source says.
+/// Messages of one source.
 #[derive(Debug, Default)]
 struct Voice {
     first: Vec<LogEntry>,
     last: VecDeque<LogEntry>,
-    /// What was between the first lines and the last ones.
+    /// Count of the lines between the first and the last ones.
     between: Option<LogEntry>,
-    /// How often each line was said; from [`SINGLE`] on with what is counted.
+    /// Count of each line; from [`SINGLE`] on with the counted entry.
     said: BTreeMap<(Severity, String), (u64, Option<LogEntry>)>,
 }
 
-/// What all sources say, in the order in which they were heard first.
+/// Messages of all sources, in the order of their first message.
 #[derive(Debug, Default)]
 pub(crate) struct Log(Vec<(String, Voice)>);
 
 impl Log {
-    /// Takes a line, without the blanks that it ends with, unless there is nothing else.
+    /// Takes a line, without trailing blanks; an empty one is dropped.
     pub(crate) fn note(&mut self, source: &str, severity: Severity, time: f64, text: &str) {
         let text = clipped(text.trim_end());
         if text.is_empty() {
@@ -116,7 +116,7 @@ impl Voice {
     }
 }
 
-/// Adds `entry` to those that are only counted.
+/// Adds `entry` to the counted ones.
 fn count(counted: &mut Option<LogEntry>, entry: LogEntry) {
     match counted {
         Some(counted) => {
@@ -147,7 +147,7 @@ mod tests {
         LogEntry { source: WHO.into(), severity, start, end, times, text: text.into() }
     }
 
-    /// Two lines that are said in turn do not hide a third.
+    /// Two lines in turn do not hide a third.
     #[test]
     fn a_line_that_is_said_again_and_again_is_counted() {
         let mut log = Log::default();

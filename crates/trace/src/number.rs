@@ -1,4 +1,4 @@
-//! Numbers in JSON, which has no word for infinity: `"inf"`, `"-inf"` and `"NaN"` are written as strings.
+//! Numbers in JSON, which cannot express infinity: `"inf"`, `"-inf"` and `"NaN"` are written as strings.
 //!
 //! For fields as `#[serde(with = "crate::number")]`: a number, or numbers in tuples, arrays, lists and options.
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -19,7 +19,7 @@ pub(crate) fn deserialize<'de, T: InJson, D: Deserializer<'de>>(deserializer: D)
     T::Json::deserialize(deserializer).map(T::from_json)
 }
 
-/// What has a form that JSON can hold.
+/// Values with a form that JSON can hold.
 pub(crate) trait InJson {
     /// The form.
     type Json: Serialize + for<'de> Deserialize<'de>;

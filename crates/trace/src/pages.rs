@@ -1,31 +1,31 @@
-//! What the pages of a column are, from their headers: so many values as the file promises, each with its eight bytes.
+//! Checks of the pages of a column, from their headers: as many values as the file promises, each with its eight bytes.
 //!
-//! A page of a foreign file may stand for a thousand million values by a few bytes (a dictionary and one run), or say any size of what
-//! it unpacks to; the decoder believes it. What is written here has neither: each page has its own values, and a bounded size. That is
-//! looked at before anything is decoded, so that nothing is allocated that the file does not hold.
+//! A page of a foreign file may stand for a thousand million values by a few bytes (a dictionary and one run), or claim any unpacked
+//! size; the decoder trusts it. Our writer makes neither: each page has its own values, and a bounded size. That is
+//! checked before anything is decoded, so that nothing is allocated that the file does not hold.
 //!
 //! Source: Apache Parquet, *File Format*, `PageHeader` in `parquet.thrift`; Apache Thrift, *Thrift Compact protocol encoding*.
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
-/// Bytes of the header of a page at most: without statistics it has some thirty.
+/// Maximum size of a page header (bytes): without statistics it has some thirty.
 const LONGEST_HEADER: usize = 1024;
-/// Bytes that a page unpacks to at most; the writer ends one at 20 480 values.
+/// Maximum unpacked size of a page (bytes); the writer ends one at 20 480 values.
 const LARGEST_PAGE: u64 = 8 << 20;
 /// Type of a page with values, first version.
 const DATA_PAGE: i64 = 0;
-/// Encoding in which the bytes of equal significance stand side by side.
+/// Encoding in which the bytes of equal significance are adjacent.
 const BYTE_STREAM_SPLIT: i64 = 9;
 const PLAIN: i64 = 0;
 
-/// Why pages are not decoded.
+/// Reason why pages are not decoded.
 pub(crate) type Refusal = String;
 
-/// Looks at the pages in `place`, those of one chunk of a column, which must have `values` values.
+/// Checks the pages in `place`, those of one chunk of a column, which must have `values` values.
 ///
 /// # Errors
-/// Those of the operating system; within, what is wrong.
+/// Those of the operating system; the inner error is the mistake in the pages.
 pub(crate) fn check(file: &mut File, place: Range<u64>, values: u64) -> io::Result<Result<(), Refusal>> {
     let (mut at, mut found) = (place.start, 0_u64);
     while at < place.end {
@@ -48,7 +48,7 @@ pub(crate) fn check(file: &mut File, place: Range<u64>, values: u64) -> io::Resu
     })
 }
 
-/// What the header of a page says.
+/// Header of a page.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Page {
     kind: i64,
@@ -77,7 +77,7 @@ impl Page {
         Some((page, reader.at))
     }
 
-    /// How many values it has.
+    /// Number of its values.
     fn values(self) -> Result<u64, Refusal> {
         let Self { kind, unpacked, packed, values, encoding } = self;
         let size = u64::try_from(unpacked).ok().filter(|size| *size <= LARGEST_PAGE);
@@ -109,7 +109,7 @@ const STRUCT: u8 = 12;
 /// Structs in structs: the header of a page has three.
 const DEEPEST: u32 = 8;
 
-/// Thrift's compact protocol, as much as it takes to find the end of a header.
+/// Reader of Thrift's compact protocol, as far as needed to find the end of a header.
 struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -140,7 +140,7 @@ impl Reader<'_> {
         Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
     }
 
-    /// Gives every field of a struct, by its number and kind, to `take`, which reads it.
+    /// Passes every field of a struct, by its number and kind, to `take`, which reads it.
     fn fields(&mut self, take: &mut dyn FnMut(i64, u8, &mut Self) -> Option<()>) -> Option<()> {
         let mut field = 0_i64;
         loop {
@@ -170,7 +170,7 @@ impl Reader<'_> {
             LIST | SET => {
                 let byte = self.byte()?;
                 let count = if byte >> 4 == 15 { self.unsigned()? } else { u64::from(byte >> 4) };
-                // Each element has a byte at least, but for those that are in the type already.
+                // Each element has a byte at least, except for those that the type contains already.
                 let element = if matches!(byte & 0x0f, TRUE | FALSE) { BYTE } else { byte & 0x0f };
                 (0..count).try_for_each(|_| self.skip(element, depth + 1))
             }
@@ -191,7 +191,7 @@ mod tests {
     use super::*;
     use std::io::Write as _;
 
-    /// A header as the compact protocol has it: type, sizes, and a data page header with levels by run lengths.
+    /// A header in the compact protocol: type, sizes, and a data page header with levels by run lengths.
     fn header(kind: u8, [unpacked, packed, values]: [i64; 3], encoding: u8) -> Vec<u8> {
         let integer = |value: i64| {
             let mut zigzag = ((value << 1) ^ (value >> 63)).cast_unsigned();

@@ -19,7 +19,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 impl Recording {
-    /// Reads what [`Recording::write_parquet`] wrote.
+    /// Reads a recording written by [`Recording::write_parquet`].
     ///
     /// The file's seal is checked before anything is decoded: a file that was damaged, cut or edited is refused, never
     /// half read.
@@ -30,7 +30,7 @@ impl Recording {
     pub fn read_parquet(path: impl AsRef<Path>) -> Result<Self, TraceError> {
         let path = path.as_ref();
         let io = |source| TraceError::Io { action: "read", path: path.into(), source };
-        // A recording has no bound but that of the disk: what is held of it in memory has.
+        // The size of a recording is limited only by the disk; the memory for it is limited.
         let mut file = servobench_files::open(path, u64::MAX).map_err(io)?;
         let seal = seal::holds(&mut file).map_err(io)?;
         if seal == Some(false) {
@@ -79,7 +79,7 @@ fn decode(mut file: File, path: &Path, is_sealed: bool) -> Result<Recording, Tra
     Ok(recording)
 }
 
-/// The header of a file that has our format.
+/// The header of a file in our format.
 fn header(metadata: &FileMetaData, path: &Path) -> Result<Header, TraceError> {
     let text = |key: &str| {
         let pairs = metadata.key_value_metadata().into_iter().flatten();
@@ -119,7 +119,7 @@ fn column(schema: &SchemaDescriptor, name: &str, path: &Path) -> Result<usize, T
     })
 }
 
-/// Whether the pages of a column hold `instants` values, which is looked at before they are decoded.
+/// True if the pages of a column hold `instants` values, checked before they are decoded.
 fn holds(
     file: &mut File,
     metadata: &ParquetMetaData,
@@ -146,9 +146,9 @@ fn holds(
     Ok(if rows == instants { Ok(()) } else { Err(format!("it has {rows} values, {instants} were written")) })
 }
 
-/// All values of a column that has `instants` of them.
+/// All values of a column, which has `instants` of them.
 fn values(reader: &SerializedFileReader<File>, column: usize, instants: usize) -> Result<Values, ParquetError> {
-    // A file that was edited may promise any number: what is reserved is what the writer puts into one row group.
+    // An edited file may promise any number: room is reserved for one row group of the writer.
     let (mut values, mut of_group) = (GrowingValues::with_room(instants.min(ROW_GROUP)), Vec::new());
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;

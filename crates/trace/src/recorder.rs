@@ -6,14 +6,14 @@ use crate::values::{GrowingValues, Values};
 use servobench_base::{Rate, Severity};
 use std::io;
 
-/// Rows that are collected before they go to the channels: a block stays in the first cache, in which columns of 9 lines
-/// share no place, as columns of 8 would.
+/// Rows that are collected before they are moved to the channels: a block stays in the first-level cache, in which columns of 9 lines
+/// do not collide, as columns of 8 would.
 pub const BLOCK: usize = 72;
 
 /// Values of one column in the rows of a block.
 pub type Column = [f64; BLOCK];
 
-/// A row that is to be filled in.
+/// A row to be filled in.
 #[derive(Debug)]
 pub struct Row<'a> {
     columns: &'a mut [Column],
@@ -24,7 +24,7 @@ impl<'a> Row<'a> {
     /// The columns of the block, and the place of this row in each of them.
     ///
     /// # Panics
-    /// When there are not `N` columns: whoever writes the row is wrong.
+    /// When there are not `N` columns: a bug in the writer of the row.
     #[inline]
     #[must_use]
     pub fn of_columns<const N: usize>(self) -> (&'a mut [Column; N], usize) {
@@ -36,7 +36,7 @@ impl<'a> Row<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SignalId(usize);
 
-/// How far a recording has come, to go back to.
+/// Position in a recording, for going back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
     rows: usize,
@@ -49,14 +49,14 @@ pub struct Mark {
 #[derive(Debug)]
 pub struct Recorder {
     recording: Recording,
-    /// Columns of a block, of which the first `rows` rows are there.
+    /// Columns of a block, of which the first `rows` rows are filled.
     block: Vec<Column>,
     rows: usize,
     /// The values of each channel.
     values: Vec<GrowingValues>,
     /// The column of each channel.
     columns: Vec<usize>,
-    /// Why no more rows are kept.
+    /// Reason why no more rows are kept.
     failure: Option<io::Error>,
     log: Log,
     is_silent: bool,
@@ -84,7 +84,7 @@ impl Recorder {
         Self { block: vec![[0.0; BLOCK]; width], columns, ..self }
     }
 
-    /// Leaves out the channels that are not `wanted`, before the first row.
+    /// Drops the channels that are not `wanted`, before the first row.
     pub fn retain(&mut self, wanted: impl Fn(&ChannelSpec) -> bool) {
         let of_channels = std::mem::take(&mut self.values).into_iter().zip(std::mem::take(&mut self.columns));
         let of_channels = of_channels.zip(&self.recording.channels).filter(|(_, channel)| wanted(&channel.spec));
@@ -92,13 +92,13 @@ impl Recorder {
         self.recording.channels.retain(|channel| wanted(&channel.spec));
     }
 
-    /// A recorder that keeps nothing, for a loop that nobody records and that may go on for ever.
+    /// A recorder that keeps nothing, for a loop without a recording that may run for ever.
     #[must_use]
     pub fn silent(about: About, rate: Rate) -> Self {
         Self { is_silent: true, ..Self::new(about, rate, vec![], 0) }
     }
 
-    /// False where nothing is kept.
+    /// False if nothing is kept.
     #[must_use]
     pub const fn keeps(&self) -> bool {
         !self.is_silent
@@ -107,7 +107,7 @@ impl Recorder {
     /// Appends a row.
     ///
     /// # Panics
-    /// When `row` is not as long as the recorder's rows: the loop that writes it is wrong.
+    /// When `row` is not as long as the recorder's rows: a bug in the loop that writes it.
     pub fn push(&mut self, row: &[f64]) {
         self.push_with(|Row { columns, at }| {
             assert_eq!(columns.len(), row.len(), "the row of this recorder has another width");
@@ -117,7 +117,7 @@ impl Recorder {
         });
     }
 
-    /// Appends the row that `write` fills in where it is kept.
+    /// Appends the row that `write` fills in, if it is kept.
     #[inline]
     pub fn push_with(&mut self, write: impl FnOnce(Row<'_>)) {
         if self.is_silent {
@@ -140,13 +140,13 @@ impl Recorder {
         self.rows = 0;
     }
 
-    /// Why rows are not kept any more: the disk is full.
+    /// Reason why rows are no longer kept: the disk is full.
     #[must_use]
     pub const fn failure(&self) -> Option<&io::Error> {
         self.failure.as_ref()
     }
 
-    /// What the recording is of.
+    /// Description of the recorded run.
     #[must_use]
     pub const fn about(&self) -> &About {
         &self.recording.about
@@ -159,14 +159,14 @@ impl Recorder {
         }
     }
 
-    /// Notes what became of a call.
+    /// Notes the fate of a call.
     pub fn note_call(&mut self, call: Call) {
         if !self.is_silent {
             self.recording.calls.push(call);
         }
     }
 
-    /// Notes the limits between which a quantity went back and forth.
+    /// Notes the limits between which a quantity alternated.
     pub fn note_limit_reversals(&mut self, reversals: LimitReversals) {
         if !self.is_silent {
             self.recording.limit_reversals.push(reversals);
@@ -180,23 +180,23 @@ impl Recorder {
         }
     }
 
-    /// Notes what `source` said of itself at `time` (s). Of what it says again and again most is only counted.
+    /// Notes a log message of `source` at `time` (s). Frequent repetitions are only counted.
     pub fn note_said(&mut self, source: &str, severity: Severity, time: f64, text: &str) {
         if !self.is_silent {
             self.log.note(source, severity, time, text);
         }
     }
 
-    /// A signal that has no value yet.
+    /// Adds a signal, which has no value yet.
     pub fn add_signal(&mut self, source: &str, name: &str) -> SignalId {
         self.recording.signals.push(Signal { source: source.into(), name: name.into(), changes: Vec::new() });
         SignalId(self.recording.signals.len() - 1)
     }
 
-    /// Notes that a signal has `value` from `time` (s) on; nothing where it has it already.
+    /// Notes that a signal has `value` from `time` (s) on; nothing if it has it already.
     ///
     /// # Panics
-    /// When the signal is that of another recorder: the loop that notes it is wrong.
+    /// When the signal is that of another recorder: a bug in the loop that notes it.
     pub fn note_value(&mut self, SignalId(index): SignalId, time: f64, value: &str) {
         if self.is_silent {
             return;
@@ -207,14 +207,14 @@ impl Recorder {
         }
     }
 
-    /// Where the recording is at `time` (s), of which and after which nothing is noted yet.
+    /// Position of the recording at `time` (s), at and after which nothing is noted yet.
     #[must_use]
     pub fn mark(&self, time: f64) -> Mark {
         let rows = self.values.first().map_or(0, GrowingValues::len) + self.rows;
         Mark { rows, moves: self.recording.moves.len(), events: self.recording.events.len(), time }
     }
 
-    /// Forgets what has come since `mark`. What was said stays said.
+    /// Forgets everything since `mark`, except log messages.
     pub fn rewind(&mut self, mark: &Mark) {
         self.flush();
         for values in &mut self.values {
@@ -230,7 +230,7 @@ impl Recorder {
         }
     }
 
-    /// The recording, events in order of their start; and why it is not all, if it is not: it ends where rows could not be kept any more.
+    /// The recording, events in order of their start; and the reason if it is incomplete: it ends where rows could no longer be kept.
     #[must_use]
     pub fn finish(mut self) -> (Recording, Option<io::Error>) {
         self.flush();
@@ -245,7 +245,7 @@ impl Recorder {
     }
 }
 
-/// The values of all channels, as many of each as could be kept of all.
+/// The values of all channels, as many of each as could be kept of every one.
 fn together(mut all: Vec<GrowingValues>, failure: Option<io::Error>) -> (Vec<Values>, Option<io::Error>) {
     let written = all.iter_mut().map(GrowingValues::settle).fold(Ok(()), Result::and);
     let failure = failure.or(written.err());
@@ -307,7 +307,7 @@ mod tests {
         assert_eq!(recording.channels.len(), 2);
     }
 
-    /// Oracle: a recorder to which only what stays was said.
+    /// Oracle: a recorder that received only the values that stay.
     #[test]
     fn what_comes_after_a_mark_can_be_taken_back() {
         let recorder = || Recorder::new(about(), rate(), vec![spec("up"), spec("down")], 10);

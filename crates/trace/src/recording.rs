@@ -7,7 +7,7 @@ use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::{Ending, Rate, Tick};
 
-/// What a recording is of.
+/// Description of a recorded run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct About {
     /// Name of the scenario.
@@ -18,18 +18,18 @@ pub struct About {
     pub axis_unit: String,
     /// Names of the bodies, the motor first, the load last; one name when motor and load are one.
     pub bodies: Vec<String>,
-    /// Keys of the scenario that had another value than its file gives them, and the values: `setpoint.jerk=200 m/s3`.
+    /// Keys of the scenario with other values than in its file, and these values: `setpoint.jerk=200 m/s3`.
     pub overrides: Vec<String>,
 }
 
 impl About {
-    /// What was run, in words: `slide on exact with setpoint.jerk=200 m/s3`.
+    /// Title of the run, in words: `slide on exact with setpoint.jerk=200 m/s3`.
     #[must_use]
     pub fn title(&self) -> String {
         format!("{} on {}{}", self.scenario, self.engine, self.overridden())
     }
 
-    /// ` with setpoint.jerk=200 m/s3`; empty where every key has the value of the file.
+    /// ` with setpoint.jerk=200 m/s3`; empty if every key has the value of the file.
     #[must_use]
     pub fn overridden(&self) -> String {
         if self.overrides.is_empty() { String::new() } else { format!(" with {}", self.overrides.join(", ")) }
@@ -40,7 +40,7 @@ impl About {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Move {
-    /// What it is, in words: `move to 1 m, order 4`.
+    /// Description, in words: `move to 1 m, order 4`.
     pub label: String,
     /// Start of the profile (s).
     #[serde(with = "number")]
@@ -58,19 +58,19 @@ pub struct Move {
     /// in a jerk-limited profile, jerk too in an acceleration-limited one.
     #[serde(with = "number")]
     pub peaks: [f64; 4],
-    /// The limits it was planned with; `None` where the order has none.
+    /// The limits of its plan; `None` for those that its order lacks.
     #[serde(with = "number")]
     pub limits: [Option<f64>; 4],
     /// Start and length (s) of the part at constant velocity; length 0 without one.
     #[serde(with = "number")]
     pub cruise: (f64, f64),
-    /// How it ends.
+    /// Its ending.
     #[serde(default, skip_serializing_if = "is_at_rest")]
     pub ending: Ending,
 }
 
 impl Move {
-    /// The same, so much later (s).
+    /// The same move, later by `time` (s).
     #[must_use]
     pub fn later(self, time: f64) -> Self {
         let (begin, length) = self.cruise;
@@ -83,7 +83,7 @@ fn is_at_rest(ending: &Ending) -> bool {
     *ending == Ending::AtRest
 }
 
-/// A call of a function block, and what became of it.
+/// A call of a function block, and its fate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Call {
@@ -91,26 +91,26 @@ pub struct Call {
     pub name: String,
     /// Name of the block in the standard: `MC_MoveAbsolute`.
     pub block: String,
-    /// Whether the run may do without it: it is marked so, or waits in vain for an error or abortion of another call.
+    /// True if the run may do without it: it is marked so, or waits in vain for an error or abortion of another call.
     #[serde(default, rename = "optional", skip_serializing_if = "std::ops::Not::not")]
     pub is_optional: bool,
-    /// What became of it by the end of the run.
+    /// Its fate by the end of the run.
     pub fate: CallFate,
 }
 
-/// What became of a call by the end of the run.
+/// Fate of a call by the end of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CallFate {
-    /// It was never executed: what it waited for, in words.
+    /// Never executed; the awaited event, in words.
     NeverExecuted(String),
-    /// It was executed and came to what it is for, or another command took over from it.
+    /// Executed: it reached its purpose, or another command took over from it.
     Executed,
-    /// It was executed and did not come to its end by that of the run: why, in words.
+    /// Executed, but not finished by the end of the run: the reason, in words.
     Unfinished(String),
-    /// It ended in `Error`.
+    /// Ended in `Error`.
     Failed {
-        /// When (s).
+        /// Time (s).
         #[serde(with = "number")]
         time: f64,
         /// `ErrorID`.
@@ -120,18 +120,18 @@ pub enum CallFate {
     },
 }
 
-/// Error of the coupling with FMUs, estimated by the master from what was exchanged.
+/// Error of the coupling with FMUs, estimated by the master from the exchanged values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CouplingEstimate {
-    /// Error of an input within a step, as a part of what its signal does.
+    /// Error of an input within a step, relative to the change of its signal.
     #[serde(with = "number")]
     pub error: f64,
-    /// The connection where it is largest, as `from -> to`.
+    /// The connection with the largest error, as `from -> to`.
     pub connection: String,
 }
 
-/// How a limited quantity went from one of its limits to the other one and back: the mark of a loop that oscillates.
+/// Alternation of a limited quantity between its limits: the mark of a loop that oscillates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitReversals {
@@ -144,28 +144,28 @@ pub struct LimitReversals {
 }
 
 impl LimitReversals {
-    /// Times that are kept.
+    /// Maximum number of times that are kept.
     pub const MOST: usize = 10_000;
 }
 
-/// Something that happened, for the user to know.
+/// An event of interest to the user.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Event {
-    /// When it began (s).
+    /// Start (s).
     #[serde(with = "number")]
     pub start: f64,
-    /// When it ended (s); equal to `start` for an instant.
+    /// End (s); equal to `start` for an instant.
     #[serde(with = "number")]
     pub end: f64,
-    /// Stage of the loop that saw it.
+    /// Stage of the loop that detected it.
     pub source: String,
-    /// What it was, in words.
+    /// The event, in words.
     pub message: String,
-    /// The limit that bound from `start` to `end`, where that is what happened.
+    /// The limit that bound from `start` to `end`, if the event is that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<BoundLimit>,
-    /// The incident, where it is one that a scenario can expect.
+    /// The incident, if it is one that a scenario can expect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub incident: Option<IncidentMark>,
 }
@@ -176,10 +176,10 @@ pub struct Event {
 pub struct IncidentMark {
     /// Name in the list: `end_stop`.
     pub name: String,
-    /// Why it does no harm, where it does none: `in homing`.
+    /// Reason why it does no harm, if it does none: `in homing`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub excuse: Option<String>,
-    /// How many things it concerns, where they are counted: frames, cycles.
+    /// Number of things that it concerns, if they are counted: frames, cycles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
@@ -190,13 +190,13 @@ pub struct IncidentMark {
 pub struct BoundLimit {
     /// The limit: `effort limit`.
     pub name: String,
-    /// Whether it may have bound again, of which nothing is noted.
+    /// True if it may have bound again without being noted.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_last_noted: bool,
 }
 
 impl Event {
-    /// Something that happened from `start` to `end` (s).
+    /// An event from `start` to `end` (s).
     #[must_use]
     pub fn new(start: f64, end: f64, source: impl Into<String>, message: impl Into<String>) -> Self {
         Self { start, end, source: source.into(), message: message.into(), limit: None, incident: None }
@@ -216,22 +216,22 @@ impl Event {
         Self { limit, ..Self::new(start, end, source, format!("{name} binds{}", Self::noted(is_last_noted))) }
     }
 
-    /// What the message of the last event of its kind that is noted ends with.
+    /// End of the message of the last noted event of its kind.
     #[must_use]
     pub const fn noted(is_last: bool) -> &'static str {
         if is_last { "; later ones are not listed" } else { "" }
     }
 }
 
-/// Something that has one value out of a few and changes now and then: a state, an output of a function block.
+/// A signal that has one value out of a few and changes now and then: a state, an output of a function block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
-    /// Whose it is: `drive`, `axis`, the name of a function block.
+    /// Its source: `drive`, `axis`, the name of a function block.
     pub source: String,
-    /// What it is: `state`, `Done`.
+    /// Its name: `state`, `Done`.
     pub name: String,
-    /// Since when (s) it has which value, in order of time; no two neighbours are equal.
+    /// Start (s) of each value, in order of time; no two neighbours are equal.
     #[serde(with = "number")]
     pub changes: Vec<(f64, String)>,
 }
@@ -248,7 +248,7 @@ impl Signal {
 /// Channels of equal length, sampled together; moves; events; signals; calls; log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// What it is of.
+    /// Description of the run.
     pub about: About,
     /// Rate of the recorded instants; instant k is at k/rate.
     pub rate: Rate,
@@ -262,16 +262,16 @@ pub struct Recording {
     pub signals: Vec<Signal>,
     /// The calls of function blocks, in the order of the program.
     pub calls: Vec<Call>,
-    /// Limits between which a quantity went back and forth.
+    /// Limits between which a quantity alternated.
     pub limit_reversals: Vec<LimitReversals>,
-    /// What the parts of the run said of themselves, in order of time.
+    /// Log messages of the parts of the run, in order of time.
     pub log: Vec<LogEntry>,
-    /// Error of the coupling with FMUs; `None` where no continuous signal is exchanged with one.
+    /// Error of the coupling with FMUs; `None` if no continuous signal is exchanged with one.
     pub coupling: Option<CouplingEstimate>,
 }
 
 impl Recording {
-    /// Nothing yet.
+    /// An empty recording.
     #[must_use]
     pub const fn new(about: About, rate: Rate) -> Self {
         Self {
@@ -288,7 +288,7 @@ impl Recording {
         }
     }
 
-    /// Values of the channel `name`. Memory is given back that was taken to look at others, [`release`](Self::release).
+    /// Values of the channel `name`. [`release`](Self::release) frees memory that was taken to read others.
     #[must_use]
     pub fn channel(&self, name: impl AsRef<str>) -> Option<&[f64]> {
         let name = name.as_ref();
@@ -296,7 +296,7 @@ impl Recording {
         self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| &*channel.values)
     }
 
-    /// Gives memory back that was taken to look at channels which are in files, [`Values::release`].
+    /// Frees memory that was taken to read channels which are in files, [`Values::release`].
     pub fn release(&self) {
         for channel in &self.channels {
             channel.values.release();
@@ -315,7 +315,7 @@ impl Recording {
         self.channels.first().map_or(0, |channel| channel.values.len())
     }
 
-    /// Whether nothing was recorded.
+    /// True if nothing was recorded.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -1,4 +1,4 @@
-//! A digest over a whole file, stored in the file: damage is found before any decoder sees it.
+//! A digest of a whole file, stored in the file: damage is found before any decoder sees it.
 //!
 //! The seal is the XXH64 (seed 0) of all bytes of the file, its own 16 hexadecimal digits counted as zeros. It is the
 //! value of a key in the Parquet footer. There the key's text is followed by the two bytes that start the value in
@@ -15,14 +15,14 @@ use twox_hash::XxHash64;
 pub(crate) const KEY: &str = "servobench.seal";
 /// Number of digits.
 const DIGITS: usize = 16;
-/// Bytes of a footer at most: what it holds besides the columns are signals, events and what FMUs said, in some ten million words.
+/// Maximum size of a footer (bytes): besides the columns it holds signals, events and log messages, in some ten million words.
 const LONGEST_FOOTER: u64 = 128 << 20;
-/// What stands in the place of the digits until the file is whole.
+/// Placeholder of the digits until the file is whole.
 pub(crate) const BLANK: &str = "0000000000000000";
-/// How a value of 16 bytes starts, after its key.
+/// Beginning of a value of 16 bytes, after its key.
 const VALUE_START: [u8; 2] = [0x18, 0x10];
 
-/// Hashes what passes through it on its way to a file that is to be sealed, so that nobody has to read it again.
+/// Hashes the bytes on their way to a file to be sealed, so that it need not be read again.
 pub(crate) struct Hashed<W> {
     sink: W,
     hash: XxHash64,
@@ -51,7 +51,7 @@ impl<W: Write> Write for Hashed<W> {
     }
 }
 
-/// Seals the file: writes the digits of all its bytes over the blank. Returns whether there was a place for them.
+/// Seals the file: writes the digits of all its bytes over the blank. Returns true if there was a place for them.
 pub(crate) fn apply(file: &mut (impl Read + Write + Seek), digits: &str) -> io::Result<bool> {
     let Some((start, _)) = find(file)? else { return Ok(false) };
     file.seek(SeekFrom::Start(start))?;
@@ -59,8 +59,8 @@ pub(crate) fn apply(file: &mut (impl Read + Write + Seek), digits: &str) -> io::
     Ok(true)
 }
 
-/// The seal in the file at `path`, as 16 hexadecimal digits: it names the bytes of a recording as a hash of them does. Whether they are
-/// still those that were sealed is looked at when the recording is read. `None` when there is none.
+/// The seal in the file at `path`, as 16 hexadecimal digits: it identifies the bytes of a recording as a hash of them does. Reading the
+/// recording checks that they are still those that were sealed. `None` without a seal.
 ///
 /// # Errors
 /// Those of the operating system.
@@ -82,7 +82,7 @@ fn open(path: &Path) -> io::Result<File> {
     servobench_files::open(path, u64::MAX)
 }
 
-/// Whether the bytes of the file are those that were sealed; `None` when it has no seal.
+/// True if the bytes of the file are those that were sealed; `None` when it has no seal.
 pub(crate) fn holds(file: &mut (impl Read + Seek)) -> io::Result<Option<bool>> {
     let Some((start, digits)) = find(file)? else { return Ok(None) };
     Ok(Some(digest(file, start)?.as_bytes() == digits))
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    /// A file as short as can be: four bytes, a footer with the blank seal, the footer's length and `PAR1`.
+    /// The shortest possible file: four bytes, a footer with the blank seal, the footer's length and `PAR1`.
     fn unsealed() -> Cursor<Vec<u8>> {
         let footer = [&b"xy"[..], KEY.as_bytes(), &VALUE_START, BLANK.as_bytes(), b"z"].concat();
         let len = u32::try_from(footer.len()).unwrap().to_le_bytes();

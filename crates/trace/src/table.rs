@@ -1,6 +1,6 @@
 //! A table with a unit for each column, as a file that every data tool opens: CSV, and Parquet with the units in its metadata.
 //!
-//! Rows are asked for when they are written: a table of a million of them takes no memory.
+//! Rows are computed while they are written: a table of a million of them takes no memory.
 use crate::arrow;
 use arrow_schema::DataType;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType, ZstdLevel};
@@ -21,9 +21,9 @@ const ROW_GROUP: usize = 1 << 16;
 /// Key of the units in the file's metadata: a JSON object from the name of a column to its unit.
 const UNITS_KEY: &str = "servobench:units";
 
-/// A table whose rows are asked for one after the other.
+/// A table whose rows are computed one after the other.
 pub struct Table<'a> {
-    /// How many rows it has.
+    /// Number of rows.
     pub rows: usize,
     /// Its columns; no two have the same name.
     pub columns: Vec<TableColumn<'a>>,
@@ -35,21 +35,21 @@ pub struct TableColumn<'a> {
     pub name: String,
     /// The unit of its numbers; empty of pure numbers and of texts.
     pub unit: String,
-    /// What is in a row.
+    /// Content of its rows.
     pub cells: Cells<'a>,
 }
 
-/// What is in a row of a column, by the number of the row from 0.
+/// Content of a row of a column, by the number of the row from 0.
 pub enum Cells<'a> {
-    /// A number; none where it is not one (NaN).
+    /// A number; missing if it is NaN.
     Numbers(Box<dyn Fn(usize) -> f64 + 'a>),
     /// A text.
     Texts(Box<dyn Fn(usize) -> Cow<'a, str> + 'a>),
 }
 
 impl Table<'_> {
-    /// As CSV (RFC 4180): a heading with the unit of a column in brackets behind its name, `setpoint.jerk [m/s3]`; numbers in the shortest
-    /// form that reads back to the same bits; nothing where there is no number.
+    /// Writes CSV (RFC 4180): a heading with the unit of a column in brackets behind its name, `setpoint.jerk [m/s3]`;
+    /// numbers in the shortest form that reads back to the same bits; missing numbers are empty.
     ///
     /// # Errors
     /// Those of `out`.
@@ -82,11 +82,11 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// As Parquet: a missing number is null. Readers of Apache Arrow find the unit in the metadata of a field, others in the file's
+    /// Writes Parquet: a missing number is null. Readers of Apache Arrow find the unit in the metadata of a field, others in the file's
     /// key-value metadata under `servobench:units`.
     ///
     /// # Errors
-    /// Those of `out`, and what the format does not take.
+    /// Those of `out`, and values that the format does not accept.
     pub fn write_parquet(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         self.encode(out).map_err(|error| match error {
             ParquetError::External(cause) => match cause.downcast::<io::Error>() {

@@ -1,4 +1,4 @@
-//! The values of a channel. Many of them do not stay in memory: a run of ten minutes has two gigabytes.
+//! The values of a channel, which move from memory to disk if there are many: a run of ten minutes has two gigabytes.
 //!
 //! What is more than [`IN_MEMORY`] goes to a file, block by block, and when all is there the file is mapped: what nobody looks at takes no
 //! memory, and the system takes back what was looked at and [`released`](Values::release). The file has no name. It is gone when the
@@ -10,13 +10,13 @@ use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Values of a channel that stay in memory, at most: 4 MiB, half a minute at 16 kHz.
+/// Maximum number of values of a channel in memory: 4 MiB, half a minute at 16 kHz.
 pub const IN_MEMORY: usize = 1 << 19;
 /// Values that are collected before they go to the file.
 const BLOCK: usize = 1 << 15;
 const WIDTH: u64 = size_of::<f64>() as u64;
 
-/// The values of a channel, one per recorded instant. It is a slice of them, wherever they are.
+/// The values of a channel, one per recorded instant: a slice, in memory or in a file.
 #[derive(Clone)]
 pub struct Values(Place);
 
@@ -27,13 +27,13 @@ enum Place {
 }
 
 impl Values {
-    /// Whether they are in a file.
+    /// True if they are in a file.
     #[must_use]
     pub const fn are_in_a_file(&self) -> bool {
         matches!(self.0, Place::File(_))
     }
 
-    /// The values to change, all of them in memory.
+    /// The values for changes, all of them in memory.
     pub fn to_mut(&mut self) -> &mut Vec<f64> {
         if let Place::File(_) = &self.0 {
             self.0 = Place::Memory(self.to_vec());
@@ -44,7 +44,7 @@ impl Values {
         }
     }
 
-    /// Gives memory back that was taken to look at the values of a file. They can be looked at again; nothing is lost.
+    /// Frees the memory of values of a file that were read. They can be read again; nothing is lost.
     pub fn release(&self) {
         if let Place::File(map) = &self.0 {
             map.release();
@@ -102,12 +102,12 @@ impl Debug for Values {
     }
 }
 
-/// [`Values`] that are not all there yet.
+/// [`Values`] that are still growing.
 #[derive(Debug)]
 pub struct GrowingValues {
-    /// The last ones.
+    /// The last values.
     tail: Vec<f64>,
-    /// How many of them there are before they go to the file.
+    /// Maximum number of them before they go to the file.
     most: usize,
     /// Those before the tail, `written` of them.
     file: Option<UnnamedFile>,
@@ -115,20 +115,20 @@ pub struct GrowingValues {
 }
 
 impl GrowingValues {
-    /// None yet, with room for `count`; more work.
+    /// Empty, with room for `count`; more is possible.
     #[must_use]
     pub fn with_room(count: usize) -> Self {
         let most = if count > IN_MEMORY { BLOCK } else { IN_MEMORY };
         Self { tail: Vec::with_capacity(count.min(most)), most, file: None, written: 0 }
     }
 
-    /// How many there are.
+    /// Number of values.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.written + self.tail.len()
     }
 
-    /// Whether there are none.
+    /// True without values.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
@@ -137,7 +137,7 @@ impl GrowingValues {
     /// Appends `values`.
     ///
     /// # Errors
-    /// Those of the file: the disk is full. Then what had not come to the file yet is lost.
+    /// Those of the file: the disk is full. Then values that had not reached the file are lost.
     #[inline]
     pub fn extend(&mut self, values: &[f64]) -> io::Result<()> {
         self.tail.extend_from_slice(values);
@@ -159,13 +159,13 @@ impl GrowingValues {
         }
     }
 
-    /// Drops what is there from `count` on.
+    /// Drops the values from `count` on.
     pub fn truncate(&mut self, count: usize) {
         self.tail.truncate(count.saturating_sub(self.written));
         self.written = self.written.min(count);
     }
 
-    /// Brings all of them to the file, if there is one.
+    /// Writes all of them to the file, if there is one.
     ///
     /// # Errors
     /// As [`extend`](Self::extend).
@@ -202,7 +202,7 @@ impl GrowingValues {
         written.map_err(named)
     }
 
-    /// All of them.
+    /// All values.
     ///
     /// # Errors
     /// Those of the file.
@@ -227,7 +227,7 @@ fn folder() -> PathBuf {
 mod tests {
     use super::*;
 
-    /// Off the grid of blocks.
+    /// Not a multiple of a block.
     const PORTION: usize = 1009;
 
     fn grown(room: usize, count: usize) -> GrowingValues {
@@ -245,7 +245,7 @@ mod tests {
             && values.iter().enumerate().all(|(k, value)| value.to_bits() == (k as f64 + 0.25).to_bits())
     }
 
-    /// With the room that is needed, with too little, and with too much.
+    /// With the required room, with too little, and with too much.
     #[test]
     fn few_stay_in_memory_and_many_go_to_a_file() {
         for (room, count, in_a_file) in [

@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Files that are complete or absent.
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes the file `path`, whole or not at all: `bytes` go to a file of another name beside it, which then takes its
-/// place. Several writers of one path, in one process or in many, do not disturb each other; the last one stays.
+/// Writes the file `path`, completely or not at all: `bytes` go to a file of another name beside it, which then replaces
+/// it. Several writers of one path, in one process or in many, do not disturb each other; the last one stays.
 ///
 /// # Errors
-/// Those of the operating system. An older file of that name is then as it was, and nothing is left beside it.
+/// Those of the operating system. An older file of that name is then unchanged, and nothing is left beside it.
 pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     stream_whole(path, |file| file.write_all(bytes.as_ref()))
 }
 
-/// Writes what `write` gives out, whole or not at all, as [`write_whole`] does it: for files larger than memory.
+/// Writes the output of `write`, completely or not at all, as [`write_whole`]: for files larger than memory.
 ///
 /// # Errors
 /// Those of `write` and of the operating system, as in [`write_whole`].
@@ -26,8 +26,8 @@ pub fn stream_whole<E: From<io::Error>>(
     Ok(streamed(path.as_ref(), write)?.finish()?)
 }
 
-/// The same, and makes sure that the bytes are on the disk before they take the place of what was there, and that their name is
-/// before it returns: the end of the machine leaves the one or the other.
+/// The same, and syncs the bytes to disk before they replace the old file, and their name before it returns: a power failure
+/// leaves either the old file or the new one.
 ///
 /// # Errors
 /// As [`stream_whole`].
@@ -40,7 +40,7 @@ pub fn stream_durably<E: From<io::Error>>(
     unfinished.file.sync_all()?;
     unfinished.finish()?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    // A folder that cannot be opened or made sure of holds the file all the same.
+    // A folder that cannot be opened or synced still holds the file.
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
     Ok(())
 }
@@ -82,7 +82,7 @@ impl Unfinished {
         }
     }
 
-    /// Puts the file in its place.
+    /// Moves the file to its place.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         fs::rename(&self.path, &self.target)?;
         self.is_finished = true;
@@ -114,8 +114,7 @@ impl PassingFile {
 /// Bytes of the target's name in that of its file on the way: with what is added it has to fit into the 255 of most file systems.
 const LONGEST: usize = 200;
 
-/// A name beside `target` that no other writer uses: unique within the process by the number, across them by its id.
-/// The process that was writing the file called `name` when it ended, if that is one which is not whole.
+/// Id of the process that was writing the unfinished file called `name`; `None` for any other name.
 #[must_use]
 pub fn unfinished_by(name: &str) -> Option<u32> {
     let (_, number) = name.strip_prefix('.')?.strip_suffix(".partial")?.rsplit_once('.')?;
@@ -124,6 +123,7 @@ pub fn unfinished_by(name: &str) -> Option<u32> {
     process.parse().ok()
 }
 
+/// A name beside `target` that no other writer uses: unique within the process by the number, across processes by their ids.
 fn partial_path(target: &Path, number: u64) -> PathBuf {
     let mut name = OsString::from(".");
     let whole = target.file_name().unwrap_or_default();
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(names(folder.path()), ["taken"]);
     }
 
-    /// A name may be as long as the file system takes it.
+    /// A name may be as long as the file system permits.
     #[test]
     fn the_longest_name_is_written() {
         let folder = tempfile::tempdir().unwrap();
@@ -225,7 +225,7 @@ mod tests {
         }
     }
 
-    /// What killed processes of the same id left does not matter.
+    /// Files left by killed processes of the same id do not matter.
     #[test]
     fn names_that_are_taken_are_passed_over() {
         let folder = tempfile::tempdir().unwrap();
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(names(folder.path()).len(), 1001);
     }
 
-    /// Whoever reads finds one of the texts, never a mixture and never a part.
+    /// A reader finds one of the texts, never a mixture and never a part.
     #[test]
     fn writers_of_one_path_do_not_disturb_each_other() {
         let folder = tempfile::tempdir().unwrap();

@@ -17,9 +17,9 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Instants per row group: what a reader such as `DuckDB` hands to one thread, and 1 MiB per column.
+/// Instants per row group: the unit that a reader such as `DuckDB` gives to one thread, and 1 MiB per column.
 pub(crate) const ROW_GROUP: usize = 1 << 17;
-/// What a Parquet file begins with.
+/// Beginning of a Parquet file.
 const MAGIC: &[u8] = b"PAR1";
 /// Version of the format: pages of the first kind.
 const VERSION: i32 = 1;
@@ -27,14 +27,14 @@ const VERSION: i32 = 1;
 impl Recording {
     /// Writes the recording as a Parquet file: the column `time` (s), one column per channel (SI, f64), and in the
     /// file's key-value metadata all the rest; readers of Apache Arrow find unit, writer and rate of a column in the
-    /// metadata of its field. Nothing is lost: [`Recording::read_parquet`] gives back every bit.
+    /// metadata of its field. Nothing is lost: [`Recording::read_parquet`] returns every bit.
     ///
-    /// The same recording gives the same bytes. The file appears when it is whole, as [`write_whole`](crate::write_whole)
-    /// does it.
+    /// The same recording gives the same bytes. The file appears when it is complete, as with
+    /// [`write_whole`](crate::write_whole).
     ///
     /// # Errors
     /// [`TraceError::NameTaken`] and [`TraceError::UnequalLength`] before anything is written; [`TraceError::Io`]
-    /// and [`TraceError::Encode`], which leave an older file of that name as it was.
+    /// and [`TraceError::Encode`], which leave an older file of that name unchanged.
     pub fn write_parquet(&self, path: impl AsRef<Path>) -> Result<(), TraceError> {
         let path = path.as_ref();
         let finish = |source| TraceError::Io { action: "put in its place", path: path.to_path_buf(), source };
@@ -88,7 +88,7 @@ impl Recording {
         Ok(())
     }
 
-    /// The file's bytes, not yet sealed, to `sink`, which is given back.
+    /// Writes the file's bytes, not yet sealed, to `sink`, and returns it.
     fn encode<W: Write>(&self, sink: W) -> ParquetResult<W> {
         let schema = Arc::new(SchemaDescriptor::new(self.schema()?));
         let mut pages = Pages::new(sink);
@@ -100,7 +100,7 @@ impl Recording {
             time.clear();
             time.extend(rows.clone().map(|index| self.time_of(index)));
             let place = pages.position();
-            // Somebody looks for a stretch of time, nobody for the rows in which a torque lies between two values.
+            // Readers select by time, not by the value of a channel.
             let range = [time.first(), time.last()].map(|time| time.copied().unwrap_or_default());
             let mut columns = vec![pages.add_column(&time, schema.column(0), Some(range))?];
             for (channel, index) in self.channels.iter().zip(1..) {
@@ -119,7 +119,7 @@ impl Recording {
         Ok(pages.finish()?)
     }
 
-    /// What stands behind the pages: schema, places, and in words all that is no channel.
+    /// The footer behind the pages: schema, places, and everything except the channels as text.
     fn footer(&self, schema: Arc<SchemaDescriptor>, groups: Vec<RowGroupMetaData>) -> ParquetResult<Vec<u8>> {
         let created_by = format!("servobench recording format {FORMAT}");
         let (rows, metadata) = (i64::try_from(self.len())?, Some(self.key_values()?));
@@ -187,7 +187,7 @@ mod tests {
         recording
     }
 
-    /// The file as the library's own writer makes it.
+    /// The file made by the library's own writer.
     fn by_the_library(recording: &Recording) -> Vec<u8> {
         let properties = WriterProperties::builder()
             .set_created_by(format!("servobench recording format {FORMAT}"))
@@ -218,7 +218,7 @@ mod tests {
         bytes
     }
 
-    /// What is said beside the channels may be longer than what is collected of them, wherever that ends.
+    /// The text beside the channels may be longer than the collected bytes, wherever these end.
     #[test]
     fn a_long_footer_is_written_whole() {
         for rows in (0..32_000).step_by(2_000) {
