@@ -43,7 +43,7 @@ fn errors(mode: &Mode, known: &Known) -> [f64; 3] {
     ]
 }
 
-/// What the fit promises on exact data: 1e-6 of the frequency, 1e-4 of the amplitude, 1e-5 in the damping ratio.
+/// Guarantee of the fit on exact data: 1e-6 of the frequency, 1e-4 of the amplitude, 1e-5 in the damping ratio.
 const PROMISE: [f64; 3] = [1e-6, 1e-4, 1e-5];
 
 #[track_caller]
@@ -98,7 +98,7 @@ fn of_two_modes_the_one_with_more_energy_is_reported() {
         let weak = Known { amplitude: 0.5e-6, frequency, damping, phase: 2.0 };
         let values = record(1.0, 16_000.0, 1.0, |t| strong.at(t) + weak.at(t));
         assert_promise(fit(&values, 1.0, 16_000.0, None), &strong);
-        // Asked for by its frequency, the weak one is found as well as the strong one, when no band holds both.
+        // With its frequency given, the weak one is found as well as the strong one, when no band holds both.
         if (frequency / strong.frequency - 1.0).abs() > 0.3 {
             assert_promise(fit(&values, 1.0, 16_000.0, Some(1.05 * frequency)), &weak);
         }
@@ -142,7 +142,7 @@ fn rest_and_drift_are_no_vibration() {
 }
 
 /// A fourfold pair of poles, t³·e^{−σt}·cos ωt: a sum of simple modes meets it only with modes thousands of times larger
-/// than what is seen, all but cancelling. None of them may be reported.
+/// than the visible motion, nearly cancelling. None of them may be reported.
 #[test]
 fn modes_that_cancel_are_not_reported() {
     let at = |t: f64| 1e-6 * (55.0 * t).powi(3) * (-55.0 * t).exp() * (126.0 * t).cos();
@@ -224,7 +224,7 @@ fn the_same_record_gives_the_same_bits() {
     assert_eq!(bits(one), bits(two));
 }
 
-/// Whatever the record holds, the answer is a reason or a mode of finite numbers.
+/// For any record, the answer is a reason or a mode of finite numbers.
 #[test]
 fn never_a_nan() {
     let mut random = Random::seeded(11);

@@ -1,14 +1,14 @@
-//! The modal fit over a range of decays with noise, steps of an encoder and short records; and what is no vibration.
+//! The modal fit over a range of decays with noise, steps of an encoder and short records; and motions without vibration.
 use core::f64::consts::PI;
 use servobench_metrics::{Mode, Signal, fit_mode};
 use servobench_testkit::Random;
 
-/// Of standard deviation 1, nearly normal: the sum of twelve.
+/// Nearly normal, of standard deviation 1: the sum of twelve.
 fn normal(random: &mut Random) -> f64 {
     (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
 }
 
-/// From 0 to 1 while its argument goes from 0 to 1.
+/// Path from 0 to 1 while its argument goes from 0 to 1.
 type Way = fn(f64) -> f64;
 
 /// Size of a sweep; larger by `SERVOBENCH_SWEEP=3000`.
@@ -44,8 +44,8 @@ impl Decay {
         self.amplitude * (-self.damping * self.omega() * t).exp() * (damped * t + self.phase).cos()
     }
 
-    /// Cramér–Rao bounds: the least standard deviations of frequency (relative) and damping ratio with which white noise of
-    /// standard deviation `noise` lets anybody find them, amplitude, phase and offset being unknown, too.
+    /// Cramér–Rao bounds: the smallest possible standard deviations of frequency (relative) and damping ratio under white noise of
+    /// standard deviation `noise`, with unknown amplitude, phase and offset.
     fn least_deviations(&self, noise: f64) -> [f64; 2] {
         let with = |change: fn(&mut Self)| {
             let mut other = *self;
@@ -113,7 +113,7 @@ fn fit(values: &[f64], rate: f64, resolution: f64) -> Result<Mode, servobench_me
 
 /// Decays of ζ from 0 to 0.1 in records of 2.5 to 60 periods, with noise of 1e-4 to 3 % of the amplitude: frequency and
 /// damping within ten times the Cramér–Rao bound. Three bounds are the normal scatter of so many cases; the rest is for
-/// least squares on overlapping means, which are not weighted, and for a tail that a short record may take along.
+/// least squares on overlapping means, which are not weighted, and for a tail that a short record may contain.
 #[test]
 fn noisy_decays_are_found_as_well_as_anybody_could() {
     let mut random = Random::seeded(5);
@@ -164,7 +164,7 @@ fn decays_in_steps_of_an_encoder() {
     }
 }
 
-/// A load that sticks, gives way once without coming back, and sticks again, whatever the way: no vibration. Without
+/// A load that sticks, gives way once without coming back, and sticks again, on any path: not a vibration. Without
 /// noise, as a simulated load sticks.
 #[test]
 fn creep_between_two_holds_is_no_mode() {

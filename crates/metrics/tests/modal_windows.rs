@@ -1,4 +1,4 @@
-//! The modal fit over windows of several lengths and starts: the mode is the axis's own, whatever part of its ringing is looked at.
+//! The modal fit over windows of several lengths and starts: the mode belongs to the axis, whatever part of its ringing is fitted.
 //!
 //! Linear axes with one dominant mode, a weaker one at least 25 % away, real poles of a loop, noise and counts of an encoder. Each record is
 //! measured from the end of the profile to its end, and over shorter windows that begin later or end earlier and show five periods.
@@ -10,13 +10,13 @@ use servobench_testkit::Random;
 const AXES: usize = 60;
 /// Windows of each.
 const WINDOWS: usize = 6;
-/// Windows for one that may differ: a fit of four components from a short piece ends beside the best one now and then, in 1 of 1000.
+/// Windows per permitted difference: a fit of four components from a short piece ends beside the best one sometimes, in 1 of 1000.
 const FOR_ONE: usize = 500;
-/// By how much a window may change the mode, beside what nobody asks for.
+/// Largest relative change of the mode by a window, beside the smallest vibration that matters.
 const SHARE: f64 = 0.01;
-/// Periods that a window shows.
+/// Periods in a window.
 const PERIODS: f64 = 5.0;
-/// A mode is visible until its envelope has fallen by so many powers of e, to 5 %.
+/// Powers of e by which the envelope falls while a mode is visible: to 5 %.
 const VISIBLE: f64 = 3.0;
 
 /// `amplitude·e^{−ζωt}·cos(ω_d·t + phase)`.
@@ -49,7 +49,7 @@ struct Axis {
     /// The largest swing that does not matter: a thousandth of a window, four increments, five standard deviations of the noise.
     least: f64,
     increment: f64,
-    /// True where its frequency is compared, too.
+    /// True if its frequency is compared, too.
     is_given: bool,
 }
 
@@ -75,7 +75,7 @@ impl Axis {
             phase: random.between(-PI, PI),
         };
         let is_given = random.once_in(2);
-        // Asked for by its frequency, a mode may be the smaller one later on; otherwise the weaker one dies sooner.
+        // With its frequency given, a mode may be the smaller one later on; otherwise the weaker one dies sooner.
         let sooner = if is_given { random.logarithmic(0.3, 3.0) } else { random.logarithmic(1.0, 3.0) };
         let beside = if random.once_in(2) { random.between(0.2, 0.7) } else { random.logarithmic(1.4, 5.0) };
         let damping = (sooner * dominant.damping / beside).min(0.3);
@@ -113,8 +113,8 @@ impl Axis {
         rows as f64 * self.step
     }
 
-    /// Periods that `window` shows: while the envelope is above 5 % of what it was at the end of the profile, and above what nobody
-    /// asks for.
+    /// Periods that `window` shows: while the envelope is above 5 % of its value at the end of the profile, and above the smallest
+    /// vibration that matters.
     fn visible(&self, window: Window) -> f64 {
         let height = (self.dominant.amplitude / self.least).ln().min(VISIBLE);
         let [from, to] = [window.from, window.to].map(|row| self.seconds(row));
@@ -122,7 +122,7 @@ impl Axis {
         (self.dominant.frequency * lasts).max(0.0)
     }
 
-    /// Envelope of the dominant mode where `window` begins.
+    /// Envelope of the dominant mode at the beginning of `window`.
     fn envelope(&self, window: Window) -> f64 {
         self.dominant.amplitude * (-self.dominant.decay() * self.seconds(window.from)).exp()
     }
@@ -138,7 +138,7 @@ impl Axis {
         fit_mode(&signal, self.is_given.then_some(self.dominant.frequency)).map_err(|why| why.to_string())
     }
 
-    /// Distance of the mode of `window` from that of the `whole`, in parts of what is granted: amplitude, frequency and envelope at the end.
+    /// Distance of the mode of `window` from that of the `whole`, relative to the tolerance: amplitude, frequency and envelope at the end.
     ///
     /// The swing that does not matter is a part of the envelope where the window begins.
     fn away(&self, window: Window, mode: &Mode, whole: &Mode) -> f64 {

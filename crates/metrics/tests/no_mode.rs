@@ -6,7 +6,7 @@ use servobench_testkit::Random;
 const RATE: f64 = 8000.0;
 /// Records of each kind; more by `SERVOBENCH_SWEEP=3000`.
 const CASES: usize = 125;
-/// A mode as near to the frequency of an oscillation without one damping ratio is its own.
+/// Largest distance at which a mode still stands for an oscillation with a frequency, but without a damping ratio.
 const NEAR: f64 = 0.05;
 /// Records in a hundred that may have a mode nevertheless.
 const WRONG: usize = 1;
@@ -15,7 +15,7 @@ fn cases() -> usize {
     std::env::var("SERVOBENCH_SWEEP").ok().and_then(|text| text.parse().ok()).unwrap_or(CASES)
 }
 
-/// Of standard deviation 1, nearly normal: the sum of twelve.
+/// Nearly normal, of standard deviation 1: the sum of twelve.
 fn normal(random: &mut Random) -> f64 {
     (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
 }
@@ -24,7 +24,7 @@ fn times(seconds: f64) -> impl Iterator<Item = f64> {
     (0_u32..).map(|k| f64::from(k) / RATE).take_while(move |t| *t < seconds)
 }
 
-/// How a record vibrates in which nobody asks for less than `least`.
+/// Vibration of a record in which nothing smaller than `least` matters.
 fn of(values: &[f64], least: f64) -> Vibration {
     let largest = values.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
     let signal = Signal { values, start: 0.0, step: 1.0 / RATE, resolution: 8.0 * f64::EPSILON * largest, least };
@@ -38,7 +38,7 @@ fn assert_rare(kind: &str, found: &[Vibration]) {
     assert!(wrong.len() * 100 <= WRONG * found.len(), "{kind}: {} of {}, {wrong:?}", wrong.len(), found.len());
 }
 
-/// White noise beside a rest or a tail is no vibration at all.
+/// White noise beside a rest or a tail is not a vibration.
 #[test]
 fn noise() {
     let mut random = Random::seeded(21);
@@ -56,8 +56,8 @@ fn noise() {
     assert!(swings * 100 <= found.len(), "{swings} of {}", found.len());
 }
 
-/// A load that wanders as noise through a low pass of second order moves it: it swings, but at no frequency of its own and with no
-/// damping.
+/// A load that wanders, moved by noise through a low pass of second order: it swings, but without a frequency and
+/// damping of its own.
 #[test]
 fn wandering() {
     let mut random = Random::seeded(22);
@@ -66,7 +66,7 @@ fn wandering() {
             let (seconds, pole) = (random.between(0.3, 1.0), 2.0 * PI * random.logarithmic(20.0, 400.0));
             let share = 1.0 - (-pole / RATE).exp();
             let (mut one, mut two) = (0.0, 0.0);
-            // From its own past on.
+            // Starts from its own past.
             let settle = |one: &mut f64, two: &mut f64, y: f64| {
                 *one += share * (y - *one);
                 *two += share * (*one - *two);
@@ -82,7 +82,7 @@ fn wandering() {
     assert_rare("wandering", &found);
 }
 
-/// An encoder's last counts, by chance or as a tail passes through them: four increments are asked for.
+/// An encoder's last counts, by chance or as a tail passes through them: four increments matter.
 #[test]
 fn counts() {
     let mut random = Random::seeded(23);
@@ -109,7 +109,7 @@ fn counts() {
     assert!(swings * 100 <= found.len(), "{swings} of {}", found.len());
 }
 
-/// Sticks for a while, slips somewhere, sticks again: at random times and by random ways, or there and back without an end.
+/// Sticks for a while, slips somewhere, sticks again: at random times and on random paths, or to and fro without an end.
 #[test]
 fn stick() {
     let mut random = Random::seeded(24);
@@ -135,7 +135,7 @@ fn stick() {
     assert_rare("stick", &found);
 }
 
-/// Up to four aperiodic tails, with a little noise: there is nothing that swings but an overshoot.
+/// Up to four aperiodic tails, with a little noise: nothing swings but an overshoot.
 #[test]
 fn tails() {
     let mut random = Random::seeded(25);
@@ -153,7 +153,7 @@ fn tails() {
     assert_rare("tails", &found);
 }
 
-/// A tail that comes to a stop on its way, as dry friction holds a load, with and without counts of an encoder: a constant from then on.
+/// A tail that stops halfway, as dry friction holds a load, with and without counts of an encoder: a constant from then on.
 #[test]
 fn held_tails() {
     let mut random = Random::seeded(26);
@@ -170,8 +170,8 @@ fn held_tails() {
     assert_rare("held tails", &found);
 }
 
-/// A load on a spring with dry friction alone: half a cosine after the other about ±`band`, each smaller by twice as much, until it is held.
-/// It has a frequency, but no damping ratio of its own; another frequency is not there.
+/// A load on a spring with dry friction alone: consecutive half cosines about ±`band`, each smaller by twice as much, until it is held.
+/// It has a frequency, but not a damping ratio; another frequency is not there.
 #[test]
 fn dry_friction() {
     let mut random = Random::seeded(27);
@@ -180,7 +180,7 @@ fn dry_friction() {
         let (frequency, size) = (random.logarithmic(5.0, 100.0), random.logarithmic(1e-8, 1e-4));
         let band = size * random.logarithmic(0.02, 0.2);
         let at = |t: f64| {
-            // Where the swing of this half period begins, until one begins within the band.
+            // Beginning of the swing of this half period, until one begins within the band.
             let (mut from, mut sign, mut left) = (size, 1.0, 2.0 * frequency * t);
             while left > 1.0 && from > band {
                 (from, sign, left) = (from - 2.0 * band, -sign, left - 1.0);
@@ -198,7 +198,7 @@ fn dry_friction() {
     assert!(found.iter().chain(&elsewhere).all(|vibration| vibration.amplitude > 0.0));
 }
 
-/// Lines, parabolas and ramps with an end, with noise or counts: what drifts does not swing.
+/// Lines, parabolas and ramps with an end, with noise or counts: a drift does not swing.
 #[test]
 fn drifts() {
     let mut random = Random::seeded(28);

@@ -1,7 +1,7 @@
 //! A whole recording with a closed form: an undamped mode behind a base that follows the profile exactly.
 //!
 //! The load is computed segment by segment from the exact solution of `z̈ + ω²z = −ẍ`, z = load − base, with a
-//! piecewise polynomial ẍ; the measures are held against the product of sines, which knows nothing of time.
+//! piecewise polynomial ẍ; the measures are checked against the product of sines, which does not contain time.
 use core::f64::consts::PI;
 use servobench_base::{Rate, Setpoint};
 use servobench_metrics::{Limit, Name, Question, measure, undamped_residual};
@@ -9,7 +9,7 @@ use servobench_trace::{About, Channel, ChannelSpec, Ending, Move, Recording};
 
 const RATE: u32 = 16_000;
 
-/// A profile of order 3 or 4 as the convolution of its boxes, shortest last; every bound is reached.
+/// A profile of order 3 or 4 as the convolution of moving averages, shortest last; every bound is reached.
 struct Profile {
     distance: f64,
     boxes: Vec<f64>,
@@ -29,7 +29,7 @@ impl Profile {
         self.boxes.iter().sum()
     }
 
-    /// Peak of each derivative: the distance divided by the boxes one after the other.
+    /// Peak of each derivative: the distance divided by the lengths of the moving averages one after the other.
     fn peaks(&self) -> Vec<f64> {
         let mut peak = self.distance.abs();
         self.boxes
@@ -160,7 +160,7 @@ fn amplitude_is_the_product_of_sines() {
             assert!(value(Name::ResidualVibrationDamping).abs() < 1e-5);
             // The crest of a cosine is met to (ω·h/2)²/2 = 3e-5 at most.
             assert!((value(Name::ResidualVibrationPp) / (2.0 * exact) - 1.0).abs() < 1e-4);
-            // No whole number of periods: at n periods the RMS about the mean is off by 1/(4πn), n ≥ 2.6.
+            // Not a whole number of periods: at n periods the RMS about the mean is off by 1/(4πn), n ≥ 2.6.
             let rms = value(Name::ResidualVibrationRms) * 2_f64.sqrt() / exact;
             let periods = (2.0 - profile.end()) * omega / (2.0 * PI);
             assert!((rms - 1.0).abs() < 1.0 / (4.0 * PI * periods) + 0.6 / (PI * periods).powi(2), "{rms} {periods}");
@@ -196,7 +196,7 @@ fn the_published_move_is_within_its_limits() {
     assert_eq!(metrics.moves[0].metrics.value(Name::MoveTime), metrics.run.value(Name::MoveTime));
 }
 
-/// The same from `measure.from` when there is no move: time 0 of the amplitude is that instant.
+/// The same from `measure.from` without a move: time 0 of the amplitude is that instant.
 #[test]
 fn ring_down_without_a_move() {
     let mut ringing = recording(&jerk_limited(), 6e4_f64.sqrt());

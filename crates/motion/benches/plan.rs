@@ -52,7 +52,7 @@ fn at_20_000_instants(bencher: Bencher<'_, '_>, order: Order) {
     bencher.bench_local(|| (0..20_000).map(|k| black_box(black_box(&plan).at(f64::from(k) / 16_000.0)).x).sum::<f64>());
 }
 
-/// What binds in the middle of a move of order 4, and its place in [`random_requests`].
+/// Binding limit in the middle of a move of order 4, and its place in [`random_requests`].
 #[derive(Debug, Clone, Copy)]
 enum Region {
     /// Not the velocity.
@@ -76,7 +76,7 @@ impl Region {
     }
 }
 
-/// Moves and limits, so many of each region, of which every limit binds now and then.
+/// Moves and limits, `of_each` of each region, in which every limit binds now and then.
 fn random_requests(of_each: usize) -> [Vec<(f64, Limits)>; 3] {
     let mut random = Random::seeded(4);
     let mut regions = [const { vec![] }; 3];

@@ -1,12 +1,12 @@
-//! Plans the requests on standard input, one a line, and prints each plan on a line: how programs in other languages ask
-//! for many plans at once.
+//! Plans the requests on standard input, one a line, and prints each plan on a line: a way for programs in other languages to
+//! request many plans at once.
 //!
 //! ```text
 //! profile ORDER published|optimal  DISTANCE  VELOCITY ACCELERATION JERK SNAP
 //! transition ORDER fast|refined  X V A J  TARGET_X TARGET_V  V_BELOW V_ABOVE  A_BELOW A_ABOVE  JERK SNAP
 //! ```
 //!
-//! Numbers are SI, `inf` is no limit. The answer is the duration, and for each segment its highest derivative and its
+//! Numbers are SI, `inf` means unlimited. The answer is the duration, and for each segment its highest derivative and its
 //! length, every number to the last bit. A request that cannot be read or planned ends the program.
 use servobench_base::Setpoint;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};

@@ -1,4 +1,4 @@
-//! The engine `exact` against closed forms to the rounding. What every engine promises: `tests/contract.rs`.
+//! The engine `exact` against closed forms to the rounding. Guarantees of every engine: `tests/contract.rs`.
 use servobench_base::{Coordinate, Setpoint, Stateful};
 use servobench_plant::{
     Actuation, Body, BodyState, Chain, Drive, DryFriction, Engine, Exact, Friction, Input, LinearMechanics, Link,
@@ -106,7 +106,7 @@ fn a_prescribed_base_is_integrated_exactly() {
     }
 }
 
-/// Oracle: the sum of the inertias, and whether a speed stays; between the sticking and the sliding of dry friction is no straight line.
+/// Oracle: the sum of the inertias, and persistence of a velocity; between the sticking and the sliding of dry friction nothing is linear.
 #[test]
 fn linear_mechanics_are_those_of_the_bodies() {
     let linear = |friction: Friction| {

@@ -1,9 +1,9 @@
-//! How long single calls take: a control cycle must bear the slow ones too.
+//! Duration of single calls: a control cycle must bear the slow ones too.
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Each input is timed so often, once in each pass over all of them; the fastest counts, so that what the system does in
-/// between is left out.
+/// Number of times that each input is timed, once in each pass over all of them; the fastest counts, so that interruptions by
+/// the system are left out.
 const PASSES: usize = 3;
 
 /// The columns of [`row`].

@@ -1,11 +1,11 @@
-//! Averages in continuous time against the boxes profile, and sines against their transfer function.
+//! Averages in continuous time against the planned profile, and sines against their transfer function.
 use crate::random::{Random, any_number};
 use proptest::prelude::*;
 use servobench_base::Setpoint;
 use servobench_motion::shape::{MovingAverages, Vibration};
 use servobench_motion::{Limits, Order, Profile};
 
-/// Largest relative differences of x, v, a, j from a plan through the same boxes; of s where no switching is near.
+/// Largest relative differences of x, v, a, j from a plan with the same moving averages; of s away from switching instants.
 fn differences<const N: usize>(order: Order, distance: f64, limits: &Limits) -> [f64; 5] {
     let plan = Profile::plan(order, distance, limits).unwrap();
     let lengths: Vec<_> = plan.boxes().collect();
@@ -40,7 +40,7 @@ fn averages_of_a_step_are_the_boxes_profile() {
         };
         let distance = random.signed();
         let [x, v, a, j, s] = differences::<4>(Order::Fourth, distance, &limits);
-        // Rounding of time, some ulp of the duration, over the shortest box that a derivative is spread over.
+        // Rounding of time, some ulp of the duration, over the shortest average that spreads a derivative.
         assert!(x < 1e-13 && v < 1e-13 && a < 1e-12 && j < 1e-11 && s < 1e-12, "{x:e} {v:e} {a:e} {j:e} {s:e}");
         let [x, v, a, j, _] = differences::<3>(Order::Third, distance, &limits);
         assert!(x < 1e-13 && v < 1e-13 && a < 1e-12 && j < 1e-12, "{x:e} {v:e} {a:e} {j:e}");
@@ -57,7 +57,7 @@ fn very_different_lengths_lose_nothing() {
     assert!(x < 1e-14 && v < 1e-12, "{x:e} {v:e}");
 }
 
-/// A sine comes out with gain ∏ sin(ωT/2)/(ωT/2), which is what is left of an undamped mode of that frequency.
+/// A sine is passed with the gain ∏ sin(ωT/2)/(ωT/2), which is the residual of an undamped mode of that frequency.
 #[test]
 fn what_is_left_of_an_undamped_mode_is_the_transfer_function() {
     let mut random = Random::seeded(32);

@@ -34,13 +34,13 @@ fn modified_zero_vibration_is_the_printed_one_and_leaves_nothing() {
             assert!((impulse.amplitude - amplitude / sum).abs() < 1e-15);
             assert!((impulse.time - time * period).abs() < 1e-15 * period);
         }
-        // Damped too: K is what is left of the vibration after 0.375 periods.
+        // Damped too: K is the remaining vibration after 0.375 periods.
         assert!(residual(&shaper, omega_n, zeta) < 1e-15, "ω {omega_n}, ζ {zeta}");
         assert!(residual(&shaper, 1.01 * omega_n, zeta) > 1e-6, "the oracle can fail");
     }
 }
 
-/// What a shaper is asked for: its humps, a tolerable residual and a damping ratio.
+/// The shaper with these humps, tolerable residual and damping ratio.
 fn shaper(humps: usize, vibration: &Vibration, tolerable: f64) -> Result<Impulses, PlanError> {
     match humps {
         2 => Impulses::two_hump_ei(vibration, tolerable),
@@ -48,7 +48,7 @@ fn shaper(humps: usize, vibration: &Vibration, tolerable: f64) -> Result<Impulse
     }
 }
 
-/// Up to which damping ratio a shaper is promised for a tolerable residual, as its documentation says.
+/// Largest damping ratio for which a shaper is guaranteed for a tolerable residual, by its documentation.
 const PROMISED: [(usize, [(f64, f64); 4]); 2] =
     [(2, [(0.05, 0.5), (0.1, 0.3), (0.2, 0.1), (0.3, 0.05)]), (3, [(0.05, 0.3), (0.1, 0.2), (0.2, 0.05), (0.3, 0.02)])];
 
@@ -62,7 +62,7 @@ fn least(mut low: f64, mut high: f64, of: impl Fn(f64) -> f64) -> f64 {
     of(f64::midpoint(low, high))
 }
 
-/// What is left at the zeros of the curve, and at the tops of its humps.
+/// Residuals at the zeros of the curve, and at the tops of its humps.
 fn zeros_and_tops(left: impl Fn(f64) -> f64, tolerable: f64) -> (Vec<f64>, Vec<f64>) {
     let grid: Vec<f64> = (0..=4000).map(|k| 0.2 + 1.8 * f64::from(k) / 4000.0).collect();
     let curve: Vec<f64> = grid.iter().map(|w| left(*w)).collect();
@@ -79,7 +79,7 @@ fn zeros_and_tops(left: impl Fn(f64) -> f64, tolerable: f64) -> (Vec<f64>, Vec<f
     (zeros, tops)
 }
 
-/// Random damping ratios and residuals, and the corners of what is promised.
+/// Random damping ratios and residuals, and the corners of the guaranteed range.
 #[test]
 fn damped_humps_are_as_high_as_tolerable_and_zero_in_between() {
     let mut random = Random::seeded(22);
@@ -99,7 +99,7 @@ fn damped_humps_are_as_high_as_tolerable_and_zero_in_between() {
                 assert_eq!((zeros.len(), tops.len()), (humps + 1, humps), "{context}");
                 // |V| has a corner at its zero, so the section ends within some ulp of it.
                 assert!(zeros.iter().all(|zero| *zero < 1e-12), "{context}: {zeros:?}");
-                // Newton leaves 1e-13 of its equations: no hump is higher than asked for, none lower.
+                // Newton leaves 1e-13 of its equations: all humps are as high as requested.
                 assert!(tops.iter().all(|top| (top - tolerable).abs() < 1e-12), "{context}: {tops:?}");
                 let sum: f64 = shaper.iter().map(|i| i.amplitude).sum();
                 assert!((sum - 1.0).abs() < 1e-15 && shaper.iter().all(|i| i.amplitude > 0.0), "{context}");

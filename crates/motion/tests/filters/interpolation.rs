@@ -1,4 +1,4 @@
-//! What each interpolation mode promises: the samples it meets, continuity, exactness, delay.
+//! Guarantees of each interpolation mode: the samples it meets, continuity, exactness, delay.
 use crate::random::{Random, any_number};
 use proptest::prelude::*;
 use servobench_base::Setpoint;
@@ -67,7 +67,7 @@ fn samples_are_met_by_the_modes_that_promise_it() {
     }
 }
 
-/// Limits from both sides at the knots: what a mode says is continuous is, the next derivative of position is not.
+/// Limits from both sides at the knots: the continuous quantities of a mode are continuous, the next derivative of position is not.
 #[test]
 fn continuity_class_of_each_mode() {
     let samples = random_samples(&mut Random::seeded(2), 500);
@@ -96,7 +96,7 @@ fn continuity_class_of_each_mode() {
             }
         }
     }
-    // All linear: what jumps is the slope of the position, which the reported velocity is not.
+    // All linear: the slope of the position jumps, which is not the reported velocity.
     let slopes: Vec<_> = intervals(Mode::AllLinear, &samples)
         .iter()
         .map(|(_, interval)| interval.at(1.0).unwrap().setpoint.x - interval.at(0.0).unwrap().setpoint.x)

@@ -1,8 +1,8 @@
-//! How much shapers forgive a wrong frequency: undamped modes, against sums that share no code with the crate.
+//! Robustness of shapers to a wrong frequency: undamped modes, against sums that share no code with the crate.
 use servobench_motion::shape::{Impulses, Vibration};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// `|Σ A_i·e^(jπ·w·t_i)|` of a mode `w` times as fast as the one that the shaper is for, times in half periods of that.
+/// `|Σ A_i·e^(jπ·w·t_i)|` of a mode `w` times as fast as that of the shaper, times in half periods of that.
 fn residual(impulses: &[(f64, f64)], w: f64) -> f64 {
     let part = |turn: fn(f64) -> f64| impulses.iter().map(|(a, t)| a * turn(PI * w * t)).sum::<f64>();
     part(f64::cos).hypot(part(f64::sin))
@@ -48,10 +48,10 @@ fn undamped_shapers_are_the_printed_ones() {
     }
 }
 
-/// How wide the band around the mode is in which at most 5 % are left, as a part of its frequency: the ends by bisection from
-/// where it is less to where it is more, in steps of a thousandth.
+/// Width of the band around the mode in which at most 5 % are left, relative to its frequency: the ends by bisection between
+/// a smaller and a larger value, in steps of a thousandth.
 fn width(residual: impl Fn(f64) -> f64) -> f64 {
-    // The humps of the EI shapers reach 5 % but for a rounding.
+    // The humps of the EI shapers reach 5 % except for a rounding.
     let is_within = |w| residual(w) < 0.05 + 1e-9;
     let end = |step: f64| {
         let mut inside = 1.0;
@@ -68,7 +68,7 @@ fn width(residual: impl Fn(f64) -> f64) -> f64 {
     end(1e-3) - end(-1e-3)
 }
 
-/// In percent what is left of a mode 10 % slower and 10 % faster, and the width. The numbers of ZV to EI are in the literature
+/// In percent the residual of a mode 10 % slower and 10 % faster, and the width. The numbers of ZV to EI are in the literature
 /// (Singer & Seering 1990; Singhose, Seering & Singer 1994). For 2 and 3 humps 0.7262 and 0.9654 are quoted, 2 in 1000 more than
 /// the printed amplitudes have; these follow from T_(n+1)(Y) = 1/0.05, 2 − (4/π)·acos(1/Y), too.
 #[test]
@@ -91,7 +91,7 @@ fn what_a_wrong_frequency_leaves() {
             assert!((left(w) - residual(&printed, w)).abs() < 1e-14, "{name}");
         }
         let [own, independent] = [width(left), width(|w| residual(&printed, w))];
-        // Four decimals are given; what is allowed above 5 % is 1e-9 over a slope of 1 at least.
+        // Four decimals are given; the tolerance above 5 % is 1e-9 over a slope of 1 at least.
         assert!((independent - expected_width).abs() < 6e-5, "{name}: {independent}");
         assert!((own - independent).abs() < 1e-8, "{name}: {own}, {independent}");
     }

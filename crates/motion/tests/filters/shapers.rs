@@ -10,7 +10,7 @@ fn mode(omega_n: f64, zeta: f64) -> Vibration {
     Vibration::new(omega_n, zeta).unwrap()
 }
 
-/// Modes that a servo axis has, and some that it has not.
+/// Modes that a servo axis has, and some that it does not have.
 fn modes() -> impl Iterator<Item = (f64, f64)> {
     [0.0, 1e-6, 0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7].into_iter().flat_map(|zeta| [0.5, 62.8, 4000.0].map(|w| (w, zeta)))
 }
@@ -87,8 +87,8 @@ fn orders_of_insensitivity() {
     }
 }
 
-/// Relative frequency of the first minimum of the residual beside the mode in steps of `step`, by golden section, and what
-/// is left there.
+/// Relative frequency of the first minimum of the residual beside the mode in steps of `step`, by golden section, and the
+/// residual there.
 fn first_minimum(shaper: &Impulses, zeta: f64, step: f64) -> (f64, f64) {
     let at = |w: f64| shaper.residual(&mode(w, zeta));
     let mut w = 1.0;
@@ -117,7 +117,7 @@ fn extra_insensitive_leaves_the_tolerable_at_the_mode_and_nothing_beside_it() {
             assert!(left < 1e-12 && right < 1e-12, "ζ {zeta}, V {tolerable}: {left:e} and {right:e} are left");
             assert!(low < 1.0 && 1.0 < high);
             let top = (0..=100).map(|k| at(low + f64::from(k) / 100.0 * (high - low))).fold(0.0, f64::max);
-            // Undamped the mode is the top; damped it is a little aside, by as much as the documentation says.
+            // Undamped the mode is the top; damped it is a little aside, by the documented amount.
             let excess = if zeta == 0.0 { 1e-12 } else { 0.014 };
             assert!(top < tolerable * (1.0 + excess), "ζ {zeta}, V {tolerable}: {}", top / tolerable - 1.0);
             let amplitudes: f64 = shaper.iter().map(|i| i.amplitude).sum();
@@ -190,7 +190,7 @@ fn two_modes_are_cancelled_by_two_shapers() {
     }
     let times: Vec<_> = both.iter().map(|impulse| impulse.time).collect();
     assert!(times.is_sorted() && times[0] == 0.0);
-    // What the residual is of each is a factor of that of both: sums of products are products of sums.
+    // The residual of each is a factor of that of both: sums of products are products of sums.
     let [of_low, of_high] = [Impulses::three_hump_ei(&low, 0.05).unwrap(), Impulses::two_hump_ei(&high, 0.1).unwrap()];
     let both = of_low.and(&of_high).unwrap();
     assert_eq!(both.iter().len(), 20);
@@ -235,7 +235,7 @@ fn shaped_moves_end_at_the_target_within_the_peaks_of_the_plan() {
     }
 }
 
-/// What a trapezoid leaves ringing: `e^(−ζω·end)·|∫ a(t)·e^((ζω + jω_d)·t) dt|`, exact between the `switches` of a(t).
+/// Ringing after a trapezoid: `e^(−ζω·end)·|∫ a(t)·e^((ζω + jω_d)·t) dt|`, exact between the `switches` of a(t).
 fn ringing((omega_n, zeta): (f64, f64), switches: &[f64], acceleration: impl Fn(f64) -> f64) -> f64 {
     let omega_d = omega_n * (1.0 - zeta * zeta).sqrt();
     let end = *switches.last().unwrap();

@@ -113,7 +113,7 @@ fn after_a_million_samples_a_rest_is_exactly_the_target() {
     }
 }
 
-/// A step through averages of n1 … n4 samples: its fourth differences are the snap of the sampled plan with these boxes.
+/// A step through averages of n1 … n4 samples: its fourth differences are the snap of the sampled plan with these lengths.
 #[test]
 fn four_averages_of_a_step_are_the_sampled_profile() {
     let limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };

@@ -1,5 +1,5 @@
-//! Whatever is asked for: a way or a refusal in words, never a panic, never a set-point that is no number, and the end
-//! exactly where it was promised.
+//! For any request: a trajectory or a refusal in words, never a panic, never a not-a-number set-point, and the end
+//! exactly as guaranteed.
 
 mod interpolation;
 mod position_profiles;
@@ -20,7 +20,7 @@ fn is_finite(s: Setpoint) -> bool {
     [s.x, s.v, s.a, s.j, s.s].iter().all(|value| value.is_finite())
 }
 
-/// A refusal says something, and the point that it names is there.
+/// A refusal has a message, and its point exists.
 fn refused(error: PlanError, points: usize) {
     if let PlanError::Point { point, .. } = error {
         assert!(point < points, "{error} of {points} points");

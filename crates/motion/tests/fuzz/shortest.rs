@@ -10,9 +10,9 @@ struct Request {
     order: Order,
     distance: f64,
     limits: Limits,
-    /// Samples of the boxes, about; what is too many to look at in a test is left out.
+    /// Approximate number of samples by moving averages; too many for a test are left out.
     samples: f64,
-    /// Time to look at, as it is and as a part of the duration.
+    /// Time of the check, absolute and as a share of the duration.
     t: f64,
 }
 
@@ -29,7 +29,7 @@ fn requests() -> impl ValueGenerator<Output = Request> {
     )
 }
 
-/// The move, in samples of a part of what the continuous one takes.
+/// The move, in samples of a share of the continuous duration.
 fn planned(request: &Request) -> Result<Shortest, PlanError> {
     let Request { order, distance, limits, samples, .. } = *request;
     let duration = Profile::plan_optimal(order, distance, &limits)?.duration();
@@ -55,7 +55,7 @@ fn holds(plan: &Shortest, request: &Request) {
                 .into_iter()
                 .take(plan.order().derivative())
         {
-            // What the program may exceed a limit by, and the integration of some hundred runs.
+            // Tolerance of the program for a limit, and the integration of some hundred runs.
             assert!(peak <= limit * (1.0 + 1e-10), "{execution:?}: {peak} {limit} of {plan:?}");
         }
     }
@@ -68,7 +68,7 @@ fn holds(plan: &Shortest, request: &Request) {
     assert!(off <= 1e-10 * reach, "{off:e} of {plan:?}");
 }
 
-/// What libFuzzer found: a cruise of 358 samples behind pulses of one, over which the rounding of the snap grew to 1.6e-10 of the
+/// Found by libFuzzer: a cruise of 358 samples behind pulses of one, over which the rounding of the snap grew to 1.6e-10 of the
 /// velocity.
 #[test]
 fn a_long_cruise_behind_short_pulses_keeps_its_limit() {

@@ -5,11 +5,11 @@ use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition, passing_velocity};
 
-/// Of what is covered: what the straight way may be away from the target so that it is taken.
+/// Largest miss of the direct path that is accepted, relative to the distance covered.
 const ROUNDING: f64 = 1e-12;
 
-/// What is missed, as a part of what is covered, but for what a rounding of the velocities is worth: at order 2 nothing but they say
-/// how far it is from one to the other, (v₁² − v₀²)/2a.
+/// Miss of the target, relative to the distance covered, without the effect of a rounding of the velocities: at order 2 only they
+/// determine the distance from one to the other, (v₁² − v₀²)/2a.
 fn missed(request: &Request, planned: &Transition) -> f64 {
     let Target::Position { x, v } = request.target else { panic!("{request:?} has no position") };
     let Sides { below, above } = request.limits.acceleration;
@@ -19,7 +19,7 @@ fn missed(request: &Request, planned: &Transition) -> f64 {
     (jump(planned)[0] - rounding).max(0.0) / ((x - request.from.x).abs() + v.abs() * planned.duration())
 }
 
-/// A state on the way of a move, and the limits of that.
+/// A state during a move, and the limits of that.
 fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLimits) {
     let t = random.decades(-1.0, 1.0);
     let limits = limits(random, 1.0, t);
@@ -28,7 +28,7 @@ fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLi
     (Setpoint { x: 0.0, ..way.at(random.unit() * way.duration()) }, t, limits)
 }
 
-/// A target that is passed as blending does it.
+/// A target that is passed as in blending.
 fn blended(random: &mut Random, order: Order) -> Option<Request> {
     let (from, t, limits) = situation(random, order);
     let ahead = if from.v == 0.0 { 1.0 } else { from.v.signum() };
@@ -37,7 +37,7 @@ fn blended(random: &mut Random, order: Order) -> Option<Request> {
     Some(Request { order, from, target: Target::Position { x, v }, limits })
 }
 
-/// A target where the straight way to its velocity ends, but for the part `off` of it.
+/// A target at the end of the direct path to its velocity, except for the part `off` of it.
 fn straight(random: &mut Random, order: Order, off: f64) -> Request {
     let (from, _, limits) = situation(random, order);
     let v = random.signed() * limits.velocity.below.min(limits.velocity.above);
@@ -46,7 +46,7 @@ fn straight(random: &mut Random, order: Order, off: f64) -> Request {
     Request { order, from, target: Target::Position { x, v }, limits }
 }
 
-/// By nothing but the pulses that rounding asks for 3 nm of 60 mm were missed, and 0.69 µm.
+/// With nothing but the pulses for rounding, 3 nm of 60 mm were missed, and 0.69 µm.
 #[test]
 fn a_target_where_the_straight_way_ends_is_met() {
     for line in [
@@ -62,7 +62,7 @@ fn a_target_where_the_straight_way_ends_is_met() {
     }
 }
 
-/// From "exactly there" over rounding to "somewhere". Of what is blended half used to miss by more than 1e-9, and up to 1.3e-6.
+/// From "exactly there" over rounding to "somewhere". Half of the blended targets used to miss by more than 1e-9, and up to 1.3e-6.
 #[test]
 fn targets_on_and_next_to_the_straight_way_are_met() {
     let mut random = Random::seeded(12);
@@ -91,7 +91,7 @@ fn targets_on_and_next_to_the_straight_way_are_met() {
     }
 }
 
-/// Next to the straight way another metre costs 1/v seconds: the duration has no cliff on the side where the target is farther.
+/// Next to the direct path another metre costs 1/v seconds: the duration has no cliff on the side where the target is farther.
 #[test]
 fn a_target_a_little_farther_takes_a_little_longer() {
     let mut random = Random::seeded(13);

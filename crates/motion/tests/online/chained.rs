@@ -4,13 +4,13 @@ use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 
-/// What is asked of one chain.
+/// State of one chain.
 struct Chain {
     random: Random,
-    /// Around which limits change.
+    /// Limits around which the others change.
     usual: DirectionalLimits,
     limits: DirectionalLimits,
-    /// Whether a way begins within limits under which it was not planned.
+    /// True if a path begins within other limits than those of its plan.
     is_changed: bool,
     /// Distance that fills the velocity limit in about the time that the limits take.
     length: f64,
@@ -25,7 +25,7 @@ impl Chain {
         Self { random, usual: limits, limits, is_changed: false, length: d * t * t * t * t, state: Setpoint::default() }
     }
 
-    /// New limits now and then, as the next command has them: each between two thirds and one and a half of the usual one.
+    /// New limits now and then, as of the next command: each between two thirds and one and a half of the usual one.
     fn change_limits(&mut self) {
         if self.random.unit() < 0.8 {
             return;
@@ -61,7 +61,7 @@ fn check(planned: &Transition, chain: &Chain, target: &Target, what: &str) {
     let DirectionalLimits { velocity, acceleration, jerk, .. } = chain.limits;
     let context = || format!("{what}: from {:?} to {target:?} within {:?}: {planned:?}", chain.state, chain.limits);
     assert!(planned.duration().is_finite() && (planned.excess() <= 1e-9 || chain.is_changed), "{}", context());
-    // What the state forces, or what is said to be beyond.
+    // Excess that the state forces, or that is reported.
     let allowed = 1.0 + planned.excess() + 1e-9;
     let mut last: Option<Setpoint> = None;
     for segment in planned.segments() {
@@ -80,7 +80,7 @@ fn check(planned: &Transition, chain: &Chain, target: &Target, what: &str) {
             last = Some(at);
         }
     }
-    // What the polynomials end with, and what the target says.
+    // End of the polynomials, and the target.
     let (before, end) = (planned.at(planned.duration().next_down()), planned.at(planned.duration()));
     let travel = match target {
         Target::Position { x, .. } => (x - chain.state.x).abs() + chain.length,
@@ -113,7 +113,7 @@ fn chains(order: Order, effort: Effort, aborts: usize) {
             (plans, beyond) = (plans + 1, beyond + usize::from(planned.excess() > 1e-9));
             chain.is_changed &= planned.excess() > 1e-9;
             chain.state = planned.at(chain.random.unit() * planned.duration());
-            // As a drive does it: the position starts anew now and then.
+            // As in a drive: the position restarts now and then.
             chain.state.x = chain.random.signed() * chain.length;
         }
     }

@@ -1,4 +1,4 @@
-//! Long ways: what is held is held, and nothing drifts.
+//! Long distances: held values are held, and nothing drifts.
 use crate::random::{Random, sweep_size};
 use crate::request::{Request, jump};
 use servobench_base::Setpoint;
@@ -12,10 +12,10 @@ const AXES: [[f64; 4]; 4] =
 /// 100 s to a day.
 const TIMES: [f64; 5] = [100.0, 1000.0, 3600.0, 36_000.0, 86_400.0];
 
-/// Of the way, which is what positions round to: four numbers are added up, of which the cruise is nearly all.
+/// Relative to the distance, whose rounding is that of positions: four numbers are added up, of which the cruise is nearly all.
 const ROUNDING: f64 = 1e-12;
 
-/// Holds `planned` against its target, its limits, and its own list of segments; gives the jump at its end as a part of the way.
+/// Checks `planned` against its target, its limits, and its own list of segments; returns the jump at its end relative to the distance.
 fn check(request: &Request, planned: &Transition) -> f64 {
     let Request { order, from, limits, .. } = request;
     let end = planned.at(planned.duration());
@@ -28,14 +28,14 @@ fn check(request: &Request, planned: &Transition) -> f64 {
     let Sides { below, above } = limits.acceleration;
     assert!(*order == Order::Second || a <= ROUNDING * (below + above), "{a} {}", context());
     assert!(*order < Order::Fourth || j <= ROUNDING * limits.jerk, "{j} {}", context());
-    // Who executes the list comes to the same end.
+    // Executing the list comes to the same end.
     let mut state = Setpoint { s: 0.0, ..*from };
     let mut listed = 0.0;
     for segment in planned.segments() {
         let at = planned.at(segment.start);
         let excess = (at.v - limits.velocity.above).max(-limits.velocity.below - at.v) / limits.velocity.above;
         assert!(excess <= planned.excess() + ROUNDING, "{excess} {}", context());
-        // Its states are those of the plan but for rounding, and what is held is.
+        // Its states are those of the plan except for rounding, and its held values are the same.
         state = Setpoint { x: state.x, ..at };
         state = state.after(segment.length);
         listed += segment.length;
@@ -78,7 +78,7 @@ fn a_day_of_cruising_ends_where_it_should() {
     }
 }
 
-/// Ways on which a residue of the jerk was integrated: 0.216 mm after an hour, 6 cm after 60 km.
+/// Paths on which a residue of the jerk was integrated: 0.216 mm after an hour, 6 cm after 60 km.
 #[test]
 fn cruises_that_drifted() {
     for line in [
@@ -91,7 +91,7 @@ fn cruises_that_drifted() {
     }
 }
 
-/// A hold of the acceleration lasts as long where there is no velocity limit to speak of: x = a·t²/4 to rest.
+/// A hold of the acceleration lasts as long with a velocity limit that is never reached: x = a·t²/4 to rest.
 #[test]
 fn a_day_of_acceleration_ends_where_it_should() {
     for time in TIMES {

@@ -4,7 +4,7 @@ use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 
-/// How far `at` is beyond the limits, as a part of them.
+/// Relative excess of `at` over the limits.
 fn excess(at: &Setpoint, limits: &DirectionalLimits, order: Order) -> f64 {
     let part = |Sides { below, above }: Sides, value: f64| ((value - above) / above).max((-value - below) / below);
     let jerk = if order == Order::Fourth { part(Sides::both(limits.jerk), at.j) } else { f64::NEG_INFINITY };
@@ -12,7 +12,7 @@ fn excess(at: &Setpoint, limits: &DirectionalLimits, order: Order) -> f64 {
     part(limits.velocity, at.v).max(acceleration).max(jerk)
 }
 
-/// The target is met, what is beyond the limits is said, and it is not more than the state made unavoidable: a velocity
+/// The target is met, the excess over the limits is reported, and it is not more than the state made unavoidable: a velocity
 /// beyond its limit with neither acceleration nor jerk never grows.
 #[test]
 fn they_come_back_and_it_is_said() {
@@ -32,7 +32,7 @@ fn they_come_back_and_it_is_said() {
         let target = Target::Position { x: length * random.signed(), v: 0.0 };
         let planned = Transition::plan(order, &from, &target, &limits, Effort::Fast).unwrap();
         if planned.excess() > 3.0 {
-            // A jerk that takes the acceleration far beyond: what follows lasts for ages, and rounds at their size.
+            // A jerk that takes the acceleration far beyond: the rest lasts for ages, and rounds at their size.
             assert!(!is_calm && planned.duration().is_finite());
             continue;
         }

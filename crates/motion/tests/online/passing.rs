@@ -1,4 +1,4 @@
-//! The velocity at which a target is passed, against what the transition that passes it does.
+//! The velocity at which a target is passed, against the transition that passes it.
 use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
@@ -8,7 +8,7 @@ use servobench_motion::online::{
 
 const ORDERS: [Order; 3] = [Order::Second, Order::Third, Order::Fourth];
 
-/// Lowest velocity towards the target on the way to it, as a part of the limit.
+/// Lowest velocity towards the target on the path to it, relative to the limit.
 fn lowest(order: Order, from: &Setpoint, x: f64, speed: f64, limits: &DirectionalLimits) -> f64 {
     let sign = (x - from.x).signum();
     let target = Target::Position { x, v: sign * speed };
@@ -19,7 +19,7 @@ fn lowest(order: Order, from: &Setpoint, x: f64, speed: f64, limits: &Directiona
         / (limits.velocity.above + limits.velocity.below)
 }
 
-/// A state on the way of a move, and a position in front of it.
+/// A state during a move, and a position in front of it.
 fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLimits) {
     let t = random.decades(-1.0, 1.0);
     let limits = limits(random, 1.0, t);
@@ -32,7 +32,7 @@ fn situation(random: &mut Random, order: Order) -> (Setpoint, f64, DirectionalLi
     (from, x, limits)
 }
 
-/// Who passes at that velocity does not turn back. The fastest way to a higher one, a little above it and all over the range,
+/// An axis that passes at that velocity does not turn back. The fastest path to a higher one, a little above it and all over the range,
 /// leads beyond the position.
 #[test]
 fn it_is_the_highest_that_the_fastest_way_reaches() {
@@ -69,12 +69,12 @@ fn it_is_the_highest_that_the_fastest_way_reaches() {
             assert!(is_highest || order == Order::Fourth, "{speed} {faster} {beyond} {}", context());
         }
     }
-    // Two in a thousand, of order 4: states so near the velocity limit that a fastest way passes it.
+    // Two in a thousand, of order 4: states so near the velocity limit that a fastest path passes it.
     assert!(turned * 10_000 <= count && lower * 300 <= count, "{turned} {lower} of {count}");
     assert!(bounded * 4 > count && none * 4 < count, "{bounded} {none} of {count}");
 }
 
-/// From there the distance is just enough to stop in, and from a little faster it is not.
+/// From there the distance is just enough to stop, and from a little faster it is not.
 #[test]
 fn the_next_move_can_just_be_braked() {
     let mut random = Random::seeded(9);
@@ -106,7 +106,7 @@ fn closed_forms() {
     let rest = Setpoint::default();
     let third = passing_velocity(Order::Third, &rest, 0.5, &limits, 1e3).unwrap().unwrap();
     assert!((third / 0.5_f64.cbrt() - 1.0).abs() < 1e-11, "{third}");
-    // What stands at its target passes it at rest; what moves there passes it as it is.
+    // An axis at rest at its target passes it at rest; a moving one passes it as it is.
     for order in ORDERS {
         assert_eq!(passing_velocity(order, &rest, 0.0, &limits, 1e3), Ok(Some(0.0)));
         let moving = Setpoint { v: 3.0, ..rest };
@@ -114,8 +114,8 @@ fn closed_forms() {
     }
 }
 
-/// No speed that is higher by more than a part of the limit can be passed at, by the plan that would: speeds all over what is left are
-/// tried. Whether a speed can be passed is not monotonic: a higher one needs a longer run-up, and braking on first makes room for it.
+/// No speed that is higher by more than a share of the limit can be reached at the target, by a plan: speeds all over the rest are
+/// tried. The possibility is not monotonic: a higher speed needs a longer run-up, and braking further makes room for it.
 #[test]
 fn no_much_higher_speed_passes() {
     const PARTS: [f64; 16] = [1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];

@@ -1,4 +1,4 @@
-//! One acceleration to speed up with and another one to brake with.
+//! Separate accelerations for speeding up and for braking.
 use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
@@ -74,7 +74,7 @@ fn a_trapezoid_brakes_with_its_deceleration_and_turns_with_its_acceleration() {
     assert_eq!((reversed.duration(), reversed.at(reversed.duration()).v), (3.5, -3.0));
 }
 
-/// Who keeps the direction has each acceleration for what it is; who turns round passes zero with the smaller one.
+/// An axis that keeps its direction has both accelerations; one that reverses passes zero with the smaller one.
 #[test]
 fn smooth_ways_choose_their_limits_by_the_direction() {
     let limits =
@@ -94,7 +94,7 @@ fn smooth_ways_choose_their_limits_by_the_direction() {
         // From rest to rest forwards and backwards are mirror images.
         let [forwards, backwards] = [ahead, behind].map(|target| ramps(&rest, &target, &limits).duration());
         assert_eq!(forwards.to_bits(), backwards.to_bits());
-        // Who turns round brakes with the deceleration to a stand, and speeds up with the acceleration from there.
+        // An axis that reverses brakes with the deceleration to a stand, and speeds up with the acceleration from there.
         for limits in [limits, alike] {
             let stop = plain(&moving, &Target::Velocity(0.0), limits.towards(1.0));
             let from_there = plain(&stop.at(f64::MAX), &behind, limits.towards(-1.0));

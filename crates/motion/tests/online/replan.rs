@@ -1,16 +1,16 @@
-//! Plans made again on their own way, with nothing changed.
+//! Plans repeated on their own path, with nothing changed.
 //!
-//! Oracle: the plan in force, which is one of the ways from each of its own states.
+//! Oracle: the plan in force, which is one of the paths from each of its own states.
 use crate::random::{Random, limits, sweep_size};
 use crate::request::Request;
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Target, Transition};
 
-/// Part of its time by which a plan made again may be later: the times are sums of a dozen, each rounded, and at order 4 roots.
+/// Share of its time by which a repeated plan may be later: the times are sums of a dozen, each rounded, and at order 4 roots.
 const LATER: f64 = 1e-9;
 
-/// Part of the velocity limit below which a velocity is rest: pulses of the length √ε stay below it.
+/// Share of the velocity limit below which a velocity is rest: pulses of the length √ε stay below it.
 const REST: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy)]
@@ -44,7 +44,7 @@ impl Limits {
     }
 }
 
-/// A plan in force, and when it is made again.
+/// A plan in force, and the time of its repetition.
 struct Replan {
     order: Order,
     target: Target,
@@ -60,7 +60,7 @@ impl Replan {
         let speed = limits.velocity();
         let mut from = Setpoint { x: length * random.signed(), ..Setpoint::default() };
         if random.unit() < 0.7 {
-            // A state on the way of another move.
+            // A state during another move.
             let target = Target::Position { x: from.x + random.signed() * length * random.decades(-2.0, 1.0), v: 0.0 };
             let way = limits.plan(order, &from, &target);
             from = way.at(random.unit() * way.duration());
@@ -80,12 +80,12 @@ impl Replan {
         self.limits.plan(self.order, &self.plan.at(self.time), &self.target)
     }
 
-    /// How much later it arrives, as a part of the time of the plan in force.
+    /// Delay of its arrival, relative to the time of the plan in force.
     fn later(&self, again: &Transition) -> f64 {
         (self.time + again.duration() - self.plan.duration()) / self.plan.duration()
     }
 
-    /// True where `again` moves in a direction in which the plan in force does not move from here on.
+    /// True if `again` moves in a direction in which the plan in force does not move from here on.
     fn turns_round(&self, again: &Transition) -> bool {
         let rest = REST * self.limits.velocity();
         let is_new = |sign: f64| fastest(again, 0.0, sign) > rest && fastest(&self.plan, self.time, sign) <= 0.1 * rest;
@@ -101,10 +101,10 @@ fn fastest(plan: &Transition, time: f64, sign: f64) -> f64 {
     parts.chain([time, plan.duration()]).map(|at| sign * plan.at(at).v).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Before, 14 % were later at order 2, 22 % at order 3 and 34 % at order 4, and 6 % turned round on the way to a passed target.
+/// Before, 14 % were later at order 2, 22 % at order 3 and 34 % at order 4, and 6 % reversed on the path to a passed target.
 ///
-/// Those that are left are plans of order 4 that are kept by braking first, which [`Effort::Fast`] does not look for to the end; and
-/// states so near the target that what is left is no more than the rounding of what is behind.
+/// The remaining ones are plans of order 4 that keep the limits by braking first, for which the search of [`Effort::Fast`] is bounded; and
+/// states so near the target that the remaining distance is no more than the rounding of the distance behind.
 #[test]
 fn a_plan_made_again_is_not_later_and_turns_round_nowhere() {
     let mut random = Random::seeded(39);
@@ -120,17 +120,17 @@ fn a_plan_made_again_is_not_later_and_turns_round_nowhere() {
         turned += usize::from(replan.turns_round(&again));
     }
     println!("{later:?} of {plans:?} are later, {turned} turn round");
-    // An axis that has to turn round more than once has the choice of ways by ramps that are not the shortest.
+    // An axis that has to reverse more than once has the choice of paths by ramps that are not the shortest.
     for (later, part) in [(later[0], plans[0] * 2 / 1000), (later[1], plans[1] * 5 / 1000)] {
         // Twice the standard deviation of a small draw.
         let (later, part) = (f64::from(later), f64::from(part));
         assert!(later <= part + 2.0 * part.sqrt(), "{later} are later, {part} at most");
     }
-    // One in 100 000 is so near its target after so long a way that the rounding of that is more than what is left.
+    // One in 100 000 is so near its target after so long a path that its rounding exceeds the remaining distance.
     assert!(turned * 50_000 <= count, "{turned} of {count} turn round");
 }
 
-/// The end velocity of the straight way was 5.5e-17 m/s short, and the pulse of 1e-8 s that made up for it carried the axis past
+/// The end velocity of the direct path was 5.5e-17 m/s short, and the pulse of 1e-8 s that made up for it carried the axis past
 /// its target: 1.7 s in place of 0.05 s.
 #[test]
 fn the_last_stretches_are_kept_to_the_last_bit_of_their_state() {

@@ -5,7 +5,7 @@ use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 
-/// What one line asks for.
+/// Request of one line.
 #[derive(Debug)]
 pub(crate) struct Request {
     pub(crate) order: Order,
@@ -40,9 +40,9 @@ impl Request {
     }
 }
 
-/// By how much the last polynomial misses what the target says: position, velocity, acceleration, jerk.
+/// Difference between the end of the last polynomial and the target: position, velocity, acceleration, jerk.
 pub(crate) fn jump(planned: &Transition) -> [f64; 4] {
-    // Where its own length ends: before a day is over two instants are 1.5e-11 s apart.
+    // At the end of its own length: before a day is over two instants are 1.5e-11 s apart.
     let before = planned.piece(planned.duration().next_down()).at(f64::MAX);
     let end = planned.at(planned.duration());
     [before.x - end.x, before.v - end.v, before.a - end.a, before.j - end.j].map(f64::abs)

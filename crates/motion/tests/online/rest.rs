@@ -4,7 +4,7 @@ use servobench_base::Setpoint;
 use servobench_motion::online::{Effort, Target, Transition};
 use servobench_motion::{Limits, Order, Profile};
 
-/// Oracle: orders 2 and 3 the product of boxes, order 4 the optimum that is planned from the middle, with other equations.
+/// Oracle: orders 2 and 3 the product of moving averages, order 4 the optimum that is planned from the middle, with other equations.
 #[test]
 fn from_rest_to_rest_it_takes_as_long_as_the_offline_plan() {
     let mut random = Random::seeded(1);

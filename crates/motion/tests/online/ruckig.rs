@@ -1,4 +1,4 @@
-//! Order 3 against a program that others wrote: `rsruckig`, the port of Ruckig (Berscheid & Kröger, RSS 2021).
+//! Order 3 against independent code: `rsruckig`, the port of Ruckig (Berscheid & Kröger, RSS 2021).
 use crate::random::{Random, sweep_size};
 use rsruckig::prelude::*;
 use servobench_base::Setpoint;
@@ -20,7 +20,7 @@ fn duration(from: &Setpoint, x: f64, v: f64, limits: &DirectionalLimits) -> Opti
     Some(trajectory.get_duration())
 }
 
-/// Where the acceleration at the start does not force the velocity beyond its limit: there Ruckig brakes first, and is slower.
+/// Without an initial acceleration that forces the velocity beyond its limit: there Ruckig brakes first, and is slower.
 #[test]
 fn order_3_takes_as_long_as_ruckig() {
     let mut random = Random::seeded(3);

@@ -1,11 +1,11 @@
-//! Order 2 against a jerk that is no limit, and against worked numbers.
+//! Order 2 against a practically unlimited jerk, and against worked numbers.
 use crate::random::{Random, limits, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 
 /// Oracle: order 3, which is planned by a search, with a jerk that takes the acceleration from limit to limit in a
-/// millionth of the time. It may be longer by what its changes of the acceleration take; and shorter, by less than that, only where
+/// millionth of the time. It may be longer by the duration of its changes of the acceleration; and shorter, by less than that, only if
 /// it begins beyond the velocity limit, which it leaves later.
 #[test]
 fn order_2_is_order_3_without_a_limit_of_jerk() {
@@ -30,7 +30,7 @@ fn order_2_is_order_3_without_a_limit_of_jerk() {
         let is_beyond = from.v > velocity.above || from.v < -velocity.below;
         let slack = if is_beyond { 1e-5 * time } else { 1e-12 * (three + time) };
         assert!(two <= three + slack, "{from:?} to {target:?} within {limits:?}: {two} s, {three} s");
-        // Near a target that is hardly out of reach the time is the root of the distance.
+        // Near a target that is just out of reach the time is the root of the distance.
         assert!(three - two <= 1e-2 * time, "{from:?} to {target:?} within {limits:?}: {two} s, {three} s");
     }
 }
@@ -46,11 +46,11 @@ fn worked_moves() {
         (rest, 0.625, 0.0, 1.25),
         // 0.5 m up, 2 m down, 2.5 m at 2 m/s.
         (rest, 5.0, 0.0, 0.5 + 2.0 + 1.25),
-        // From 2 m/s with 2 m to stop in: straight down.
+        // From 2 m/s with 2 m to stop in: directly down.
         (Setpoint { v: 2.0, ..rest }, 2.0, 0.0, 2.0),
         // From 3 m/s, beyond the limit: 1 s and 2.5 m to it, 2 m down from it, 4 m at 2 m/s.
         (Setpoint { v: 3.0, ..rest }, 8.5, 0.0, 1.0 + 2.0 + 2.0),
-        // Passed at 2 m/s against the way there: 0.5 m up to 2 m/s, 1 m at that, 2 m down to rest, 2 m back to −2 m/s.
+        // Passed at 2 m/s against the direction there: 0.5 m up to 2 m/s, 1 m at that, 2 m down to rest, 2 m back to −2 m/s.
         (rest, 1.5, -2.0, 0.5 + 0.5 + 2.0 + 2.0),
     ];
     for (from, x, v, seconds) in cases {

@@ -1,4 +1,4 @@
-//! An axis that turns round with one acceleration to speed up and another one to brake, under limits that change in mid-move.
+//! An axis that reverses with separate accelerations for speeding up and braking, under limits that change in mid-move.
 use crate::random::{Random, limits, sweep_size};
 use crate::request::jump;
 use rsruckig::prelude::*;
@@ -6,7 +6,7 @@ use servobench_base::Setpoint;
 use servobench_motion::Order;
 use servobench_motion::online::{DirectionalLimits, Effort, RampLimits, Sides, Target, Transition};
 
-/// What a chain of moves is planned with.
+/// State of a chain of moves.
 struct Chain {
     random: Random,
     limits: RampLimits,
@@ -25,7 +25,7 @@ impl Chain {
         Self { random, limits, length: d * t * t * t * t, state: Setpoint::default() }
     }
 
-    /// Other limits now and then, as the next command of a program has them.
+    /// Other limits now and then, as of the next command of a program.
     fn change_limits(&mut self) {
         if self.random.unit() < 0.5 {
             let mut factor = || self.random.decades(-0.4, 0.4);
@@ -58,7 +58,7 @@ impl Chain {
     }
 }
 
-/// Largest part by which `at` is beyond the limits; the last bits of a velocity that is zero have a sign, too.
+/// Largest relative excess of `at` over the limits; the last bits of a velocity that is zero have a sign, too.
 fn excess(at: &Setpoint, order: Order, limits: &RampLimits) -> f64 {
     let RampLimits { velocity, acceleration, deceleration, jerk, .. } = *limits;
     let stands = at.v.abs() < 1e-9 * (velocity.above + velocity.below);
@@ -80,7 +80,7 @@ fn check(order: Order, chain: &Chain, target: &Target, planned: &Transition) {
             assert!(beyond <= 1e-9, "{beyond} {at:?} {}", context());
         }
     }
-    // Limits far apart make long ways to near targets.
+    // Limits far apart make long paths to near targets.
     let fastest = planned.segments().map(|segment| planned.at(segment.start).v.abs()).fold(0.0, f64::max);
     let travel = chain.length + fastest * planned.duration();
     let [x, v, a, j] = jump(planned);
@@ -90,17 +90,17 @@ fn check(order: Order, chain: &Chain, target: &Target, planned: &Transition) {
     assert!(order < Order::Fourth || j <= 1e-9 * jerk, "{j} {}", context());
 }
 
-/// Whether the axis moves to both sides, but for rounding.
+/// True if the axis moves to both sides, except for rounding.
 fn turns(planned: &Transition) -> bool {
     let velocities = (0..=200).map(|k| planned.at(f64::from(k) / 200.0 * planned.duration()).v);
     let (low, high) = velocities.fold((0.0_f64, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
     low.min(-high) < high.max(-low) && low.abs().min(high) > 1e-9 * (high - low)
 }
 
-/// Every way keeps both accelerations for what they are, and one that turns round is never longer than the smaller one alone would
-/// be, by the factor `allowed`; from states that this one does not leave its limits from.
+/// Every path keeps both accelerations, and one that reverses is never longer than with the smaller one alone
+/// by more than the factor `allowed`; from states that do not leave the limits of the latter.
 ///
-/// Order 4 has ways that do not turn round, and are longer for the reason that [`Effort`] is there: these are counted.
+/// Order 4 has paths that do not reverse, and are longer for the reason of [`Effort`]: these are counted.
 fn chains(order: Order, allowed: f64) {
     const LINKS: usize = 20;
     let (mut compared, mut turning, mut shorter, mut straight, mut worst, mut seed) = (0, 0, 0, 0, 1.0_f64, 0);
@@ -193,10 +193,10 @@ fn an_ulp_beyond_the_acceleration_costs_nothing() {
     assert!(planned.duration() < slow.duration(), "{} {}", planned.duration(), slow.duration());
 }
 
-/// Limits of a leg, as Ruckig has them one derivative lower: acceleration, jerk and snap.
+/// Limits of a leg in Ruckig, one derivative lower: acceleration, jerk and snap.
 type Leg = [f64; 3];
 
-/// How long the leg between two states (v, a, j) takes, by Ruckig in place of (x, v, a).
+/// Duration of the leg between two states (v, a, j), by Ruckig in place of (x, v, a).
 fn leg(from: [f64; 3], to: [f64; 3], limits: Leg) -> f64 {
     let mut input = InputParameter::new(None);
     [input.current_position[0], input.current_velocity[0], input.current_acceleration[0]] = from;
@@ -207,7 +207,7 @@ fn leg(from: [f64; 3], to: [f64; 3], limits: Leg) -> f64 {
     planned.map_or(f64::INFINITY, |_| trajectory.get_duration())
 }
 
-/// The least of `cost` over an acceleration and a jerk up to `most` each, looked for in ever smaller parts of the plane.
+/// The least of `cost` over an acceleration and a jerk up to `most` each, searched for in ever smaller parts of the plane.
 fn least(most: [f64; 2], cost: impl Fn(f64, f64) -> f64) -> f64 {
     let (mut best, mut at) = (f64::INFINITY, [0.5 * most[0], 0.0]);
     let mut size = [0.5 * most[0], most[1]];
@@ -229,7 +229,7 @@ fn least(most: [f64; 2], cost: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 /// Oracle: two legs by Ruckig, to a stand with any acceleration that both limits permit and any jerk, and from there, the best of
-/// which is looked for by a search in the plane of both. Order 3 is met to rounding of the search.
+/// which is found by a search in the plane of both. Order 3 is met to rounding of the search.
 #[test]
 fn a_reversal_takes_as_long_as_it_must() {
     let mut random = Random::seeded(21);
@@ -243,7 +243,7 @@ fn a_reversal_takes_as_long_as_it_must() {
             Transition::plan_ramps(order, &from, &Target::Velocity(w), &limits, Effort::Fast).unwrap().duration()
         };
         let fourth = least([a.min(d), jerk], |through, j| {
-            // The jerk leads on: beyond the limit behind zero, or from beyond the one before it.
+            // The jerk continues: beyond the limit behind zero, or from beyond the one before it.
             let peak = through + 0.5 * j * j / snap;
             if peak > if j > 0.0 { a } else { d } {
                 return f64::INFINITY;
@@ -251,7 +251,7 @@ fn a_reversal_takes_as_long_as_it_must() {
             leg([-v, 0.0, 0.0], [0.0, through, j], [d, jerk, snap])
                 + leg([0.0, through, j], [w, 0.0, 0.0], [a, jerk, snap])
         });
-        // Without a limit of snap to speak of, order 3 is order 4.
+        // With a practically unlimited snap, order 3 is order 4.
         let quick = 1e7 * jerk * jerk / a.min(d);
         let third = least([a.min(d), 0.0], |through, _| {
             leg([-v, 0.0, 0.0], [0.0, through, 0.0], [d, jerk, quick])

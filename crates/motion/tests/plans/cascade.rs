@@ -11,8 +11,8 @@ fn values(s: Setpoint) -> [f64; 5] {
     [s.x, s.v, s.a, s.j, s.s]
 }
 
-/// Oracle: whole numbers. With Ts = 1 and a whole amplitude every sum of the cascade is exact in `f64`; the product of
-/// the boxes is where it ends, at sample N and not before, after a standstill of n − 1 samples.
+/// Oracle: whole numbers. With Ts = 1 and a whole amplitude every sum of the cascade is exact in `f64`; it ends at the product of
+/// the lengths, at sample N and not before, after a standstill of n − 1 samples.
 #[test]
 fn it_lands_on_the_product_of_the_boxes_at_sample_n_exactly() {
     for boxes in [vec![3, 5], vec![2, 3, 7], vec![1, 1, 2, 4], vec![3, 4, 8, 20], vec![5, 5, 10, 20]] {
@@ -20,7 +20,7 @@ fn it_lands_on_the_product_of_the_boxes_at_sample_n_exactly() {
         let n = order.derivative();
         let product: f64 = boxes.iter().map(|length| f64::from(*length)).product();
         let peak = |skip: usize| boxes.iter().rev().skip(skip).map(|length| f64::from(*length)).product::<f64>();
-        // These limits have these boxes as their fewest, since each binds.
+        // With these limits the lengths are the fewest, since each binds.
         let limits =
             Limits { velocity: peak(1), acceleration: peak(2), jerk: peak(3), snap: if n == 4 { 1.0 } else { 9.0 } };
         let plan = Profile::plan_fewest(order, product, &limits, 1.0).unwrap();
@@ -47,7 +47,7 @@ fn it_lands_on_the_product_of_the_boxes_at_sample_n_exactly() {
         }
         assert_eq!(i32::try_from(passed).unwrap(), total);
         assert_eq!(cascade.state(), Setpoint::at_rest(product), "{boxes:?}");
-        // And the closed form from run to run says the same.
+        // The closed form from run to run gives the same.
         let mut along = Cascade::at_rest(order, 0.0, 1.0).unwrap();
         assert_eq!(along.along(runs.iter().copied()).count(), passed);
         assert_eq!(along.state(), Setpoint::at_rest(product), "{boxes:?}");
@@ -73,7 +73,7 @@ fn it_lags_by_half_a_sample_for_each_integrator_but_one() {
     }
 }
 
-/// Random requests land on the distance and stay, whichever way they are executed and planned.
+/// Random requests land at the distance and stay, by every planner and execution.
 #[test]
 fn every_sampled_plan_lands() {
     let mut random = Random::seeded(72);

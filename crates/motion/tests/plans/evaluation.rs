@@ -20,7 +20,7 @@ fn sampled_plans(seed: u64) -> impl Iterator<Item = Profile> {
         .filter_map(|r| Profile::plan_sampled(r.order, r.distance, &r.limits, r.sample_time).ok())
 }
 
-/// Each derivative is the slope of the one below it, and the highest is what the segment says: by Simpson's rule over
+/// Each derivative is the slope of the one below it, and the highest is the value of the segment: by Simpson's rule over
 /// a part of a segment, which is exact for the cubic that a velocity of order 4 is.
 #[test]
 fn every_derivative_is_the_slope_of_the_one_below() {
@@ -47,7 +47,7 @@ fn every_derivative_is_the_slope_of_the_one_below() {
     }
 }
 
-/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, bit for bit: at
+/// Keeping a piece as long as it applies gives the set-points of a look-up at every instant, bit for bit: at
 /// every switching instant, at the floats beside it, within the tolerance of it and anywhere; and no piece ends early.
 #[test]
 fn a_piece_holds_exactly_as_long_as_it_is_the_one() {
@@ -91,7 +91,7 @@ fn no_instant_exceeds_a_peak_or_leaves_the_way() {
     }
 }
 
-/// 1000 s into a program, times differ by an ulp of 1000 s according to how they are computed.
+/// 1000 s into a program, times differ by an ulp of 1000 s depending on their computation.
 #[test]
 fn a_switching_instant_is_hit_however_the_time_was_rounded() {
     let plan = Profile::plan_sampled(Order::Fourth, 0.3, &LIMITS, 1.0 / 3000.0).unwrap();

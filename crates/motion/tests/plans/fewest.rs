@@ -1,8 +1,8 @@
-//! The fewest samples of the boxes, against brute force and against the sequential rounding.
+//! The fewest samples by moving averages, against brute force and against the sequential rounding.
 use crate::requests::{Random, Request, request, sweep_size};
 use servobench_motion::{Limits, Order, Profile};
 
-/// What the boxes have to reach: X/V, X/A, X/J, X/D in samples, by the number of boxes counted from the last.
+/// Required products: X/V, X/A, X/J, X/D in samples, by the number of averages counted from the last.
 fn needs(request: &Request) -> Vec<f64> {
     let Limits { velocity, acceleration, jerk, snap } = request.limits;
     let ts = request.sample_time;
@@ -11,12 +11,12 @@ fn needs(request: &Request) -> Vec<f64> {
         .iter()
         .zip(powers)
         .take(request.order.derivative())
-        // Met but for the rounding of a request and a handful of products.
+        // Met except for the rounding of a request and a handful of products.
         .map(|(limit, power)| request.distance.abs() / (limit * power) * (1.0 - 1e-14))
         .collect()
 }
 
-/// Whether boxes n1 … nn, the first of which is first, reach what is needed, in the order that keeps pulses apart.
+/// True if averages n1 … nn, n1 being the first, reach the required products, in the order that keeps pulses apart.
 fn reaches(boxes: &[u64], needs: &[f64]) -> bool {
     let (mut product, mut sum) = (1.0, 0);
     let enough = boxes.iter().rev().zip(needs).all(|(length, need)| {
@@ -31,7 +31,7 @@ fn reaches(boxes: &[u64], needs: &[f64]) -> bool {
         })
 }
 
-/// Whether any boxes of `total` samples reach what is needed: all of them are tried.
+/// True if any averages of `total` samples reach the required products: all of them are tried.
 fn any_reach(order: Order, total: u64, needs: &[f64]) -> bool {
     let first = |most: u64| 1..=most;
     match order {
@@ -47,8 +47,8 @@ fn any_reach(order: Order, total: u64, needs: &[f64]) -> bool {
     }
 }
 
-/// No total below is possible, by trying every combination of boxes; a longer total is possible if a shorter one is, as
-/// the last box may take any more.
+/// No total below is possible, by trying every combination of averages; a longer total is possible if a shorter one is, as
+/// the last one may take any more.
 #[test]
 fn no_boxes_of_fewer_samples_reach_the_distance() {
     let mut random = Random::seeded(29);

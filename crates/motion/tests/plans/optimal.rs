@@ -3,7 +3,7 @@ use crate::requests::{Random, request, sweep_size};
 use servobench_base::Setpoint;
 use servobench_motion::{Limits, Order, Profile};
 
-/// Oracle: with the snap alone limited the shortest move takes (384·x/d)^¼, that of the boxes (512·x/d)^¼.
+/// Oracle: with the snap alone limited the shortest move takes (384·x/d)^¼, that of moving averages (512·x/d)^¼.
 #[test]
 fn with_snap_alone_it_takes_the_fourth_root_of_384() {
     let mut random = Random::seeded(384);
@@ -18,7 +18,7 @@ fn with_snap_alone_it_takes_the_fourth_root_of_384() {
     }
 }
 
-/// Never longer than the published one, never beyond a limit, and on its way from 0 to the distance.
+/// Never longer than the published one, never beyond a limit, continuous in the middle, and exactly at the distance in the end.
 #[test]
 fn it_is_never_longer_and_keeps_the_limits() {
     let mut random = Random::seeded(4);
@@ -67,7 +67,7 @@ fn it_is_never_longer_and_keeps_the_limits() {
     assert!(gained > 0.05 && cruising > 0, "{gained} {cruising}");
 }
 
-/// Oracle: half moves put together from their segments. Each is the shortest for the velocity and the distance that it
+/// Oracle: half moves assembled from their segments. Each is the shortest for the velocity and the distance that it
 /// reaches in the middle, so that a plan with these has to find it again.
 #[test]
 fn moves_that_touch_the_velocity_limit_are_found_again() {
@@ -78,7 +78,7 @@ fn moves_that_touch_the_velocity_limit_are_found_again() {
         let end = random.unit() * jerk.min((2.0 * peak).sqrt());
         let hold = if random.index(2) == 0 { 0.0 } else { peak.sqrt() * random.unit() };
         let acceleration = if hold > 0.0 { peak } else { peak * (1.0 + random.unit()) };
-        // Up to the jerk `most`, held for `held`, and down to zero: most·(most + held) is what the acceleration gains.
+        // Up to the jerk `most`, held for `held`, and down to zero: the acceleration gains most·(most + held).
         let swell = |gained: f64| {
             let most = jerk.min(gained.sqrt());
             (most, gained / most - most)

@@ -5,7 +5,7 @@
 use crate::requests::{Random, request, sweep_size};
 use servobench_motion::{Limits, Order, Profile, Times};
 
-/// A request whose rounding is decided beyond the precision of the printed formulas.
+/// A request whose rounding depends on more than the precision of the printed formulas.
 struct Undecided;
 
 /// Times t_d, t_j, t_a, t_v (s) and the snap dd9; continuous for a sample time of zero.
@@ -28,7 +28,7 @@ fn paper(x: f64, limits: &Limits, ts: f64) -> Result<([f64; 4], f64), Undecided>
     // The conditions (7), (12), (17), (26), (31), (41) with equality up to rounding.
     let within = |peak: f64, bound: f64| peak <= bound * (1.0 + 1e-12);
 
-    // However small, t_d is not nothing.
+    // Even a tiny t_d counts.
     let up_to_one = |t: f64| if t < 0.5 * ts { Ok(ts) } else { up(t) };
 
     // (4)–(6); the bar on d is missing in print, and the bracket of (6) stacks [T; x/(8T⁴)].
@@ -132,13 +132,13 @@ fn the_continuous_plan_is_that_of_the_printed_equations() {
         let plan = Profile::plan(Order::Fourth, request.distance, &request.limits).unwrap();
         let Ok((expected, _)) = paper(request.distance.abs(), &request.limits, 0.0) else { unreachable!() };
         let duration = 8.0 * expected[0] + 4.0 * expected[1] + 2.0 * expected[2] + expected[3];
-        // (23) and (38) lose the digits by which t_j and t_a are smaller than the boxes that hold them.
+        // (23) and (38) lose the digits by which t_j and t_a are smaller than the averages that contain them.
         assert!((plan.duration() / duration - 1.0).abs() < 1e-12, "{request:?}: {} {duration}", plan.duration());
         assert!((times(&plan)[0] / expected[0] - 1.0).abs() < 1e-14, "{request:?}");
     }
 }
 
-/// Where the literal `ceil` goes wrong: a snap-only move. x/(8·d·Ts⁴) = 937 500 lies between 31⁴ and 32⁴, hence
+/// Failure of the literal `ceil`: a snap-only move. x/(8·d·Ts⁴) = 937 500 lies between 31⁴ and 32⁴, hence
 /// 32 samples of t_d and no dwell; but (23) and (38) leave t_j and t_a of some 1e-17 s, and `ceil` makes a sample of
 /// each, four and two times over, and one more of t_v.
 #[test]

@@ -46,14 +46,14 @@ fn values(s: Setpoint) -> [f64; 5] {
     [s.x, s.v, s.a, s.j, s.s]
 }
 
-/// What is planned is executed with 106 bits, sample by sample: no limit is exceeded by more than the rounding that the planner
+/// The plan is executed with 106 bits, sample by sample: no limit is exceeded by more than the rounding that the planner
 /// admits, 1e-11, the reported peaks are the largest values, and the end is at rest at the distance. The order of the
-/// counts is that of the freedom that each way has.
+/// counts is that of the freedom of the planners.
 #[test]
 fn forward_euler_keeps_every_limit_at_every_sample_and_lands() {
     let mut random = Random::seeded(61);
     let (mut proven, mut tried) = (0, 0);
-    // By how many samples fewest boxes and the shortest move of order 4 are shorter than published: sum and most.
+    // Samples by which the fewest averages and the shortest move of order 4 are shorter than published: sum and most.
     let (mut count, mut shorter) = (0_u32, [(0, 0); 2]);
     for _ in 0..sweep_size() / 100 {
         let about = 4.0 + 290.0 * random.unit();
@@ -109,7 +109,7 @@ fn forward_euler_keeps_every_limit_at_every_sample_and_lands() {
     assert!(f64::from(proven) >= 0.99 * f64::from(tried), "{proven} of {tried} are proven to be the shortest");
 }
 
-/// What the cascade keeps at its samples the exact hold keeps at all times: at the ends and turning points of its pieces,
+/// Limits kept by the cascade at its samples are kept by the exact hold at all times: at the ends and turning points of its pieces,
 /// which are in the peaks, and at any.
 #[test]
 fn the_exact_hold_keeps_every_limit_at_every_time() {
@@ -135,7 +135,7 @@ fn the_exact_hold_keeps_every_limit_at_every_time() {
         // Velocity is flat where it is largest, a thousandth of the move beside it.
         assert!((most[1] / peaks[0] - 1.0).abs() < 0.01, "{} {}", most[1], peaks[0]);
         assert_eq!(plan.at(plan.duration()), Setpoint::at_rest(request.distance));
-        // In the middle, where the half meets its reflection, and at any other time, it goes on without a step.
+        // In the middle, where the half meets its reflection, and at any other time, it continues without a step.
         for k in 0..40 {
             let t = if k == 0 { 0.5 } else { random.unit() } * plan.duration();
             let step = 1e-7 * plan.duration();
@@ -147,7 +147,7 @@ fn the_exact_hold_keeps_every_limit_at_every_time() {
     }
 }
 
-/// The farthest that `total` samples reach, by looking at every corner of the set of all moves: whole moves, no symmetry, no
+/// The largest distance of `total` samples, by trying every corner of the set of all moves: whole moves, without symmetry or
 /// program. A corner is where as many limits are met as there are samples left free by the conditions of rest.
 fn farthest(total: usize, bounds: &[f64]) -> f64 {
     let n = bounds.len() + 1;
@@ -187,7 +187,7 @@ fn farthest(total: usize, bounds: &[f64]) -> f64 {
     }
 }
 
-/// Gauss's elimination; `None` if the rows depend on each other.
+/// Gaussian elimination; `None` if the rows depend on each other.
 fn solved(mut system: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let size = system.len();
     for i in 0..size {
@@ -256,7 +256,7 @@ fn every_way_to_execute_it_lands() {
         // Up to 300 runs, each rounded at the size of the whole move.
         assert!((cascade.state().x / plan.distance() - 1.0).abs() < 1e-9, "{:?}", cascade.state());
         assert_eq!(plan.at(plan.samples() as f64 * ts), Setpoint::at_rest(plan.distance()));
-        // The hold of the runs one after the other is what is evaluated.
+        // The hold of consecutive runs equals the evaluated set-point.
         let (mut state, mut time) = (Setpoint::default(), 0);
         for run in plan.runs() {
             match request.order {
@@ -273,8 +273,8 @@ fn every_way_to_execute_it_lands() {
     }
 }
 
-/// Whoever keeps a piece as long as it holds gets the set-points of whoever looks it up at every instant, bit for bit, and looks
-/// up one for each run at most, and two more: where the middle of the move cuts a run in two, and the rest at the end.
+/// Keeping a piece as long as it applies gives the set-points of a look-up at every instant, bit for bit, with one look-up
+/// for each run at most, and two more: where the middle of the move cuts a run in two, and the rest at the end.
 #[test]
 fn a_piece_holds_exactly_as_long_as_it_is_the_one() {
     let mut random = Random::seeded(66);
@@ -334,13 +334,13 @@ fn what_the_boxes_refuse_is_refused_and_no_distance_is_no_move() {
     // One encoder count within one sample: as short as its order allows.
     let one = plan(1e-9, &limits, 0.1).unwrap();
     assert_eq!((one.samples(), one.at_least()), (4, 4), "s, −3s, 3s, −s");
-    // More samples than are searched: the boxes, without a proof.
+    // More samples than are searched: moving averages, without a proof.
     let slow = plan(1.0, &limits, 1e-6).unwrap();
     assert_eq!(slow.at_least(), 1);
     assert_eq!(slow.at(slow.duration()), Setpoint::at_rest(1.0));
 }
 
-/// Wide requests, ten decades apart, as the other planners are swept with.
+/// Wide requests, ten decades apart, as in the sweeps of the other planners.
 #[test]
 fn requests_of_any_size_are_proven() {
     let mut random = Random::seeded(65);

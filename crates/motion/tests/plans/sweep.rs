@@ -1,6 +1,6 @@
-//! Random requests: does the plan land, does it keep its limits, is it on the grid, is no sample wasted?
+//! Random requests: the plan lands, keeps its limits, is on the grid, and wastes no sample.
 //!
-//! The oracle integrates the published segments in 106-bit arithmetic, in the order of time, knowing nothing of boxes.
+//! The oracle integrates the published segments in 106-bit arithmetic, in the order of time, without using moving averages.
 use crate::double_double::Dd;
 use crate::requests::{Random, Request, request, sweep_size};
 use servobench_motion::{Limits, Order, PlanError, Profile};
@@ -63,12 +63,12 @@ fn integrate(plan: &Profile, limits: &Limits, what: &dyn std::fmt::Debug) -> f64
 
 /// The counts again in 106 bits: each is the smallest for its step.
 ///
-/// Step k fixes box k; those behind it are the sums of their predecessors. Its amplitude is the one at which the
+/// Step k fixes average k; those behind it are the sums of their predecessors. Its amplitude is the one at which the
 /// tightest bound is met. One sample less would not have reached that bound with the amplitude of the step before.
 fn check_counts(request: &Request, counts: &[u64], what: &dyn std::fmt::Debug) {
     let n = request.order.derivative();
     let ts = Dd::from(request.sample_time);
-    // By the number of boxes in the product that it bounds: 0 is the highest derivative, n the distance.
+    // By the number of averages in the product that it bounds: 0 is the highest derivative, n the distance.
     let mut bounds = vec![Dd::from(request.distance.abs())];
     let mut power = Dd::from(1.0);
     for k in 1..=n {
@@ -130,7 +130,7 @@ fn sampled_plans_land_keep_their_limits_and_waste_nothing() {
         }
         worst = worst.max(integrate(&plan, &limits, &request));
         check_counts(&request, &samples.boxes, &request);
-        // The continuous move is the shortest of its shape; 1e-12 is what it treats as no dwell.
+        // The continuous move is the shortest of its shape; it treats 1e-12 as no dwell.
         assert!(plan.duration() >= continuous.duration() * (1.0 - 1e-11), "{request:?}: faster than continuous");
     }
     // At most four steps of 16 ulp; the bar is 1e-9.
@@ -148,7 +148,7 @@ fn continuous_plans_land_and_keep_their_limits() {
         worst = worst.max(integrate(&plan, &request.limits, &request));
         assert!(plan.samples().is_none());
     }
-    // A dwell below 1e-12 of its box is dropped, which a box enters with its fourth power at most; the bar is 1e-9.
+    // A dwell below 1e-12 of its average is dropped, which an average enters with its fourth power at most; the bar is 1e-9.
     assert!(worst < 4e-12, "a limit is exceeded by {worst:e}");
 }
 

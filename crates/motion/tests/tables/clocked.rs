@@ -1,11 +1,11 @@
-//! Position profiles for a drive that gets its commands at the instants of a clock.
+//! Position profiles for a drive with commands at the instants of a clock.
 use crate::random::Random;
 use servobench_motion::position_profile::{
     Clock, ClockedPlateaus, ClockedSpline, Command, PlateauShare, Plateaus, Spline,
 };
 use servobench_motion::pvt::Knot;
 
-/// Where a drive is at `t` that obeys the commands from `x` at velocity `v` and time `start` on.
+/// Position at `t` of a drive that obeys the commands from `x` at velocity `v` and time `start` on.
 fn place(commands: &[Command], [start, x, v]: [f64; 3], t: f64) -> f64 {
     let (mut x, mut v, mut now) = (x, v, start);
     for (k, command) in commands.iter().enumerate() {
@@ -39,14 +39,14 @@ fn is_whole(periods: f64) -> bool {
     (periods - periods.round()).abs() < 1e-6
 }
 
-/// Every position is met at its own time, wherever that is between two instants, by commands at instants whose ramps end at instants.
+/// Every position is met at its own time, anywhere between two instants, by commands at instants whose ramps end at instants.
 /// Oracle: a drive that obeys. Roundings of a metre, added up over the segments, and of the times.
 #[test]
 fn plateaus_meet_every_position_at_any_share_and_period() {
     let mut random = Random::seeded(175);
     for case in 0..2000 {
         let period = 1e-4 * (1.0 + 99.0 * random.unit());
-        // The first and the last segment have room for a ramp of their own beside that of the next point.
+        // The first and the last segment have space for a separate ramp beside that of the next point.
         let original = table(&mut random, 3.0 * period);
         let alpha = [0.25, 0.5, 0.01, 0.5 * random.unit().max(1e-9)][case % 4];
         let [start, end] = [random.unit() - 0.5, random.unit() - 0.5].map(|v| if case % 3 == 0 { 0.0 } else { v });
@@ -73,7 +73,7 @@ fn plateaus_meet_every_position_at_any_share_and_period() {
     }
 }
 
-/// Where everything is on the grid already, nothing changes.
+/// With everything on the grid already, nothing changes.
 #[test]
 fn plateaus_on_the_grid_are_those_without_one() {
     let knots = [(0.0, 0.0), (0.05, 0.01), (0.15, 0.03), (0.25, -0.02), (0.3, 0.0)].map(|(t, x)| Knot::new(t, x));
@@ -88,7 +88,7 @@ fn plateaus_on_the_grid_are_those_without_one() {
     }
 }
 
-/// Points closer to each other than a period cannot all be met: what is kept is met, and nothing is swung around it.
+/// Points closer to each other than a period cannot all be met: those that are kept are met, and nothing swings around them.
 #[test]
 fn points_faster_than_the_clock_are_left_out() {
     let mut random = Random::seeded(1500);
@@ -113,7 +113,7 @@ fn points_faster_than_the_clock_are_left_out() {
     }
 }
 
-/// The velocity is the spline's at every command, commands are at instants, at most one at each, and as many as the rate says.
+/// The velocity is the spline's at every command, commands are at instants, at most one at each, and their number is that of the rate.
 #[test]
 fn steps_along_the_spline_are_at_instants() {
     let mut random = Random::seeded(300);
@@ -157,7 +157,7 @@ fn what_has_no_instants_is_refused() {
     assert!(ClockedPlateaus::solve(&mut knots, f64::NAN, 0.0, 0.2, clock, &mut [0.0; 2]).is_err());
 }
 
-/// The position of a drive that obeys is what the piece of any time says, and the ramp of any time is the command that was sent last.
+/// The position of a drive that obeys is given by the piece of any time, and the ramp of any time is the last command that was sent.
 /// Oracle: the drive that obeys, and the list of commands.
 #[test]
 fn a_piece_and_a_ramp_are_found_at_any_time() {
@@ -230,7 +230,7 @@ fn the_step_of_any_time_is_the_one_sent_last() {
     }
 }
 
-/// Of a single segment from rest to rest, V = p/(T·(1 − α)) and a = V/(α·T): both are the same part of 0.2 m/s and 1 m/s² at α = 0.2.
+/// For a single segment from rest to rest, V = p/(T·(1 − α)) and a = V/(α·T): both are the same part of 0.2 m/s and 1 m/s² at α = 0.2.
 #[test]
 fn the_share_of_one_segment_is_the_one_that_takes_the_smallest_part_of_the_limits() {
     let (mut knots, mut scratch) = (vec![Knot::new(0.0, 0.0), Knot::new(1.0, 0.1)], [0.0; 2]);
@@ -246,7 +246,7 @@ fn the_share_of_one_segment_is_the_one_that_takes_the_smallest_part_of_the_limit
     }
 }
 
-/// Oracle: 2000 shares, none of which takes a smaller part of the limits than the one that is chosen.
+/// Oracle: 2000 shares, none of which needs a smaller part of the limits than the chosen one.
 #[test]
 fn no_share_takes_a_smaller_part_of_the_limits() {
     let mut random = Random::seeded(2718);

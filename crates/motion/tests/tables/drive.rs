@@ -1,4 +1,4 @@
-//! An ideal drive in profile velocity mode: it ramps to the commanded velocity, stays, and never errs.
+//! An ideal drive in profile velocity mode: it ramps to the commanded velocity, and stays there exactly.
 use servobench_motion::position_profile::Command;
 
 pub(crate) struct Drive {
@@ -18,7 +18,7 @@ impl Drive {
         self.command = command;
     }
 
-    /// Ramp until the velocity is reached or `t`, whatever comes first, then straight on.
+    /// Ramps until the velocity or the time `t` is reached, then continues at that velocity.
     pub(crate) fn run_to(&mut self, t: f64) {
         let left = t - self.t;
         let missing = self.command.velocity - self.v;
@@ -33,7 +33,7 @@ impl Drive {
     }
 }
 
-/// Where the drive is and how fast at each of `times`, when it is sent `commands`.
+/// Position and velocity of the drive at each of `times`, when it is sent `commands`.
 pub(crate) fn follow(
     commands: impl Iterator<Item = Command>,
     (t, x, v): (f64, f64, f64),

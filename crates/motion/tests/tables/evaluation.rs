@@ -1,4 +1,4 @@
-//! Set-points of a table: what holds in each segment, the order of reading, a million points.
+//! Set-points of a table: the polynomial of each segment, the order of reading, a million points.
 use crate::random::{Random, walk};
 use servobench_base::Setpoint;
 use servobench_motion::pvt::{Knot, Table, average, continuous, smooth};
@@ -55,7 +55,7 @@ fn derivatives_belong_together() {
     }
 }
 
-/// PT, and PT between PVT: the slope of the points, and a cubic segment that goes on with it.
+/// PT, and PT between PVT: the slope of the points, and a cubic segment that continues with it.
 #[test]
 fn linear_segments() {
     let knots = [

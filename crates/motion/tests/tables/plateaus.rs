@@ -34,7 +34,7 @@ fn cases() -> impl Iterator<Item = (Vec<Knot>, f64, f64, f64)> {
     })
 }
 
-/// 1e-12 of the distance travelled: the drive adds up its way over all segments.
+/// 1e-12 of the distance travelled: the drive adds up its path over all segments.
 #[test]
 fn the_drive_hits_every_position() {
     for (mut knots, start, end, alpha) in cases() {
@@ -52,7 +52,7 @@ fn the_drive_hits_every_position() {
     }
 }
 
-/// The set-points are the way of the drive, and at the points of the table they are its positions bit for bit.
+/// The set-points are the path of the drive, and at the points of the table they are its positions bit for bit.
 #[test]
 fn set_points_are_what_the_drive_does() {
     for (mut knots, start, end, alpha) in cases() {
@@ -72,7 +72,7 @@ fn set_points_are_what_the_drive_does() {
     }
 }
 
-/// Velocity is constant from α·dT to (1 − α)·dT of every segment, as the source asks.
+/// Velocity is constant from α·dT to (1 − α)·dT of every segment, as the source requires.
 #[test]
 fn plateaus_are_where_they_belong() {
     let mut knots = walk(&mut Random::seeded(9), 12);

@@ -1,4 +1,4 @@
-//! Option 2 of the position profile: an ideal drive that obeys the commands errs as announced.
+//! Option 2 of the position profile: the error of an ideal drive that obeys the commands is as announced.
 use crate::drive::follow;
 use crate::random::{Random, walk};
 use servobench_motion::PlanError;
@@ -18,7 +18,7 @@ fn errors(way: Stepped<'_>, spline: Spline<'_>, times: &[f64]) -> Vec<f64> {
     drive.into_iter().zip(times).map(|((x, _), t)| x - table.at(*t).x).collect()
 }
 
-/// The system of the source in the coefficients C, as printed, solved by elimination without regard of its band; then
+/// The system of the source in the coefficients C, as printed, solved by general elimination; then
 /// B_i = ΔA/dT − dT/3·(C_(i+1) + 2·C_i), which is the velocity of point i.
 fn velocities_of_the_source(knots: &[Knot], start: f64, end: f64) -> Vec<f64> {
     let n = knots.len();
@@ -74,8 +74,8 @@ fn points_on_commands_err_by_the_change_of_acceleration() {
     assert!((way.largest_error() - largest).abs() < 1e-14);
 }
 
-/// Any times and any rate, from one command for the whole move to hundreds for a segment: what the drive does at the
-/// points is what was computed, and nowhere more than announced.
+/// Any times and any rate, from one command for the whole move to hundreds for a segment: the error of the drive at the
+/// points is as computed, and nowhere more than announced.
 #[test]
 fn the_drive_errs_as_announced() {
     let mut random = Random::seeded(11);
@@ -88,7 +88,7 @@ fn the_drive_errs_as_announced() {
         let table = spline.table();
         let points: Vec<f64> = table.knots().iter().map(|knot| knot.t).collect();
         let speed = way.commands().map(|command| command.velocity.abs()).fold(5.0, f64::max);
-        // The drive adds up a way of speed·duration; its ramps end a rounding of t early or late. What was computed
+        // The drive adds up a distance of speed·duration; its ramps end a rounding of t early or late. The computed error
         // adds up jumps of jerk times h³, more than the error itself if h is longer than the segments.
         let jerk = points.iter().map(|t| table.at(*t).j.abs()).fold(0.0, f64::max);
         let rounding = 1e-13 * (1.0 + speed * table.duration()) * (1.0 + way.count() as f64 / 100.0)
@@ -104,7 +104,7 @@ fn the_drive_errs_as_announced() {
             tightest = tightest.min(largest / way.largest_error());
         }
     }
-    // What is announced is reached: five instants and more per command, of an error that is stationary where it is
+    // The announced error is reached: five instants and more per command, of an error that is stationary at its
     // largest.
     assert!(tightest > 0.95, "{tightest}");
 }
@@ -128,7 +128,7 @@ fn rounding_of_times_is_no_interval() {
     }
 }
 
-/// Where the jerk does not change (two points), E = j·h³/12 per command: the rate follows by hand.
+/// With a constant jerk (two points), E = j·h³/12 per command: the rate follows by hand.
 #[test]
 fn the_lowest_rate_by_hand() {
     // x = t³ from 0 to 1 in 1 s: j = 6, E = h²/12·6 = h²/2 at whole rates; 5e-5 needs 100/s exactly.

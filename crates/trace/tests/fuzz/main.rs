@@ -1,5 +1,5 @@
-//! Fuzz targets: whatever is in a recording file, it is read as it was written or refused, without a panic and within
-//! the memory that the file's size justifies. `docs/testing.md` says how to run more of them.
+//! Fuzz targets: any recording file is read as it was written or refused, without a panic and within
+//! the memory that the file's size justifies. `docs/testing.md` describes how to run more of them.
 mod seal;
 
 use parquet::basic::{Repetition, Type as PhysicalType};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
 
-/// A recording of so many instants with so many channels, and its file.
+/// A recording with `instants` instants and `channels` channels, and its file.
 fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) {
     let rate = Rate::new(16_000).unwrap();
     let channel = |i: u32| Channel {
@@ -74,7 +74,7 @@ fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) 
     (recording, bytes)
 }
 
-/// What numbers in files lie with, and the words of the format.
+/// Values that make numbers in files wrong, and the words of the format.
 const BYTES: &[&[u8]] = &[
     b"PAR1",
     b"PARE",
@@ -97,7 +97,7 @@ const BYTES: &[&[u8]] = &[
     b"\xf5\xff\xff\xff\xff\x0f",
 ];
 
-/// The recording in the file at `path`; nothing that reading it takes may be much larger than the file.
+/// The recording in the file at `path`; reading it must not allocate much more than the size of the file.
 fn read(path: &Path) -> Result<Recording, TraceError> {
     let size = usize::try_from(fs::metadata(path).unwrap().len()).unwrap();
     let (outcome, largest) = CountingAllocator::largest_of(|| Recording::read_parquet(path));
@@ -109,7 +109,7 @@ fn read(path: &Path) -> Result<Recording, TraceError> {
     outcome
 }
 
-/// Damage is found: what is read is what was written.
+/// Damage is found: a file that can be read is as it was written.
 #[test]
 fn damaged_recordings() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +123,7 @@ fn damaged_recordings() {
     });
 }
 
-/// Somebody edits a file and seals it again: it is a recording or it is refused.
+/// A file that was edited and sealed again is a recording or is refused.
 #[test]
 fn edited_recordings() {
     let folder = tempfile::tempdir().unwrap();
@@ -177,7 +177,7 @@ const WORDS: &[&str] = &[
     "\\u0000",
 ];
 
-/// A right Parquet file, sealed, in which our header may be wrong.
+/// A valid Parquet file, sealed, in which our header may be wrong.
 #[test]
 fn edited_headers() {
     let folder = tempfile::tempdir().unwrap();
@@ -187,7 +187,7 @@ fn edited_headers() {
         seal::apply(&mut bytes);
         fs::write(&path, &bytes).unwrap();
         let Ok(recording) = read(&path) else { return };
-        // What was accepted is a recording like any other.
+        // An accepted recording is like any other.
         recording.write_parquet(&path).unwrap();
         let again = Recording::read_parquet(&path).unwrap();
         assert_eq!(format!("{recording:?}"), format!("{again:?}"));

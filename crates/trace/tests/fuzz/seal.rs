@@ -1,4 +1,4 @@
-//! Seals a file as the crate does, for files that somebody edited on purpose.
+//! Seals a file as the crate does, for files edited on purpose.
 use std::hash::Hasher;
 use twox_hash::XxHash64;
 
