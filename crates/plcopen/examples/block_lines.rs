@@ -1,5 +1,5 @@
-//! Runs programs of function blocks on an axis that follows its set-points, and prints every edge of every output: how another
-//! implementation of the blocks is compared with this one, cycle by cycle.
+//! Runs programs of function blocks on an axis that follows its set-points, and prints every edge of every output, to compare another
+//! implementation of the blocks with this one, cycle by cycle.
 //!
 //! Programs are read from standard input:
 //!
@@ -86,7 +86,7 @@ struct Program {
     events: Vec<Event>,
 }
 
-/// What changes before the calls of a cycle.
+/// A change before the calls of a cycle.
 struct Event {
     cycle: u32,
     name: String,
@@ -200,7 +200,7 @@ fn rows(words: &str) -> Result<Vec<Pair>, Failure> {
     words.split(',').map(row).collect()
 }
 
-/// A block, whichever it is.
+/// A block of any type.
 trait Called {
     fn call(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool) -> Vec<f64>;
 }
@@ -213,7 +213,7 @@ impl<B: FunctionBlock> Called for B {
     }
 }
 
-/// Makes blocks by their names: those that need no memory for a table, and those that do. Others are not blocks of the standard.
+/// Makes blocks by their names: those without memory for a table, and those with it. Others are not blocks of the standard.
 macro_rules! made {
     ($($block:ident)+; $($with_table:ident: $memory:expr,)+) => {
         fn made(block: BlockName) -> Result<Box<dyn Called>, Failure> {
@@ -237,21 +237,21 @@ made! {
     AccelerationProfile: plc::AccelerationProfile::new([Pair::default(); ROWS]),
 }
 
-/// A drive that follows at once: what is commanded in one cycle is fed back in the next.
+/// An ideal drive: the command of one cycle is the feedback of the next.
 #[derive(Default)]
 struct Drive {
     feedback: AxisFeedback,
     command: Option<AxisCommand>,
-    /// Whether there is no power to switch on.
+    /// True if there is no power to switch on.
     has_no_power: bool,
     /// Its digital inputs in the cycle before.
     inputs_before: u32,
-    /// What its touch probe waits for.
+    /// The touch probe that is armed.
     armed: Option<TouchProbe>,
 }
 
 impl Drive {
-    /// Something happens to it.
+    /// Applies an event to the drive.
     fn set(&mut self, key: &str, value: &str) -> Result<(), Failure> {
         if let Some(bit) = key.strip_prefix("input.") {
             let bit: u32 = bit.parse()?;
@@ -271,7 +271,7 @@ impl Drive {
         Ok(())
     }
 
-    /// What its inputs have done since the cycle before.
+    /// Evaluates the changes of the inputs since the cycle before.
     fn watch(&mut self) {
         let (now, before) = (self.feedback.digital_inputs, self.inputs_before);
         let is = |levels: u32, bit: u32| levels >> bit & 1 == 1;
@@ -312,7 +312,7 @@ impl Drive {
         self.switch();
     }
 
-    /// The power follows what is commanded.
+    /// Switches the power as commanded.
     fn switch(&mut self) {
         let is_on = self.command.is_some_and(|command| command.power) && !self.has_no_power;
         self.feedback.power = if is_on && self.feedback.fault.is_none() { Power::On } else { Power::Off };

@@ -1,5 +1,5 @@
-//! Runs the generator block for the requests on standard input, one a line, and prints a line for each: how a program in another
-//! language compares its block with this one, sample by sample.
+//! Runs the generator block for the requests on standard input, one a line, and prints a line for each, so that a program in another
+//! language can compare its block with this one, sample by sample.
 //!
 //! ```text
 //! ORDER  TS T_SET  VELOCITY ACCELERATION JERK SNAP  REVERSED  START TARGET ...
@@ -13,7 +13,7 @@ use servobench_plcopen::generator::{Input, Method, Mounting, Output, Params, Sta
 use std::error::Error;
 use std::io::{self, BufWriter, Write};
 
-/// Samples of a move at most: more is a mistake of whoever asks.
+/// Highest number of samples of a move: more is a mistake in the request.
 const MOST: u64 = 10_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,19 +1,19 @@
-//! The arrows of the state diagram (PLCopen part 1, version 2.0, figure 2.1): one table, on which the axis runs, which the
-//! tests test and from which `docs/plcopen.md` is written.
+//! Arrows of the state diagram (PLCopen part 1, version 2.0, figure 2.1): the one table on which the axis runs, which the tests
+//! cover and from which `docs/plcopen.md` is generated.
 //!
-//! The standard has no numbers but for its six notes; arrows 1 to 6 are these. Arrows 14 and 15 are ours: the generator of order 4
-//! and Rockwell's axis move go from rest to rest, and a table of positions may end with a velocity.
+//! The standard numbers only its six notes; arrows 1 to 6 are these. Arrows 14 and 15 are additions of this crate: the generator of
+//! order 4 and Rockwell's axis move go from rest to rest, and a table of positions may end with a velocity.
 //!
-//! Arrow 16 is that of part 5: a step of homing leaves the axis in Homing, until a block ends it.
+//! Arrow 16 comes from part 5: a homing step leaves the axis in Homing until a block ends it.
 //!
-//! `MC_PositionProfile` leads to a last position and says Done there, so that it is a Discrete Motion; of the profiles of velocity
-//! and acceleration the standard says (sections 3.15 and 3.16) that the axis stays in Continuous Motion.
+//! `MC_PositionProfile` leads to a last position and reports Done there, so it is a Discrete Motion; after profiles of velocity
+//! and acceleration the axis stays in Continuous Motion (sections 3.15 and 3.16 of the standard).
 use crate::blocks::BlockName;
 use crate::state::AxisState::{
     self, ContinuousMotion, Disabled, DiscreteMotion, ErrorStop, Homing, Standstill, Stopping,
 };
 
-/// What sets an arrow off.
+/// Cause of a state transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// An error of the axis: of its drive, its power, its reference or its own.
@@ -28,9 +28,9 @@ pub enum Cause {
     Powered,
     /// Done of MC_Stop is TRUE and its Execute FALSE.
     StopReleased,
-    /// The motion is over, and the axis at rest.
+    /// The motion is over and the axis at rest.
     Done,
-    /// The motion is over, and the axis keeps a velocity.
+    /// The motion is over and the axis keeps a velocity.
     DoneMoving,
     /// A block is executed.
     Block(BlockName),
@@ -57,17 +57,17 @@ impl Cause {
 /// An arrow of the state diagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Arrow {
-    /// Its place in the table, from 1.
+    /// Place in the table, from 1.
     pub number: u8,
-    /// States that it leads out of.
+    /// States that the arrow leaves.
     pub from: &'static [AxisState],
-    /// State that it leads to.
+    /// State that the arrow enters.
     pub to: AxisState,
-    /// What sets it off, any of them.
+    /// Causes, any of which triggers the arrow.
     pub causes: &'static [Cause],
 }
 
-/// Every arrow, in the order of its number.
+/// Every arrow, in the order of the numbers.
 pub const ARROWS: [Arrow; 16] = [
     Arrow {
         number: 1,
@@ -161,14 +161,14 @@ pub const ARROWS: [Arrow; 16] = [
 ];
 
 impl BlockName {
-    /// Whether it gives the axis its reference.
+    /// True if the block gives the axis its reference.
     #[must_use]
     pub fn homes(self) -> bool {
         ARROWS.iter().any(|arrow| arrow.to == Homing && arrow.causes.contains(&Cause::Block(self)))
     }
 }
 
-/// The arrow that `cause` sets off in `state`.
+/// Arrow triggered by `cause` in `state`.
 pub(crate) fn arrow(state: AxisState, cause: Cause) -> Option<&'static Arrow> {
     ARROWS.iter().find(|arrow| arrow.from.contains(&state) && arrow.causes.contains(&cause))
 }

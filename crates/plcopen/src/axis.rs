@@ -1,9 +1,9 @@
-//! The axis: what the blocks of a program act on.
+//! The axis that the blocks of a program act on.
 //!
-//! The commanded way is a function of time that begins at the set-point of the cycle in which a command is given: a block that
-//! is called in cycle k changes what the axis does between cycles k and k + 1. Done is the cycle whose set-point is the target.
+//! The commanded trajectory is a function of time that begins at the set-point of the cycle in which a command is given: a block
+//! called in cycle k changes the motion between cycles k and k + 1. Done is the cycle whose set-point is the target.
 //!
-//! Motion is counted in the unit of the drive; MC_SetPosition shifts what the program sees of it.
+//! Motion is counted in the unit of the drive; MC_SetPosition shifts the position that the program sees.
 mod activity;
 mod blending;
 mod block_setpoints;
@@ -48,14 +48,14 @@ pub(crate) use supervision::PowerRequest;
 /// An axis with its parameters, its state and its commands.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct Axis {
-    /// The limits as the program has set them.
+    /// Limits as the program has set them.
     params: AxisParams,
-    /// The limits as the axis was built.
+    /// Limits with which the axis was built.
     system_limits: Limits,
     supervision: Supervision,
     state: AxisState,
     feedback: AxisFeedback,
-    /// Position that the program sees, less that of the drive.
+    /// Position seen by the program minus that of the drive.
     offset: f64,
     is_homed: bool,
     homing_steps: HomingSteps,
@@ -67,11 +67,11 @@ pub struct Axis {
     /// Set-point of the activity.
     base: Setpoint,
     superimposed: Option<Superimposed>,
-    /// What ended superimposed motions have added to the activity.
+    /// Distance that finished superimposed motions have added to the activity.
     shift: f64,
-    /// Set-point of this cycle, both together; until the cycle has begun that of the one before.
+    /// Sum of base and superimposed set-point in this cycle; before the cycle has begun, that of the one before.
     setpoint: Setpoint,
-    /// Whether the cycle is being begun.
+    /// True while the cycle begins.
     is_beginning: bool,
     /// Direction of the last motion, 1 or −1.
     last_direction: f64,
@@ -84,13 +84,13 @@ pub struct Axis {
     request: Request,
     /// Bits of the drive's digital outputs.
     digital_outputs: u32,
-    /// What the drive's touch probe is asked for, and how often it has been.
+    /// Current request to the drive's touch probe, and the number of requests so far.
     probe: Option<TouchProbe>,
     probes: u32,
 }
 
 impl Axis {
-    /// An axis that is disabled.
+    /// A disabled axis.
     ///
     /// # Errors
     /// [`ParamError`] names the first parameter outside its bound.
@@ -127,7 +127,7 @@ impl Axis {
         })
     }
 
-    /// Begins a cycle with what the axis says of itself; the blocks are called after it.
+    /// Begins a cycle with the axis's feedback; the blocks are called after it.
     pub fn begin(&mut self, feedback: &AxisFeedback) {
         self.feedback = *feedback;
         self.supervise();
@@ -141,7 +141,7 @@ impl Axis {
         self.watch_lag();
     }
 
-    /// Ends a cycle: what the axis is to do until the next one.
+    /// Ends a cycle: returns the command to the axis until the next one.
     pub fn end(&mut self) -> AxisCommand {
         self.watch_leading();
         let task = match &self.activity {
@@ -187,19 +187,19 @@ impl Axis {
         self.state
     }
 
-    /// The set-point of this cycle as the program sees it; the position of a modulo axis counted on.
+    /// Set-point of this cycle as the program sees it; the position of a modulo axis is not wrapped.
     #[must_use]
     pub fn commanded(&self) -> Setpoint {
         Setpoint { x: self.setpoint.x + self.offset, ..self.setpoint }
     }
 
-    /// The set-point of this cycle in the coordinate of the drive, as it is sent.
+    /// Set-point of this cycle in the coordinate of the drive, as sent.
     #[must_use]
     pub const fn sent(&self) -> Setpoint {
         self.setpoint
     }
 
-    /// What the axis says of itself, the position as the program sees it.
+    /// Feedback of the axis, with the position as the program sees it.
     #[must_use]
     pub fn actual(&self) -> AxisFeedback {
         AxisFeedback { position: self.actual_position(self.feedback.position), ..self.feedback }
@@ -211,12 +211,12 @@ impl Axis {
         self.params.modulo.map_or(position, |period| modulo::within(position, period))
     }
 
-    /// Position that the program sees, less that of the drive.
+    /// Position seen by the program minus that of the drive.
     pub(crate) const fn offset(&self) -> f64 {
         self.offset
     }
 
-    /// Whether the position counts from a reference.
+    /// True if the position counts from a reference.
     #[must_use]
     pub const fn is_homed(&self) -> bool {
         self.is_homed
@@ -228,14 +228,14 @@ impl Axis {
         self.error.as_ref()
     }
 
-    /// The block whose command the axis follows, without one on top of it; `None` while it rests, and MC_Halt where it brakes by
+    /// Block whose command the axis follows, without one superimposed on it; `None` while the axis rests, and MC_Halt while it brakes by
     /// itself.
     #[must_use]
     pub fn commanded_by(&self) -> Option<BlockName> {
         self.activity.command().map(|(_, command)| command.block)
     }
 
-    /// Whether the drive follows set-points of the axis, rather than an effort or a search of its own.
+    /// True if the drive follows set-points of the axis, rather than an effort or its own search.
     #[must_use]
     pub(crate) const fn follows_set_points(&self) -> bool {
         !matches!(
@@ -246,7 +246,7 @@ impl Axis {
         )
     }
 
-    /// What became of a command.
+    /// Progress of a command.
     #[must_use]
     pub fn progress(&self, id: CommandId) -> Progress {
         self.ledger.progress(id)
@@ -256,12 +256,12 @@ impl Axis {
         &self.ledger
     }
 
-    /// Whether the drive follows.
+    /// True if the drive follows.
     fn is_powered(&self) -> bool {
         self.feedback.power == Power::On
     }
 
-    /// The set-point of this cycle from its parts.
+    /// Adds up the set-point of this cycle.
     fn add_up(&mut self) {
         self.setpoint = match &self.superimposed {
             None if self.shift == 0.0 => self.base,

@@ -1,30 +1,30 @@
-//! The function blocks, and the lists of their inputs, their outputs and of themselves: what a block has is said once, in its module
-//! and here.
+//! The function blocks, and the lists of their inputs, outputs and names: each property of a block is defined once, in its module or
+//! here.
 //!
 //! # Execute
 //!
-//! A rising edge of Execute takes the inputs over and starts the command; after it they are looked at no more, unless
-//! ContinuousUpdate was TRUE at the edge: then each change acts on the running command (PLCopen part 1, section 2.4.1).
+//! A rising edge of Execute takes the inputs over and starts the command; later changes have no effect, unless ContinuousUpdate was
+//! TRUE at the edge: then each change acts on the active command (PLCopen part 1, section 2.4.1).
 //!
 //! - Busy, Done, CommandAborted and Error exclude each other; Active goes with Busy while the command has the axis.
 //! - Done, CommandAborted and Error stay until Execute is FALSE. When it was FALSE before they came, they last one cycle.
-//! - A falling edge does not end the command. A new rising edge starts a new one, and nothing more is said of the old one. Where
-//!   the new one is refused, Error is TRUE for that, and the old one goes on unreported: errors of blocks do not stop the axis.
-//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, as long as the set-point is the commanded value: where
-//!   ContinuousUpdate changes that, they are FALSE from the same call on until it is reached.
+//! - A falling edge does not end the command. A new rising edge starts a new one, and the old one is no longer reported. If the new one
+//!   is refused, Error is TRUE for that, and the old one continues unreported: errors of blocks do not stop the axis.
+//! - InVelocity, InEndVelocity and InTorque go with Busy and Active, while the set-point is the commanded value: if ContinuousUpdate
+//!   changes that value, they are FALSE from the same call on until it is reached.
 //!
 //! # Enable
 //!
-//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error says whether they mean anything. Busy is TRUE as
-//! long as Enable is: an error is over as soon as its cause is, without a new edge (section 2.2.3).
+//! The outputs of a block with Enable follow it from cycle to cycle; Valid or Error shows if they are meaningful. Busy is TRUE as long
+//! as Enable is: an error is over as soon as its cause is, without a new edge (section 2.2.3).
 //!
 //! # Another block
 //!
-//! A block is a module here that implements [`FunctionBlock`], and a line in the list below. Its inputs say by [`BlockInput`]s which
-//! inputs of the list they are, and what counts where one is not given; its outputs say which outputs of the list they are. Programs
-//! call it, scenario files have its keys, recordings its outputs, and the references in `docs/` list it from there on
-//! (`SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen -p servobench-scenario` writes them). One that commands the axis also
-//! needs its place in the state diagram, `ARROWS`.
+//! A block is a module here that implements [`FunctionBlock`], and a line in the list below. Its inputs name, by [`BlockInput`]s,
+//! inputs of the list and their defaults; its outputs name outputs of the list. Programs call it, scenario files have its keys,
+//! recordings its outputs, and the references in `docs/` list it from there on
+//! (`SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-plcopen -p servobench-scenario` writes them). A block that commands the axis
+//! also needs its place in the state diagram, `ARROWS`.
 mod axis_move;
 mod digital;
 mod digital_cam_switch;
@@ -289,7 +289,7 @@ list_outputs! {
     ProcessComplete "PC" Flag "the axis is at its target";
 }
 
-/// Memory of a table: in a program as long as it has to be.
+/// Memory of a table: growable in a program.
 #[cfg(feature = "program")]
 type Rows<T> = alloc::vec::Vec<T>;
 #[cfg(not(feature = "program"))]
@@ -355,7 +355,7 @@ impl BlockName {
         Self::ALL.iter().copied().find(|block| block.name() == name)
     }
 
-    /// The block's own version of an input; `None` where it has no such input.
+    /// The block's own version of an input; `None` if it has no such input.
     #[must_use]
     pub fn input(self, input: Input) -> Option<&'static BlockInput> {
         self.inputs().iter().find(|own| own.input == input)
@@ -369,7 +369,7 @@ impl fmt::Display for BlockName {
 }
 
 impl Output {
-    /// Whether a program can wait for it: TRUE or FALSE, and not always the same.
+    /// True if a program can wait for the output: TRUE or FALSE, and not always the same.
     #[must_use]
     pub const fn is_condition(self) -> bool {
         matches!(self.value_type(), OutputType::Flag)

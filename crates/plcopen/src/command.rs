@@ -1,4 +1,4 @@
-//! What a block asks of the axis.
+//! Commands from blocks to the axis.
 use crate::blocks::BlockName;
 use crate::error::BlockError;
 use crate::params::AxisParams;
@@ -6,7 +6,7 @@ use servobench_base::{Stateful, finite, positive};
 use servobench_motion::Limits;
 
 servobench_config::choices! {
-    /// How a command follows those before it (MC_BUFFER_MODE).
+    /// Relation of a command to those before it (MC_BUFFER_MODE).
     #[derive(Stateful)]
     pub enum BufferMode default Aborting {
         /// the active motion is aborted
@@ -38,7 +38,7 @@ impl BufferMode {
         }
     }
 
-    /// The velocity with which the end of the command before is to be passed; `None` where that one is done first.
+    /// Velocity with which the end of the previous command is passed; `None` if that command is done first.
     pub(crate) fn blending_velocity(self, before: f64, this: f64) -> Option<f64> {
         match self {
             Self::Aborting | Self::Buffered => None,
@@ -78,10 +78,10 @@ impl Direction {
     }
 }
 
-/// Velocity and its derivatives as a block limits them, magnitudes in the axis unit (m or rad).
+/// Limits of velocity and its derivatives from a block, magnitudes in the axis unit (m or rad).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Dynamics {
-    /// Velocity (m/s or rad/s); `None` where the block has no such input.
+    /// Velocity (m/s or rad/s); `None` if the block has no such input.
     pub velocity: Option<f64>,
     /// Acceleration (m/s² or rad/s²).
     pub acceleration: f64,
@@ -94,11 +94,11 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
-    /// Those of a command for which nothing is planned.
+    /// Dynamics of a command for which nothing is planned.
     pub(crate) const NONE: Self =
         Self { velocity: Some(0.0), acceleration: 0.0, deceleration: 0.0, jerk: Some(0.0), snap: Some(0.0) };
 
-    /// Those of a stop.
+    /// Dynamics of a stop.
     #[must_use]
     pub const fn braking(deceleration: f64, jerk: Option<f64>, snap: Option<f64>) -> Self {
         Self { velocity: None, acceleration: deceleration, deceleration, jerk, snap }
@@ -126,32 +126,32 @@ impl Dynamics {
     }
 }
 
-/// Where a motion leads, in the unit of the axis as the program sees it.
+/// Goal of a motion, in the unit of the axis as the program sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Goal {
     /// To a position.
     Absolute {
         /// Position (m or rad).
         position: f64,
-        /// Which way round on a modulo axis.
+        /// Direction on a modulo axis.
         direction: Direction,
-        /// Velocity with a sign at which it is passed and which is kept from then on (m/s or rad/s); `None` to be done there.
+        /// Signed velocity at which the position is passed and which is kept from then on (m/s or rad/s); `None` to stop there.
         end_velocity: Option<f64>,
     },
-    /// By a distance from where the motion begins.
+    /// By a distance from the beginning of the motion.
     Relative {
         /// Distance (m or rad).
         distance: f64,
-        /// As of a position.
+        /// Signed velocity at the end, as of a position (m/s or rad/s).
         end_velocity: Option<f64>,
     },
-    /// By a distance from where the command before leads.
+    /// By a distance from the target of the previous command.
     Additive(f64),
-    /// To a velocity, kept from then on; its sign counts in the direction.
+    /// To a velocity, kept from then on, with a sign relative to the direction.
     Velocity {
         /// Velocity (m/s or rad/s).
         velocity: f64,
-        /// Which way.
+        /// Direction of a positive velocity.
         direction: Direction,
     },
     /// To rest.
@@ -160,51 +160,51 @@ pub enum Goal {
     Reference(Reference),
     /// Against an obstacle, with limited effort: the position counts from it.
     Obstacle(Obstacle),
-    /// By a distance away from the reference that was found, which ends homing.
+    /// By a distance away from the reference, which ends homing.
     Away(f64),
     /// To an effort, kept from then on.
     Effort {
         /// Effort (N·m or N).
         effort: f64,
-        /// Its rate (N·m/s or N/s), infinite for a step.
+        /// Rate of change (N·m/s or N/s), infinite for a step.
         ramp: f64,
-        /// Which way.
+        /// Direction of a positive effort.
         direction: Direction,
     },
-    /// Along a course that the block itself gives, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
+    /// Along a trajectory from the block itself, a set-point per cycle: see [`Axis::lead`](crate::Axis::lead).
     Led(Ending),
 }
 
-/// What the position counts from.
+/// Reference of the position.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Reference {
-    /// From what the drive looks for, which has this position (m or rad).
+    /// Reference found by the drive, with this position (m or rad).
     Search(f64),
-    /// From where the axis stands, which has this position (m or rad).
+    /// Present position of the axis, with this value (m or rad).
     Here(f64),
-    /// From the zero of the drive's encoder.
+    /// Zero of the drive's encoder.
     Encoder,
 }
 
-/// How an obstacle is looked for, and what counts as one: the axis gives the effort, within its tolerance, and is slower than the
-/// velocity for so long.
+/// Search for an obstacle, and its detection: the axis gives the effort, within its tolerance, and is slower than the velocity for the
+/// given time.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Obstacle {
-    /// Which way: positive or negative.
+    /// Direction: positive or negative.
     pub direction: Direction,
-    /// The position that the axis has at it (m or rad).
+    /// Position of the axis at the obstacle (m or rad).
     pub position: f64,
     /// Velocity below which the axis is held (m/s or rad/s).
     pub velocity: f64,
-    /// For how long (s).
+    /// Duration below that velocity (s).
     pub time: f64,
     /// Largest effort of the search (N·m or N).
     pub effort: f64,
-    /// By how much the effort may be below it where the axis is held (N·m or N).
+    /// Tolerance of the effort below that, at the obstacle (N·m or N).
     pub effort_tolerance: f64,
     /// Longest time of the search (s); may be infinite.
     pub time_limit: f64,
-    /// Longest way of the search (m or rad); may be infinite.
+    /// Longest distance of the search (m or rad); may be infinite.
     pub distance_limit: f64,
 }
 
@@ -215,7 +215,7 @@ impl Obstacle {
     }
 
     /// # Errors
-    /// [`BlockError`] names the first input that cannot be.
+    /// [`BlockError`] names the first invalid input.
     fn check(&self, block: BlockName) -> Result<(), BlockError> {
         finite_input(block, "SetPosition", self.position)?;
         if !matches!(self.direction, Direction::Positive | Direction::Negative) {
@@ -243,7 +243,7 @@ impl Obstacle {
     }
 }
 
-/// What a course that a block gives leads to.
+/// End of a trajectory that a block gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub enum Ending {
     /// To rest.
@@ -252,21 +252,21 @@ pub enum Ending {
     Moving,
 }
 
-/// A command as the axis takes it.
+/// A command to the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Command {
-    /// The block.
+    /// Block that gave the command.
     pub block: BlockName,
-    /// Where it leads.
+    /// Goal.
     pub goal: Goal,
-    /// What it may not exceed.
+    /// Limits.
     pub dynamics: Dynamics,
-    /// How it follows those before it.
+    /// Relation to the commands before it.
     pub buffer_mode: BufferMode,
 }
 
 impl Command {
-    /// Checks what does not depend on the state of the axis.
+    /// Checks everything that does not depend on the state of the axis.
     pub(crate) fn check(&self, params: &AxisParams) -> Result<(), BlockError> {
         let block = self.block;
         if !matches!(self.goal, Goal::Effort { .. } | Goal::Reference(_)) {
@@ -330,12 +330,12 @@ impl Command {
         Ok(())
     }
 
-    /// Whether the axis is at Standstill when it is done.
+    /// True if the axis is at Standstill when the command is done.
     pub(crate) fn ends_at_standstill(&self) -> bool {
         !self.is_endless() && self.goal != Goal::Led(Ending::Moving)
     }
 
-    /// Whether it keeps what it has reached until another one takes the axis from it.
+    /// True if the command keeps its target until another one takes over.
     pub(crate) const fn is_endless(&self) -> bool {
         match self.goal {
             Goal::Absolute { end_velocity: Some(_), .. }
@@ -353,17 +353,17 @@ impl Command {
         }
     }
 
-    /// Whether it waits for the axis to be at Standstill, rather than for the command before it.
+    /// True if the command waits for Standstill, rather than for the previous command.
     pub(crate) const fn begins_at_standstill(&self) -> bool {
         matches!(self.goal, Goal::Reference(_) | Goal::Obstacle(_) | Goal::Away(_))
     }
 
-    /// Whether it leaves the axis in Homing, where another step or the end of homing is to follow.
+    /// True if the command leaves the axis in Homing, to be followed by another step or the end of homing.
     pub(crate) const fn is_homing_step(&self) -> bool {
         matches!(self.goal, Goal::Obstacle(_))
     }
 
-    /// Whether the position counts from a reference after it.
+    /// True if the position counts from a reference after the command.
     pub(crate) const fn ends_homing(&self) -> bool {
         matches!(self.goal, Goal::Reference(_) | Goal::Away(_))
     }
@@ -373,7 +373,7 @@ impl Command {
     }
 }
 
-/// What has no end has no shortest way to it.
+/// Checks the direction of an endless motion, which has no shortest path.
 fn endless_direction(block: BlockName, direction: Direction) -> Result<(), BlockError> {
     let value = direction.standard_name();
     match direction {
@@ -389,7 +389,7 @@ pub(crate) fn finite_input(block: BlockName, input: &'static str, value: f64) ->
     }
 }
 
-/// A magnitude up to `limit`.
+/// Checks a magnitude against `limit`.
 fn check_input(block: BlockName, input: &'static str, value: f64, limit: f64) -> Result<(), BlockError> {
     match positive(input, value) {
         Ok(_) if value > limit => Err(BlockError::AboveLimit { block, input, value, limit }),
@@ -398,5 +398,5 @@ fn check_input(block: BlockName, input: &'static str, value: f64, limit: f64) ->
     }
 }
 
-/// What is larger, or smaller than its inverse, was written in the wrong unit; within it every plan is well within `f64`.
+/// Largest plausible magnitude, and inverse of the smallest: a value outside was written in the wrong unit; within, every plan fits `f64`.
 const LARGEST: f64 = 1e15;

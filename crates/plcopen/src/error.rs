@@ -1,7 +1,7 @@
-//! Why a block refuses, and why an axis stops.
+//! Errors of blocks and of the axis.
 //!
-//! The standard leaves the numbers of ErrorID to the supplier. Here the thousands are the class: 1 an input, 2 the state of the
-//! axis, 3 the plan of a move, 4 the axis itself.
+//! The standard leaves the numbers of ErrorID to the supplier. Here the thousands are the class: 1 an input, 2 the state of the axis, 3 the
+//! plan of a move, 4 the axis itself.
 use crate::blocks::BlockName;
 use crate::parameter::AxisParameter;
 use crate::state::AxisState;
@@ -18,11 +18,11 @@ pub enum ErrorId {
     /// No error.
     #[default]
     None = 0,
-    /// An input is not a number, or has the wrong sign.
+    /// An input is not a number, or has the wrong sign or range.
     Input = 0x1001,
     /// An input is above a limit of the axis.
     AboveLimit = 0x1002,
-    /// Two motions on top of each other are together above a limit of the axis.
+    /// A superimposed motion and the one below are together above a limit of the axis.
     SumAboveLimit = 0x1003,
     /// The input Direction does not fit the block.
     Direction = 0x1004,
@@ -40,7 +40,7 @@ pub enum ErrorId {
     BufferFull = 0x2003,
     /// MC_Power does not permit motion in this direction.
     NotPermitted = 0x2004,
-    /// The motion cannot be changed any more.
+    /// The motion is over and cannot be changed.
     Ended = 0x2005,
     /// The move cannot be planned.
     Plan = 0x3001,
@@ -50,7 +50,7 @@ pub enum ErrorId {
     PowerLost = 0x4002,
     /// The reference was not found.
     HomingFailed = 0x4003,
-    /// The axis moved in a direction that MC_Power does not permit any more.
+    /// The axis moved in a direction that MC_Power no longer permits.
     PermissionLost = 0x4004,
     /// The axis ran faster than MC_TorqueControl allows.
     Overspeed = 0x4005,
@@ -67,7 +67,7 @@ pub enum ErrorId {
 }
 
 impl ErrorId {
-    /// Every number but that of no error.
+    /// Every error.
     pub const ALL: [Self; 23] = [
         Self::Input,
         Self::AboveLimit,
@@ -94,13 +94,13 @@ impl ErrorId {
         Self::NoObstacle,
     ];
 
-    /// The number on the output.
+    /// Number on the output.
     #[must_use]
     pub const fn number(self) -> u16 {
         self as u16
     }
 
-    /// What it means.
+    /// Meaning, in words.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -132,10 +132,10 @@ impl ErrorId {
     }
 }
 
-/// A call that is refused, or a command that failed.
+/// A refused call, or a failed command.
 #[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum BlockError {
-    /// An input is not a number, or has the wrong sign.
+    /// An input is not a number, or has the wrong sign or range.
     #[error("{block}: `{input}` must be {bound}, got {value}: correct the input")]
     Input {
         /// The block.
@@ -144,7 +144,7 @@ pub enum BlockError {
         input: &'static str,
         /// Rejected value (SI).
         value: f64,
-        /// What the value must be, in words.
+        /// Bound of the value, in words.
         bound: &'static str,
     },
     /// An input is above a limit of the axis.
@@ -161,7 +161,7 @@ pub enum BlockError {
         /// Limit of the axis (SI).
         limit: f64,
     },
-    /// Two motions on top of each other are together above a limit of the axis.
+    /// A superimposed motion and the one below are together above a limit of the axis.
     #[error(
         "{block}: `{input}` and that of the other motion must together be at most {limit}, the limit of the axis, got \
          {value}: lower one of them"
@@ -183,7 +183,7 @@ pub enum BlockError {
         block: BlockName,
         /// Rejected direction, in the spelling of the standard.
         value: &'static str,
-        /// What it must be, in words.
+        /// Permitted directions, in words.
         bound: &'static str,
     },
     /// The input BufferMode does not fit the block, or the command before it.
@@ -193,7 +193,7 @@ pub enum BlockError {
         block: BlockName,
         /// Rejected mode, in the spelling of the standard.
         value: &'static str,
-        /// What it must be, in words.
+        /// Permitted modes, in words.
         bound: &'static str,
     },
     /// The parameter of the axis is read-only.
@@ -212,7 +212,7 @@ pub enum BlockError {
     SoftwareLimit {
         /// The block.
         block: BlockName,
-        /// Position where it leads to (SI).
+        /// Target position (SI).
         value: f64,
         /// The limit (SI).
         limit: f64,
@@ -238,7 +238,7 @@ pub enum BlockError {
     BufferFull {
         /// The block.
         block: BlockName,
-        /// Number of commands that wait.
+        /// Number of waiting commands.
         held: usize,
     },
     /// MC_Power does not permit motion in this direction.
@@ -249,7 +249,7 @@ pub enum BlockError {
         /// Input of MC_Power.
         input: &'static str,
     },
-    /// The motion cannot be changed any more.
+    /// The motion is over and cannot be changed.
     #[error("{block}: `ContinuousUpdate`: the motion is over: start it again with a rising edge of `Execute`")]
     Ended {
         /// The block.
@@ -260,7 +260,7 @@ pub enum BlockError {
     Plan {
         /// The block.
         block: BlockName,
-        /// Why.
+        /// Cause.
         error: PlanError,
     },
     /// The axis stopped with an error.
@@ -268,7 +268,7 @@ pub enum BlockError {
     Axis {
         /// The block.
         block: BlockName,
-        /// Why.
+        /// Cause.
         error: AxisError,
     },
 }
@@ -296,13 +296,13 @@ impl BlockError {
     }
 }
 
-/// An error of the axis: it leads to ErrorStop.
+/// An error of the axis, which leads to ErrorStop.
 #[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum AxisError {
     /// The drive or its link reports a fault.
     #[error("{fault}: remove its cause and call MC_Reset")]
     DriveFault {
-        /// What was found.
+        /// Fault reported.
         fault: Fault,
     },
     /// The power failed.
@@ -314,7 +314,7 @@ pub enum AxisError {
     /// The reference was not found.
     #[error("the drive did not find its reference: see to its switches, and call MC_Reset")]
     HomingFailed,
-    /// The axis moved in a direction that is not permitted any more.
+    /// The axis moved in a direction that is no longer permitted.
     #[error("the axis moves at {velocity} while `{input}` of MC_Power is FALSE: stop it before")]
     PermissionLost {
         /// Commanded velocity (SI).
@@ -353,7 +353,7 @@ pub enum AxisError {
     /// A move that had been accepted could not be planned when its turn came.
     #[error("{error}")]
     PlanLost {
-        /// Why.
+        /// Cause.
         error: PlanError,
     },
     /// The axis was about to pass a software limit.
@@ -378,9 +378,9 @@ pub enum AxisError {
          or raise `{input}`"
     )]
     NoObstacle {
-        /// The input that ended it.
+        /// Input whose limit was exceeded.
         input: &'static str,
-        /// Its value (SI).
+        /// Value of the input (SI).
         limit: f64,
     },
 }

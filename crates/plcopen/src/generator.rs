@@ -1,8 +1,8 @@
-//! The generator of order 4 as a function block for a PLC, and by the same procedure those of order 3 and 2.
+//! The generator of order 4 as a function block for a PLC, and those of orders 3 and 2 by the same procedure.
 //!
-//! Pietrusewicz, Waszczuk & Kubicki, *`MC_MoveAbsolute()` 4th Order Real-Time Trajectory Generation Function Algorithm and
-//! Implementation*, Applied Sciences 9 (2019), sections 4.1–4.4 and the interface `Profile4thFB` of figure 8. The plan, (1)–(49),
-//! is [`Profile::plan_sampled`]; the execution, (72)–(75), is [`Cascade`]. Here is what starts and times them, sample by sample:
+//! Pietrusewicz, Waszczuk & Kubicki, *`MC_MoveAbsolute()` 4th Order Real-Time Trajectory Generation Function Algorithm and Implementation*,
+//! Applied Sciences 9 (2019), sections 4.1–4.4 and the interface `Profile4thFB` of figure 8. The plan, (1)–(49), is
+//! [`Profile::plan_sampled`]; the execution, (72)–(75), is [`Cascade`]. This module starts and times them, sample by sample:
 //!
 //! ```text
 //! ENstart_k  = enable AND ready                                     "readiness is passed to ENstart"
@@ -20,38 +20,38 @@
 //! | k + 1 | | 0 | 1 | −Ts/2 | 0 |
 //! | k + 2 | | 0 | 0 | Ts/2 | the first pulse |
 //!
-//! So the snap follows the edge of enable by two samples, and as times are whole numbers of samples and `t_exec` lies between
-//! them, no comparison is one of equals. Switching times are counted in samples here, with the same result.
+//! The snap follows the edge of enable by two samples. Times are whole numbers of samples and `t_exec` lies between them, so that no
+//! comparison is between equals. Switching times are counted in samples here, with the same result.
 //!
-//! An enable that stays TRUE starts again as soon as the block is ready, as it does there: to the position that `pref` has then.
+//! As in the paper, an enable that stays TRUE starts again as soon as the block is ready: to the present position `pref`.
 //!
-//! # What is corrected
+//! # Corrections to the paper
 //!
-//! - (49) gives the snap the sign of the move, and (63) gives it once more: it is given once, here.
-//! - (66)–(68) make the variable *dir* out of itself. What is meant is the sign of the move times that of the
-//!   [mounting](Mounting), which is taken over with the start: a motor does not change its mounting on the way.
-//! - (72)–(75) add up their rounding, and leave some velocity behind that goes on for ever: the values of a run are those of
-//!   its start in closed form, and the last one is the target.
+//! - (49) gives the snap the sign of the move, and (63) applies it again: here it is applied once.
+//! - (66)–(68) define the variable *dir* by itself. The sign of the move times that of the [mounting](Mounting) is meant; the mounting is
+//!   taken over with the start, since a motor keeps it during a move.
+//! - (72)–(75) accumulate rounding, and leave a residual velocity forever: here the values of a run follow from its start in closed form,
+//!   and the last one is the target.
 //!
-//! # What the paper only names
+//! # Interpretation of undescribed signals
 //!
-//! Figure 8 declares these without a word on them: `ssMethodType`, which Simulink PLC Coder adds to each block that has a state
-//! ([`Method`]); `ActRefPos` and `pref_add`, which are taken for the two ends of "increment from an actual position to the new one"
-//! (section 3): the move goes from `ActRefPos`, as it is at the start, by `pref_add = ±(pref − ActRefPos)`; and `CmdDone`, taken for
-//! the end of what (65) waits for. Its flags are of type LREAL, and BOOL here.
+//! Figure 8 declares these without a description: `ssMethodType`, which Simulink PLC Coder adds to each block that has a state
+//! ([`Method`]); `ActRefPos` and `pref_add`, taken for the two parts of "increment from an actual position to the new one" (section 3): the
+//! move goes from `ActRefPos`, as it is at the start, by `pref_add = ±(pref − ActRefPos)`; and `CmdDone`, taken for the end of the wait in
+//! (65). Its flags are of type LREAL, and BOOL here.
 //!
 //! # Lower orders
 //!
-//! "The algorithm itself is scalable" (section 6): with [`Input::order`] 3 the jerk is what is switched, with 2 the acceleration, over 7
-//! and 3 segments in place of 15, and what is switched is added up by the rows of (72)–(75) below it.
+//! "The algorithm itself is scalable" (section 6): with [`Input::order`] 3 the jerk is switched, with 2 the acceleration, over 7 and 3
+//! segments in place of 15, and the rows of (72)–(75) below the switched quantity add it up.
 //!
-//! [`Profile4th`](crate::Profile4th) has an axis follow it. The crate `structured-text` has the block as code for a PLC, which computes
-//! the same to the last bit: a change here is one there.
+//! [`Profile4th`](crate::Profile4th) makes an axis follow the generator. The crate `structured-text` has the block as code for a PLC, which
+//! computes bit-identical results: change both together.
 use servobench_base::{ParamError, Setpoint, Stateful, non_negative, positive};
 use servobench_motion::sampled::{Cascade, Run};
 use servobench_motion::{Limits, Order, PlanError, Profile};
 
-/// What does not change while the PLC runs.
+/// Parameters, constant while the PLC runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     sample_time: f64,
@@ -60,7 +60,8 @@ pub struct Params {
 }
 
 impl Params {
-    /// With the sample time Ts (s), the settling time `T_set` (s). Moves are executed as in the paper, by the forward-Euler cascade.
+    /// Parameters with the sample time Ts (s) and the settling time `T_set` (s); moves are executed by the forward-Euler cascade, as in the
+    /// paper.
     ///
     /// # Errors
     /// [`ParamError`] when the sample time is not positive, or the settling time not positive or zero.
@@ -71,23 +72,23 @@ impl Params {
     }
 }
 
-/// `ssMethodType`: what a call is for.
+/// `ssMethodType`: purpose of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// `SS_INITIALIZE`, 0: sets the block back.
+    /// `SS_INITIALIZE`, 0: resets the block.
     Initialize,
     /// `SS_STEP`, 1: one sample.
     #[default]
     Step,
 }
 
-/// Whether the motor turns as the axis moves.
+/// Mounting of the motor, relative to the motion of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mounting {
-    /// It does.
+    /// The motor turns as the axis moves.
     #[default]
     Same,
-    /// It turns the opposite way: every reference has the opposite sign.
+    /// The motor turns the opposite way: every reference has the opposite sign.
     Opposite,
 }
 
@@ -105,17 +106,17 @@ impl Mounting {
 pub struct Input {
     /// `ssMethodType`.
     pub method: Method,
-    /// Which derivative is switched; taken over with the start.
+    /// Order of the switched derivative; taken over with the start.
     pub order: Order,
-    /// `pref`: where to.
+    /// `pref`: target.
     pub reference: f64,
-    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order count.
+    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order apply.
     pub limits: Limits,
     /// `TriggerEnable`.
     pub enable: bool,
-    /// `ActRefPos`: where the reference is when a move starts, as the last [`Output::set_point`] says.
+    /// `ActRefPos`: reference at the start of a move, equal to the last [`Output::set_point`].
     pub actual_reference: f64,
-    /// The mounting direction, taken over with the start.
+    /// Mounting of the motor, taken over with the start.
     pub mounting: Mounting,
 }
 
@@ -124,25 +125,25 @@ pub struct Input {
 pub struct Output {
     /// `Position`, `Velocity`, `Acceleration`, `Jerk` and `dJerk` (the snap).
     pub set_point: Setpoint,
-    /// `pref_add`: what the move adds to the position.
+    /// `pref_add`: position that the move adds.
     pub added: f64,
     /// `CmdDone`: the last move is over, and its settling time too.
     pub done: bool,
-    /// A rise of enable starts a move, (65).
+    /// A rising edge of enable starts a move, (65).
     pub ready: bool,
-    /// Why there is no move, if the last start failed.
+    /// Cause, if the last start failed.
     pub error: Option<PlanError>,
 }
 
-/// What the block keeps from sample to sample.
+/// State of the block from sample to sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     /// `ENstart` and `GenStart` of the sample before.
     is_enabled: bool,
     is_starting: bool,
-    /// Where the reference stands; `None` before the first call.
+    /// Present reference; `None` before the first call.
     position: Option<f64>,
-    /// Samples since the start: `t_exec` is that less a half.
+    /// Samples since the start: `t_exec` is half a sample less.
     count: u64,
     /// Samples of the last move; `None` before the first one.
     total: Option<u64>,
@@ -151,7 +152,7 @@ pub struct State {
     error: Option<PlanError>,
 }
 
-/// One call: the outputs of this sample.
+/// Handles one call: returns the outputs of this sample.
 pub fn step(params: &Params, state: &mut State, input: &Input) -> Output {
     let is_initial = input.method == Method::Initialize;
     if is_initial {
@@ -183,7 +184,7 @@ pub fn step(params: &Params, state: &mut State, input: &Input) -> Output {
 }
 
 impl State {
-    /// (55)–(56): plans anew.
+    /// (55)–(56): plans a new move.
     fn start(&mut self, params: &Params, input: &Input) {
         let distance = input.mounting.sign() * (input.reference - input.actual_reference);
         (self.count, self.error) = (0, None);
@@ -193,7 +194,7 @@ impl State {
         }
     }
 
-    /// Whether a move has been asked for in this sample, or is under way.
+    /// True if a move has been requested in this sample, or is active.
     pub(crate) const fn is_moving(&self) -> bool {
         self.is_starting || self.course.is_some()
     }
@@ -204,7 +205,7 @@ impl State {
     }
 }
 
-/// A move on its way.
+/// A move being executed.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Course {
     profile: Profile,
@@ -227,7 +228,7 @@ impl Course {
         Ok(Self { profile, base, total, cascade, run: Run { value: 0.0, count: 0 }, began: 0, next: 0 })
     }
 
-    /// The set-point of `sample`; asked in the order of the samples.
+    /// Set-point of `sample`; called in the order of the samples.
     fn next(&mut self, sample: u64) -> Setpoint {
         if sample >= self.total {
             return Setpoint::at_rest(self.base + self.profile.distance());

@@ -1,4 +1,4 @@
-//! How a block is called by its name: what its inputs are, what counts where one is not given, and what its outputs are.
+//! Interface of blocks by name: inputs, their defaults, and outputs.
 use crate::blocks::{CamSwitch, Follow, Input, MoveType, Pair, TrackOptions, ValueSource};
 use crate::command::{BufferMode, Direction};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
@@ -6,7 +6,7 @@ use servobench_config::{Bound, Choice, Measure};
 use servobench_fieldbus::ProbeTrigger;
 use servobench_motion::rockwell::ShapeKind;
 
-/// What starts and ends a block.
+/// Input that starts and ends a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trigger {
     /// The rising edge of Execute.
@@ -26,7 +26,7 @@ impl Trigger {
     }
 }
 
-/// What an input holds.
+/// Type of an input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum InputType {
     /// A number.
@@ -35,49 +35,49 @@ pub enum InputType {
     Whole(u32, u32),
     /// TRUE or FALSE.
     Flag,
-    /// Which way the axis goes.
+    /// Direction of the axis.
     Direction,
-    /// What becomes of the motion under way.
+    /// Relation to the active motion.
     BufferMode,
     /// The rows of a profile.
     Table,
     /// The switches of MC_DigitalCamSwitch.
     Switches,
-    /// The options of its tracks.
+    /// The options of tracks of MC_DigitalCamSwitch.
     Tracks,
-    /// One of these: their names and meanings.
+    /// One of these alternatives: their names and meanings.
     Choice(&'static [(&'static str, &'static str)]),
-    /// A value of the parameter that [`Input::Parameter`] says.
+    /// A value of the parameter given by [`Input::Parameter`].
     ParameterValue,
 }
 
-/// An input as a block has it.
+/// An input of a certain block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlockInput {
-    /// Which.
+    /// Input.
     pub input: Input,
-    /// What counts where it is not given.
+    /// Default.
     pub absent: Absent,
-    /// What this block demands of it beside what the input must be anyway.
+    /// Bound of this block, in addition to that of the input.
     pub bound: Bound,
 }
 
-/// What counts where an input is not given.
+/// Default of an input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Absent {
-    /// Nothing does: it must be given. The reason, where there is more to say than that the block needs it.
+    /// None: the input must be given. The reason, beyond the fact that the block needs it.
     Refused(Option<&'static str>),
     /// This number.
     Number(f64),
     /// TRUE or FALSE.
     Flag(bool),
-    /// This way.
+    /// This direction.
     Direction(Direction),
     /// The active motion is aborted.
     Aborting,
-    /// The block does without.
+    /// None: the input is optional.
     Nothing,
-    /// What another input is.
+    /// Value of another input.
     As(Input),
     /// The limit of the axis for this input; the axis must have one.
     Limit(Input),
@@ -90,33 +90,33 @@ impl BlockInput {
         Self { input, absent, bound: Bound::Any }
     }
 
-    /// The same, above zero for this block.
+    /// The same input, which must be above zero for this block.
     pub(crate) const fn positive(self) -> Self {
         Self { bound: Bound::Positive, ..self }
     }
 }
 
-/// Must be given.
+/// An input that must be given.
 pub(crate) const fn required(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::Refused(None))
 }
 
-/// Must be given, for this reason.
+/// An input that must be given, for this reason.
 pub(crate) const fn required_for(input: Input, why: &'static str) -> BlockInput {
     BlockInput::new(input, Absent::Refused(Some(why)))
 }
 
-/// A number that has a default.
+/// A number with a default.
 pub(crate) const fn or(input: Input, number: f64) -> BlockInput {
     BlockInput::new(input, Absent::Number(number))
 }
 
-/// TRUE or FALSE.
+/// A flag with a default.
 pub(crate) const fn flag(input: Input, otherwise: bool) -> BlockInput {
     BlockInput::new(input, Absent::Flag(otherwise))
 }
 
-/// A direction that has a default.
+/// A direction with a default.
 pub(crate) const fn direction(otherwise: Direction) -> BlockInput {
     BlockInput::new(Input::Direction, Absent::Direction(otherwise))
 }
@@ -126,41 +126,41 @@ pub(crate) const fn buffer_mode() -> BlockInput {
     BlockInput::new(Input::BufferMode, Absent::Aborting)
 }
 
-/// A limit of this block, unless given that of the axis.
+/// A limit of this block; by default that of the axis.
 pub(crate) const fn limit(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::Limit(input))
 }
 
-/// A limit of this block or of the axis, if one of both has it.
+/// A limit of this block or of the axis, if either has one.
 pub(crate) const fn limit_if_any(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::LimitIfAny(input))
 }
 
-/// What the block can do without; of several names the first one counts then.
+/// An optional input; a choice defaults to its first alternative.
 pub(crate) const fn optional(input: Input) -> BlockInput {
     BlockInput::new(input, Absent::Nothing)
 }
 
-/// What `other` is unless given.
+/// An input whose default is the value of `other`.
 pub(crate) const fn like(input: Input, other: Input) -> BlockInput {
     BlockInput::new(input, Absent::As(other))
 }
 
-/// Deceleration of a block that only brakes: the limit of the acceleration unless given.
+/// Deceleration of a block that only brakes; by default the limit of the acceleration.
 pub(crate) const fn braking() -> BlockInput {
     BlockInput::new(Input::Deceleration, Absent::Limit(Input::Acceleration))
 }
 
-/// A value of an input; tables are kept as `T`, which is [`Tables`] where blocks read them.
+/// A value of an input; tables are kept as `T`, which implements [`Tables`] where blocks read them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value<T> {
     /// A number (SI).
     Number(f64),
     /// TRUE or FALSE.
     Flag(bool),
-    /// Which way the axis goes.
+    /// Direction of the axis.
     Direction(Direction),
-    /// What becomes of the motion under way.
+    /// Relation to the active motion.
     BufferMode(BufferMode),
     /// The rows of a profile, switches, or options of tracks.
     Table(T),
@@ -168,18 +168,18 @@ pub enum Value<T> {
     Choice(&'static str),
 }
 
-/// The rows of a profile, which are kept as `P`, and how they are meant.
+/// Rows of a profile, kept as `P`, and their interpretation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Table<P> {
     /// The rows.
     pub pairs: P,
-    /// Whether positions count from where the profile begins.
+    /// True if positions count from the beginning of the profile.
     pub is_relative: bool,
-    /// How the axis goes from position to position.
+    /// Interpolation between the positions.
     pub follow: Follow,
 }
 
-/// What keeps the tables of inputs, of which each has one.
+/// Storage for the table of an input.
 pub trait Tables {
     /// The rows of a profile.
     fn profile(&self) -> Option<Table<&[Pair]>> {
@@ -191,20 +191,20 @@ pub trait Tables {
         &[]
     }
 
-    /// The options of its tracks.
+    /// The options of tracks of MC_DigitalCamSwitch.
     fn tracks(&self) -> &[TrackOptions] {
         &[]
     }
 }
 
-/// Nothing but profiles.
+/// Stores profiles only.
 impl<P: AsRef<[Pair]>> Tables for Table<P> {
     fn profile(&self) -> Option<Table<&[Pair]>> {
         Some(Table { pairs: self.pairs.as_ref(), is_relative: self.is_relative, follow: self.follow })
     }
 }
 
-/// Values of inputs by their names; what is not among them is as the block says.
+/// Values of inputs by name; missing ones take the default of the block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values<T>([Option<Value<T>>; Input::ALL.len()]);
 
@@ -220,19 +220,19 @@ impl<T> Values<T> {
         self.0[input as usize] = Some(value);
     }
 
-    /// The value of `input`, where it has one.
+    /// Value of `input`, if it has one.
     #[must_use]
     pub const fn get(&self, input: Input) -> Option<&Value<T>> {
         self.0[input as usize].as_ref()
     }
 
-    /// A number, where it has one.
+    /// Number of `input`, if it has one.
     #[must_use]
     pub fn number(&self, input: Input) -> Option<f64> {
         if let Some(Value::Number(number)) = self.get(input) { Some(*number) } else { None }
     }
 
-    /// The table that `input` has, where there is one.
+    /// Table of `input`, if it has one.
     #[must_use]
     pub fn table(&self, input: Input) -> Option<&T> {
         if let Some(Value::Table(table)) = self.get(input) { Some(table) } else { None }
@@ -241,14 +241,14 @@ impl<T> Values<T> {
 
 /// The inputs of a block.
 pub trait BlockInputs<'i>: Sized {
-    /// What starts and ends the block.
+    /// Input that starts and ends the block.
     const TRIGGER: Trigger;
-    /// The others, in the order in which they are listed.
+    /// Other inputs, in the order of the list.
     const INPUTS: &'static [BlockInput];
-    /// Whether they count in every cycle as they are then, rather than as they were at the start.
+    /// True if the inputs apply as they are in every cycle, rather than as they were at the start.
     const ARE_FOLLOWED: bool = matches!(Self::TRIGGER, Trigger::Enable) && !Self::INPUTS.is_empty();
 
-    /// What `values` say, with Execute or Enable as `trigger`. What must be given and is not is no number, which blocks refuse.
+    /// Inputs from `values`, with Execute or Enable as `trigger`. A missing required number is NaN, which blocks refuse.
     fn read<T: Tables>(values: &'i Values<T>, trigger: bool) -> Self;
 }
 
@@ -308,7 +308,7 @@ impl FromValues for BufferMode {
     }
 }
 
-/// Names and meanings of the alternatives of `T`, as many as there are.
+/// Names and meanings of the `N` alternatives of `T`.
 pub(crate) const fn names<T: Choice, const N: usize>() -> [(&'static str, &'static str); N] {
     let mut names = [("", ""); N];
     let mut at = 0;
@@ -320,7 +320,7 @@ pub(crate) const fn names<T: Choice, const N: usize>() -> [(&'static str, &'stat
     names
 }
 
-/// Types whose alternatives are inputs by name; where none is given, the first one counts.
+/// Implements reading by name for types of alternatives; the default is the first one.
 macro_rules! read_by_name {
     ($($type:ty),+) => { $(
         impl FromValues for $type {
@@ -334,9 +334,9 @@ macro_rules! read_by_name {
 
 read_by_name! { AxisParameter, AxisBoolParameter, ProbeTrigger, MoveType, ShapeKind, ValueSource }
 
-/// A type that an output can have.
+/// Types of outputs.
 pub(crate) trait Recorded {
-    /// As a recording keeps it; TRUE is 1.
+    /// Value as recorded; TRUE is 1.
     fn recorded(self) -> f64;
 }
 
@@ -364,18 +364,18 @@ impl Recorded for f64 {
     }
 }
 
-/// What an output holds.
+/// Type of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum OutputType {
     /// TRUE or FALSE.
     Flag,
-    /// FALSE: what it stands for does not occur here.
+    /// Always FALSE: the condition does not occur here.
     Never,
     /// A number.
     Number,
 }
 
-/// Declares the inputs of a block: the struct, what counts where one is not given, and how it is read by names.
+/// Declares the inputs of a block: the struct, the defaults, and reading by name.
 macro_rules! inputs {
     ($(#[$meta:meta])* pub struct $name:ident on $trigger:ident {}) => {
         $(#[$meta])*
@@ -426,7 +426,7 @@ macro_rules! inputs {
     (@trigger enable) => { $crate::Trigger::Enable };
 }
 
-/// Declares the outputs of a block: the struct, and which output each field is.
+/// Declares the outputs of a block: the struct, and the output of each field.
 macro_rules! outputs {
     (
         $(#[$meta:meta])*
@@ -449,8 +449,8 @@ macro_rules! outputs {
     };
 }
 
-/// Declares the outputs of a block that gives a motion command: the one that says that it came to what it is for, by the report
-/// that sets it, and those that all of them have.
+/// Declares the outputs of a block that gives a motion command: the one that reports success, with the report that sets it, and those
+/// common to all of them.
 macro_rules! command_outputs {
     ($(#[$meta:meta])* pub struct $name:ident; $(#[$aim_meta:meta])* $aim:ident = $output:ident by $report:ident) => {
         $crate::interface::outputs! {

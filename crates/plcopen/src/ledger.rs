@@ -1,63 +1,62 @@
-//! What became of the commands: each block asks for its own by number.
+//! Progress of the commands: each block looks up its own by number.
 use crate::axis::MOST_BUFFERED;
 use crate::blocks::BlockName;
 use crate::error::BlockError;
 use servobench_base::Stateful;
 
-/// The number of a command, counted from 1.
+/// Number of a command, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub struct CommandId(u32);
 
 impl CommandId {
-    /// The axis's own: stops that no block asked for.
+    /// The axis's own command: stops without a request from a block.
     pub(crate) const OWN: Self = Self(0);
 }
 
-/// What became of a command.
+/// Progress of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum Progress {
-    /// Waits for those before it.
+    /// Waits for the commands before it.
     Buffered,
     /// Commands the axis.
     Active,
-    /// The same, and is at the velocity or effort that it was to reach.
+    /// Commands the axis, at the velocity or effort that it was to reach.
     InTarget,
     /// Is done.
     Done,
-    /// Another one, or the loss of power that was asked for, took the axis from it.
+    /// Another command, or requested loss of power, took the axis from it.
     #[default]
     Aborted,
     /// The axis stopped with an error.
     Failed,
 }
 
-/// Most commands that are not over at a time: those that wait, the one that runs, and one on top of it that takes the place of
-/// another.
+/// Most commands that are open at a time: waiting ones, the active one, a superimposed one, and the one that it replaces.
 const MOST_OPEN: usize = MOST_BUFFERED + 3;
-/// Number of commands of which the end is remembered.
+/// Number of finished commands that are remembered.
 const REMEMBERED: usize = 64;
 
-/// A command and what became of it.
+/// A command and its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Entry {
     id: CommandId,
-    /// The block that gave it.
+    /// Block that gave the command.
     block: BlockName,
     progress: Progress,
-    /// Why it failed.
+    /// Cause of the failure.
     failure: Option<BlockError>,
 }
 
-/// All commands that wait or run, and the last 64 that ended. A block that is not called while 64 others end hears that its own
-/// was aborted.
+/// All waiting and active commands, and the last 64 that ended. A block that is not called while 64 others end sees its own as
+/// aborted.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Ledger {
     last: u32,
     open: [Option<Entry>; MOST_OPEN],
     ended: [Option<Entry>; REMEMBERED],
-    /// Where the next end is written.
+    /// Place of the next finished command.
     place: usize,
-    /// Why what fails now does.
+    /// Cause of the failures set next.
     failure: Option<BlockError>,
 }
 
@@ -66,7 +65,7 @@ impl Ledger {
         Self { last: 0, open: [None; MOST_OPEN], ended: [None; REMEMBERED], place: 0, failure: None }
     }
 
-    /// The next command, of `block`, which waits.
+    /// Issues the next command, of `block`, as buffered.
     pub(crate) fn issue(&mut self, block: BlockName) -> CommandId {
         self.last = self.last.wrapping_add(1).max(1);
         let entry = Entry { id: CommandId(self.last), block, progress: Progress::Buffered, failure: None };
@@ -78,12 +77,12 @@ impl Ledger {
         entry.id
     }
 
-    /// Whatever fails from now on does so for this reason.
+    /// Sets the cause of all failures from now on.
     pub(crate) const fn fail(&mut self, error: BlockError) {
         self.failure = Some(error);
     }
 
-    /// Why the command failed: each block speaks for itself of an error of the axis.
+    /// Cause of the command's failure; an error of the axis names the block of this command.
     pub(crate) fn failure(&self, id: CommandId) -> Option<BlockError> {
         let entry = self.entry(id)?;
         match entry.failure? {

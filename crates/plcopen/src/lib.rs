@@ -1,7 +1,7 @@
 //! PLCopen motion control, part 1 (version 2.0): function blocks and the axis that they command.
 //!
-//! A PLC cycle is [`Axis::begin`] with what the axis says of itself, the calls of the blocks in the order of the program, and
-//! [`Axis::end`], which says what the axis is to do:
+//! A PLC cycle is [`Axis::begin`] with the feedback of the axis, the calls of the blocks in the order of the program, and [`Axis::end`],
+//! which returns the command to the axis:
 //!
 //! ```
 //! use servobench_fieldbus::AxisFeedback;
@@ -25,7 +25,7 @@
 //! # Ok::<(), servobench_base::ParamError>(())
 //! ```
 //!
-//! `no_std`, no heap; without the feature `program`, whose programs keep their calls in a heap.
+//! `no_std`, no heap; the feature `program` adds programs, which keep their calls on the heap.
 #![cfg_attr(not(test), no_std)]
 
 #[cfg(feature = "program")]

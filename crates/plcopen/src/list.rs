@@ -1,7 +1,7 @@
-//! How the lists of inputs, outputs and blocks are declared; the lists themselves are in `blocks`.
+//! Macros that declare the lists of inputs, outputs and blocks; the lists themselves are in `blocks`.
 
-/// Declares [`Input`](crate::Input): name of the variant, key in programs, whether it may change while a block is executed, type,
-/// meaning, and what is to be said beside it where the input is given first.
+/// Declares [`Input`](crate::Input): name of the variant, key in programs, `changes` if it may change while a block is executed, type,
+/// meaning, and an addition where the input is documented with its default.
 macro_rules! list_inputs {
     ($( $variant:ident $key:literal $change:ident $type:expr, $meaning:literal $(+ $more:literal)?; )+) => {
         /// An input of function blocks.
@@ -20,25 +20,25 @@ macro_rules! list_inputs {
                 match self { $(Self::$variant => $key,)+ }
             }
 
-            /// What it holds.
+            /// Type of the value.
             #[must_use]
             pub const fn value_type(self) -> InputType {
                 match self { $(Self::$variant => $type,)+ }
             }
 
-            /// What it means.
+            /// Meaning, in words.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self { $(Self::$variant => concat!($meaning, "."),)+ }
             }
 
-            /// The same, with what counts where it is not given.
+            /// Meaning with the default.
             #[must_use]
             pub const fn meaning_with_default(self) -> &'static str {
                 match self { $(Self::$variant => concat!($meaning, $($more,)? "."),)+ }
             }
 
-            /// Whether it may change while a block is executed.
+            /// True if the input may change while a block is executed.
             #[must_use]
             pub const fn may_change(self) -> bool {
                 match self { $(Self::$variant => list_inputs!(@may_change $change),)+ }
@@ -65,7 +65,7 @@ macro_rules! list_outputs {
                 match self { $(Self::$variant => $name,)+ }
             }
 
-            /// What it holds.
+            /// Type of the value.
             #[must_use]
             pub const fn value_type(self) -> OutputType {
                 match self { $(Self::$variant => OutputType::$type,)+ }
@@ -74,11 +74,10 @@ macro_rules! list_outputs {
     };
 }
 
-/// Declares [`BlockName`](crate::BlockName): name of the variant, the block, its name in the standard, whether it is a command, its
-/// meaning.
+/// Declares [`BlockName`](crate::BlockName): name of the variant, the block, its name in the standard, `command` if it is one, its meaning.
 macro_rules! list_blocks {
     ($( $variant:ident: $block:ty, $name:literal $($command:ident)?, $meaning:literal; )+) => {
-        /// A function block: of the standard, but for `Profile4th` and `MAM`.
+        /// A function block: of the standard, except `Profile4th` and `MAM`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, servobench_base::Stateful)]
         pub enum BlockName {
             $( #[doc = concat!("`", $name, "`: ", $meaning, ".")] $variant, )+
@@ -94,31 +93,31 @@ macro_rules! list_blocks {
                 match self { $(Self::$variant => $name,)+ }
             }
 
-            /// What it does.
+            /// Meaning, in words.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self { $(Self::$variant => $meaning,)+ }
             }
 
-            /// Whether it asks for a motion or for its end: the blocks of the state diagram.
+            /// True if the block requests a motion or its end: the blocks of the state diagram.
             #[must_use]
             pub const fn is_command(self) -> bool {
                 match self { $(Self::$variant => list_blocks!(@is_command $($command)?),)+ }
             }
 
-            /// What starts and ends it.
+            /// Input that starts and ends the block.
             #[must_use]
             pub const fn trigger(self) -> Trigger {
                 match self { $(Self::$variant => <<$block as FunctionBlock>::Inputs<'static> as BlockInputs>::TRIGGER,)+ }
             }
 
-            /// Its inputs beside Execute or Enable.
+            /// Inputs other than Execute or Enable.
             #[must_use]
             pub const fn inputs(self) -> &'static [BlockInput] {
                 match self { $(Self::$variant => <<$block as FunctionBlock>::Inputs<'static> as BlockInputs>::INPUTS,)+ }
             }
 
-            /// Whether its inputs count in every cycle as they are then, rather than as they were at the start.
+            /// True if the inputs apply as they are in every cycle, rather than as they were at the start.
             #[must_use]
             pub const fn follows_inputs(self) -> bool {
                 match self {
@@ -126,13 +125,13 @@ macro_rules! list_blocks {
                 }
             }
 
-            /// Its outputs, in the order of the standard.
+            /// Outputs, in the order of the standard.
             #[must_use]
             pub const fn outputs(self) -> &'static [Output] {
                 match self { $(Self::$variant => <<$block as FunctionBlock>::Outputs as Outputs>::LIST,)+ }
             }
 
-            /// A new instance for a program, with room for the tables that `inputs` have.
+            /// A new instance for a program, with room for the tables of `inputs`.
             #[cfg(feature = "program")]
             pub(crate) fn instance(
                 self,

@@ -1,12 +1,12 @@
-//! The parameters of an axis that blocks read and write: the list of PLCopen part 1, version 2.0 (section 3.20, table of parameters).
+//! Parameters of an axis that blocks read and write: the list of PLCopen part 1, version 2.0 (section 3.20, table of parameters).
 //!
-//! The axis has one limit for acceleration and deceleration: both parameters of a kind show it, and that of the acceleration sets it.
+//! The axis has one limit for acceleration and deceleration: both parameters of a pair show it, and that of the acceleration sets it.
 use servobench_base::Stateful;
 use servobench_config::quantities::{ACCELERATION, JERK, POSITION, VELOCITY};
 use servobench_config::{Kind::Axis, Measure, any, positive};
 
 servobench_config::choices! {
-    /// A number among the parameters of the axis.
+    /// A numeric parameter of the axis.
     #[derive(Stateful)]
     pub enum AxisParameter {
         /// CommandedPosition (1), read-only
@@ -41,7 +41,7 @@ servobench_config::choices! {
 }
 
 servobench_config::choices! {
-    /// A BOOL among the parameters of the axis.
+    /// A BOOL parameter of the axis.
     #[derive(Stateful)]
     pub enum AxisBoolParameter {
         /// EnableLimitPos (4): whether the positive software limit holds
@@ -54,7 +54,7 @@ servobench_config::choices! {
 }
 
 impl AxisParameter {
-    /// What it measures, and what it must be to be written; `None` where it is read-only.
+    /// Quantity and bound of a value that is written; `None` if the parameter is read-only.
     #[must_use]
     pub const fn written_as(self) -> Option<Measure> {
         match self {

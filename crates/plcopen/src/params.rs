@@ -1,10 +1,10 @@
-//! What an axis is told once.
+//! Constant parameters of an axis.
 use crate::axis::MOST_BUFFERED;
 use servobench_base::{ParamError, Stateful, limit, positive};
 use servobench_motion::Limits;
 
 servobench_config::choices! {
-    /// From which velocity the acceleration of a velocity command counts, so that the drive is at the next velocity a cycle later.
+    /// Velocity from which the acceleration of a velocity command is computed, so that the drive reaches the next velocity a cycle later.
     #[derive(Stateful)]
     pub enum RampStart default SetPoint {
         /// the velocity of the set-point before: what the drive has when it obeys
@@ -19,16 +19,16 @@ servobench_config::choices! {
 pub struct AxisParams {
     /// Time of a PLC cycle (s).
     pub cycle_time: f64,
-    /// What no command may exceed. Jerk and snap may be infinite: an order of moves is the highest derivative that either the
-    /// axis or the command limits.
+    /// Limits of all commands. Jerk and snap may be infinite: the order of a move is the highest derivative that either the axis or the
+    /// command limits.
     pub limits: Limits,
-    /// Whether an absolute position needs MC_Home before.
+    /// True if an absolute position needs MC_Home before.
     pub needs_homing: bool,
-    /// After this much the position of a modulo axis begins anew (m or rad); `None` for an axis with ends.
+    /// Period of the position of a modulo axis (m or rad); `None` for an axis with ends.
     pub modulo: Option<f64>,
-    /// For an axis whose drive is told velocities rather than positions (profile velocity, pv): where their ramps begin.
+    /// Start of the velocity ramps of an axis in velocity mode (profile velocity, pv); `None` in position mode.
     pub velocity_ramps: Option<RampStart>,
-    /// How many commands may wait behind the active one, at most [`MOST_BUFFERED`].
+    /// Number of commands that may wait behind the active one, at most [`MOST_BUFFERED`].
     pub buffered_commands: usize,
 }
 

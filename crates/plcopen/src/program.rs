@@ -1,7 +1,7 @@
-//! Programs: calls of function blocks by their names, when each is executed, and what became of it.
+//! Programs: calls of function blocks by name, the conditions of their execution, and their results.
 //!
-//! An [`Executor`] calls the blocks once per cycle, in the order of the program, and tells a [`Listener`] what happens. Calls are kept
-//! in a heap.
+//! An [`Executor`] calls the blocks once per cycle, in the order of the program, and reports events to a [`Listener`]. Calls are kept on
+//! the heap.
 mod condition;
 mod executor;
 mod instance;
@@ -21,14 +21,14 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use servobench_motion::Limits;
 
-/// The table of an input: here as blocks take it, in a file as that has it.
+/// Table of an input: by default in the types of blocks, in a file in those of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rows<P = Table<Vec<Pair>>, S = Vec<CamSwitch>, T = Vec<TrackOptions>> {
     /// The rows of a profile.
     Profile(P),
     /// The switches of MC_DigitalCamSwitch.
     Switches(S),
-    /// The options of its tracks.
+    /// The options of tracks of MC_DigitalCamSwitch.
     Tracks(T),
 }
 
@@ -46,10 +46,10 @@ impl Tables for Rows {
     }
 }
 
-/// The inputs of a call.
+/// Inputs of a call.
 pub type Inputs = Values<Rows>;
 
-/// A call of a function block, with an instance of its own.
+/// A call of a function block, with a separate instance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Call {
     /// Name of the instance, unique.
@@ -58,13 +58,13 @@ pub struct Call {
     pub block: BlockName,
     /// Its inputs.
     pub inputs: Inputs,
-    /// When `Execute` or `Enable` becomes TRUE.
+    /// Condition at which `Execute` or `Enable` becomes TRUE.
     pub start: Condition,
-    /// When it becomes FALSE; `None`: `Execute` a cycle after the block has ended, `Enable` never.
+    /// Condition at which it becomes FALSE; `None`: `Execute` a cycle after the block has ended, `Enable` never.
     pub stop: Option<Condition>,
-    /// How long `start` is waited for, from the beginning of the run (s); infinite where the end of the run is soon enough.
+    /// Longest wait for `start`, from the beginning of the run (s); infinite to wait until the end of the run.
     pub timeout: f64,
-    /// Whether the run may do without it.
+    /// True if the run may succeed without the call.
     pub is_optional: bool,
     /// Inputs that change while `Execute` is TRUE, in their order.
     pub updates: Vec<Update>,
@@ -73,14 +73,14 @@ pub struct Call {
 /// New inputs of a block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Update {
-    /// When.
+    /// Condition of the update.
     pub when: Condition,
-    /// All inputs as they are from then on.
+    /// All inputs from then on.
     pub inputs: Inputs,
 }
 
-/// What an axis may do: `limits` of |velocity|, |acceleration|, |jerk| and |snap|, and where one is infinite the most that any of
-/// `calls` asks for.
+/// Limits of an axis: `limits` of |velocity|, |acceleration|, |jerk| and |snap|, and in place of an infinite one the most that any of
+/// `calls` requests.
 #[must_use]
 pub fn limits(limits: &[f64; 4], calls: &[Call]) -> Limits {
     let demands = || calls.iter().flat_map(|call| all_inputs(call).map(|inputs| demand(call.block, inputs)));
@@ -94,13 +94,13 @@ pub fn limits(limits: &[f64; 4], calls: &[Call]) -> Limits {
     Limits { velocity, acceleration, jerk, snap }
 }
 
-/// The inputs of a call and of its updates.
+/// Inputs of a call and of its updates.
 fn all_inputs(call: &Call) -> impl Iterator<Item = &Inputs> {
     core::iter::once(&call.inputs).chain(call.updates.iter().map(|update| &update.inputs))
 }
 
-/// Velocity, acceleration, jerk and snap that a block asks of its axis; zero for what it does not ask for, infinite for what it
-/// does not limit.
+/// Velocity, acceleration, jerk and snap that a block requests of its axis; zero for quantities that it does not request, infinite for
+/// those that it does not limit.
 fn demand(block: BlockName, inputs: &Inputs) -> [f64; 4] {
     let of = |input: Input| inputs.number(input).map_or(0.0, f64::abs);
     let free = |input: Input| match block.input(input) {

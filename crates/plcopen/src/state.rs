@@ -2,7 +2,7 @@
 use core::fmt;
 use servobench_base::Stateful;
 
-/// A state of the axis. Synchronized Motion is that of blocks for several axes, which are not here.
+/// A state of the axis. Synchronized Motion belongs to blocks for several axes, which are not implemented.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum AxisState {
     /// Not powered, without an error.
@@ -10,11 +10,11 @@ pub enum AxisState {
     Disabled,
     /// Powered, at rest, without a command.
     Standstill,
-    /// The drive looks for its reference, or steps of homing do.
+    /// The drive or homing steps search for the reference.
     Homing,
-    /// On the way to a position, through a table of positions, or to rest by MC_Halt.
+    /// In motion to a position, through a table of positions, or to rest by MC_Halt.
     DiscreteMotion,
-    /// On the way without an end: at a velocity, an effort or along a table of velocities or accelerations.
+    /// In motion without an end: at a velocity, an effort or along a table of velocities or accelerations.
     ContinuousMotion,
     /// Braked by MC_Stop, which holds the axis until its Execute falls.
     Stopping,
@@ -48,7 +48,7 @@ impl AxisState {
         }
     }
 
-    /// What leads from this state to one in which the axis takes motion commands.
+    /// Help on reaching a state in which the axis takes motion commands.
     #[must_use]
     pub const fn help(self) -> &'static str {
         match self {

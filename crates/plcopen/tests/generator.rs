@@ -23,7 +23,7 @@ fn input(reference: f64) -> Input {
     }
 }
 
-/// Outputs from the sample of the edge of enable on, which lasts one sample; until done.
+/// Outputs from the edge of enable, which lasts one sample, until done.
 fn outputs(params: &Params, input: &Input) -> Vec<Output> {
     let mut state = State::default();
     let mut outputs = vec![step(params, &mut state, &Input { enable: true, ..*input })];
@@ -133,11 +133,11 @@ fn a_pulse_starts_one_move_and_an_enable_that_stays_starts_again() {
         last
     };
     assert_eq!(run(&mut state, &mut enabled, 400).set_point.x, 0.01);
-    // Each start goes from where the reference is: there is nothing left to do, until there is another reference.
+    // Each start is from the present reference: nothing is left to do until the reference changes.
     enabled.reference = 0.03;
     let end = run(&mut state, &mut enabled, 800);
     assert!((end.set_point.x - 0.03).abs() < 1e-12 && end.added.abs() < 1e-12);
-    // While it moves an edge does nothing.
+    // During a move an edge has no effect.
     let mut state = State::default();
     let mut pulsed = input(0.01);
     for k in 0..600 {
@@ -216,7 +216,7 @@ fn lower_orders_switch_a_lower_derivative_and_land_too() {
                 let is = output.set_point;
                 let [x, v, a, j] = [is.x, is.v, is.a, is.j];
                 assert!(is.s == 0.0 && (last == 3 || j == 0.0));
-                // What is switched is sent, what is below it is its sum.
+                // The switched derivative is an output; those below it are its sums.
                 sums[last] = [x, v, a, j][last];
                 for (k, found) in [x, v, a].into_iter().enumerate().take(last) {
                     let bound = [5.0, 1.0, 5.0][k];

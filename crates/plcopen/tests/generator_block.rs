@@ -1,4 +1,4 @@
-//! The generator of order 4 as what an axis follows.
+//! An axis that follows the generator of order 4.
 #![expect(clippy::float_cmp, reason = "what is shown is what is followed")]
 #[path = "shared/bench.rs"]
 mod bench;
@@ -19,7 +19,7 @@ fn to(position: f64) -> Profile4thInputs {
     Profile4thInputs { enable: true, settling_time: SETTLING_TIME, ..Profile4thInputs::to(position, LIMITS) }
 }
 
-/// Cycles with `inputs` until Done, each with its outputs and the position of the axis.
+/// Runs `inputs` until Done: the outputs and the position of the axis in each cycle.
 fn moved(bench: &mut Bench, block: &mut Profile4th, inputs: Profile4thInputs) -> Vec<(Profile4thOutputs, f64)> {
     let mut way = Vec::new();
     loop {
@@ -61,7 +61,7 @@ fn a_move_ends_on_its_target_and_the_block_is_ready_when_it_has_settled() {
     }
 }
 
-/// Oracle: the plan of the order. What the order does not use may be anything.
+/// Oracle: the plan of the order. Limits that the order does not use may have any value.
 #[test]
 fn a_lower_order_switches_a_lower_derivative() {
     for (number, order) in [(2.0, Order::Second), (3.0, Order::Third)] {
@@ -88,7 +88,7 @@ fn a_lower_order_switches_a_lower_derivative() {
     }
 }
 
-/// The set-points that the block shows are those that the axis gets, in the cycle in which it gets them.
+/// The block shows the set-points of the axis in the cycle in which the axis gets them.
 #[test]
 fn the_block_shows_what_the_axis_follows() {
     let (mut bench, mut block) = (Bench::standstill(), Profile4th::default());
@@ -125,13 +125,13 @@ fn another_command_takes_the_axis_and_the_block_says_so_until_enable_falls() {
         let outputs = bench.cycle(|axis| block.step(axis, &to(0.5)));
         assert!(outputs.command_aborted && !outputs.busy && !outputs.active);
     }
-    // It does not take the axis back, but for a rise of Enable.
+    // The block does not take the axis back, except at a rise of Enable.
     assert!(bench.cycle(|axis| block.step(axis, &to(0.5))).command_aborted);
     assert!(!bench.cycle(|axis| block.step(axis, &Profile4thInputs { enable: false, ..to(0.5) })).command_aborted);
     assert!((moved(&mut bench, &mut block, to(0.5)).last().unwrap().1 - 0.5).abs() < 1e-15);
 }
 
-/// MC_SetPosition moves nothing, whenever it comes: the axis goes as far as it was told to.
+/// MC_SetPosition moves nothing, at any time: the axis covers the commanded distance.
 #[test]
 fn a_shifted_coordinate_leaves_the_move_as_it_is() {
     for shifted in [0, 1, 2, 100] {
@@ -170,7 +170,7 @@ fn what_the_axis_may_not_do_is_refused_at_the_edge() {
             assert_eq!(bench.axis.state(), AxisState::Standstill);
         }
     }
-    // What the plan refuses comes a cycle later, and leaves the axis where it is.
+    // A refusal of the plan comes a cycle later, and leaves the axis where it is.
     let (mut bench, mut block) = (Bench::standstill(), Profile4th::default());
     bench.cycle(|axis| block.step(axis, &to(f64::NAN)));
     let outputs = bench.cycle(|axis| block.step(axis, &to(f64::NAN)));

@@ -1,4 +1,4 @@
-//! What the axis is doing, and how it goes on from cycle to cycle.
+//! Activities of the axis and their advance from cycle to cycle.
 use super::Axis;
 use super::obstacle::{HomingSteps, Search};
 use super::queue::Queue;
@@ -12,35 +12,35 @@ use servobench_base::{Setpoint, Stateful};
 use servobench_fieldbus::Homing;
 use servobench_motion::online::Target;
 
-/// What the axis is doing.
+/// Activity of the axis.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) enum Activity {
     /// Nothing.
     Rest,
-    /// Follows a planned way.
+    /// Follows a planned trajectory.
     Moving(Moving),
     /// Gives an effort.
     Effort(EffortRamp),
-    /// The drive looks for its reference.
+    /// Waits while the drive searches for its reference.
     Homing(HomingWait),
-    /// Looks for an obstacle.
+    /// Searches for an obstacle.
     Search(Search),
-    /// Waits for the drive to end a reference run that another command has taken the axis from.
+    /// Waits for the drive to end a reference run from which another command has taken the axis.
     Leaving(Leaving),
     /// A block gives the set-points.
     Led(Led),
 }
 
-/// A command on its planned way.
+/// A command on its planned trajectory.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Moving {
     pub(super) id: CommandId,
     pub(super) command: Command,
-    /// Where it leads, in the unit of the drive and without the override.
+    /// Target, in the unit of the drive and without the override.
     pub(super) target: Target,
-    /// Position from which a distance counts: where it began, or the target before it.
+    /// Position from which a distance counts: that at the start, or the target before it.
     pub(super) origin: f64,
-    /// Whether it rests because of a velocity override of zero.
+    /// True if the command rests because of a velocity override of zero.
     pub(super) is_paused: bool,
     pub(super) run: Run,
 }
@@ -62,11 +62,11 @@ pub(super) struct HomingWait {
     pub(super) id: CommandId,
     pub(super) command: Command,
     pub(super) reference: Reference,
-    /// Whether the drive has been seen without the result of an earlier run.
+    /// True if the drive has been seen without the result of an earlier run.
     pub(super) has_begun: bool,
 }
 
-/// A command that brings the axis to rest when the drive has ended its reference run, and with it counts from one zero.
+/// A command that brings the axis to rest once the drive has ended its reference run, so that both count from one zero.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub(super) struct Leaving {
     pub(super) id: CommandId,
@@ -78,16 +78,16 @@ pub(super) struct Leaving {
 pub(super) struct Led {
     pub(super) id: CommandId,
     pub(super) command: Command,
-    /// From where the program counted when it began: MC_SetPosition moves nothing.
+    /// Offset of the program at the start: MC_SetPosition does not move the axis.
     pub(super) offset: f64,
-    /// Whether the set-point of this cycle is there.
+    /// True if the set-point of this cycle has been given.
     pub(super) is_fresh: bool,
-    /// Cycles since it began.
+    /// Cycles since the start.
     pub(super) cycles: u64,
 }
 
 impl Activity {
-    /// The command and its number, where there is one.
+    /// The command and its number, if there is one.
     pub(super) fn command(&self) -> Option<(CommandId, &Command)> {
         match self {
             Self::Rest => None,
@@ -107,14 +107,14 @@ impl Activity {
 }
 
 impl Axis {
-    /// One cycle on.
+    /// Advances by one cycle.
     pub(super) fn advance(&mut self) {
         let cycle_time = self.params.cycle_time;
         match &mut self.activity {
             Activity::Rest => {
                 let follows = match self.state {
                     AxisState::Disabled => true,
-                    // Under a fault the link puts out what the drive follows, whatever is commanded.
+                    // Under a fault the link reports the position that the drive follows, whatever is commanded.
                     AxisState::ErrorStop => !self.is_powered() || self.feedback.fault.is_some(),
                     _ => false,
                 };
@@ -161,7 +161,7 @@ impl Axis {
                 self.found_reference(id, 0.0);
             }
             Activity::Homing(homing) => {
-                // Where the drive has stopped what it follows, the axis is still on its way to.
+                // The axis still moves to the position at which the drive has stopped its demand.
                 self.base = Setpoint { v: self.feedback.velocity, ..Setpoint::at_rest(self.feedback.demanded()) };
                 let id = homing.id;
                 match self.feedback.homing {
@@ -190,7 +190,7 @@ impl Axis {
         }
     }
 
-    /// From now on the position counts from a reference: what the program sees is that of the drive and `offset`.
+    /// Counts the position from a reference from now on: the program sees the drive's position plus `offset`.
     fn found_reference(&mut self, id: CommandId, offset: f64) {
         (self.is_homed, self.offset) = (true, offset);
         self.homing_steps = HomingSteps::default();
@@ -198,10 +198,10 @@ impl Axis {
         self.rest();
     }
 
-    /// The way of the active command is over.
+    /// Ends the trajectory of the active command.
     fn arrive(&mut self) {
         let Activity::Moving(moving) = &self.activity else { return };
-        // A way that began a cycle ago may have been over in the cycle before.
+        // A trajectory that began a cycle ago may have been over in the cycle before.
         let beyond = moving.run.beyond().min(self.params.cycle_time);
         let (id, end) = (moving.id, moving.run.end());
         if moving.command.is_endless() {
@@ -234,7 +234,7 @@ impl Axis {
         }
     }
 
-    /// A position that was passed is no target any more, whatever is planned anew.
+    /// Drops a target position that was passed, so that no replan returns to it.
     fn forget_position(&mut self) {
         if let Activity::Moving(Moving { target, .. }) = &mut self.activity
             && let Target::Position { v, .. } = *target
@@ -243,7 +243,7 @@ impl Axis {
         }
     }
 
-    /// A command without an end has what it wanted: the next one takes over, or it goes on.
+    /// Marks an endless command as in target: the next command takes over, or the motion continues.
     fn go_on(&mut self, id: CommandId, from: Setpoint) {
         if self.queue.first().is_some() {
             self.ledger.set(id, Progress::Aborted);
@@ -253,7 +253,7 @@ impl Axis {
         }
     }
 
-    /// The first command that waits becomes the active one, `lead` seconds ago, at `from`.
+    /// Makes the first waiting command the active one, `lead` seconds ago, at `from`.
     pub(super) fn take_next(&mut self, from: Setpoint, lead: f64) {
         let Some((id, command)) = self.queue.pop() else { return };
         match self.prepared(id, command, from, lead, &self.queue) {
@@ -278,7 +278,7 @@ impl Axis {
         }
     }
 
-    /// From now on the axis does this, at `from`.
+    /// Begins `activity` at `from`.
     pub(super) fn activate(&mut self, activity: Activity, from: Setpoint) {
         self.is_homed &= !matches!(activity, Activity::Homing(_) | Activity::Search(_));
         if matches!(activity, Activity::Search(_)) {
@@ -287,7 +287,7 @@ impl Axis {
         (self.activity, self.base) = (activity, from);
     }
 
-    /// A way may be so short that it is over in the cycle in which it is blended in; then the next one follows in that cycle.
+    /// Handles a trajectory so short that it is over in the cycle in which it is blended in; the next one then follows in that cycle.
     fn arrive_early(&mut self) {
         if let Activity::Moving(moving) = &self.activity
             && moving.run.is_over()
@@ -297,8 +297,8 @@ impl Axis {
         }
     }
 
-    /// A command that waited is refused when its turn comes at `from`, `lead` seconds ago, since something was changed in
-    /// between: the one behind it takes its place (PLCopen part 1, section 2.2.2). Without one the axis halts.
+    /// Refuses a waiting command at its turn, at `from`, `lead` seconds ago, since something was changed in between: the one behind it
+    /// takes its place (PLCopen part 1, section 2.2.2). Without one the axis halts.
     fn refuse_waiting(&mut self, id: CommandId, error: BlockError, from: Setpoint, lead: f64) {
         self.ledger.fail(error);
         self.ledger.set(id, Progress::Failed);
@@ -316,7 +316,7 @@ impl Axis {
         }
     }
 
-    /// Nothing is left to do but for a motion on top; without one the axis rests, and what waits for that begins.
+    /// Ends the activity but for a superimposed motion; without one the axis rests, and a command waiting for standstill begins.
     pub(super) fn rest(&mut self) {
         self.activity = Activity::Rest;
         if self.superimposed.is_none() {

@@ -1,12 +1,12 @@
-//! The velocity with which the end of a command is passed when the next one is blended with it.
+//! Velocity with which the end of a command is passed when the next one is blended with it.
 //!
-//! The wanted velocity is that of the buffer mode, zero where the two lead in different directions. The highest up to it is taken
-//! to which the first command can bring the axis without turning back, and from which those that wait can follow: that is the
-//! one to which the next one, run backwards from its own end, would bring it. So the commands that wait are gone through from the
-//! last to the first.
+//! The desired velocity is that of the buffer mode, zero where the two commands lead in different directions. The result is the highest
+//! velocity up to it that the first command can reach without turning back and from which the waiting commands can follow. The latter
+//! bound is the velocity that the next command, run backwards from its own end, would reach. The waiting commands are therefore visited
+//! from the last to the first.
 //!
-//! Where that is above the velocity of the first command, the axis goes at the latter until only the distance is left that the
-//! rise takes; where there is not so much, it rises at once.
+//! Above the velocity of the first command, the axis travels at the latter until only the distance of the rise is left; if the
+//! distance is shorter than that, it rises at once.
 use super::Axis;
 use super::bounds::Bounds;
 use super::brake_pre_trajectory::{is_fit_for, planned};
@@ -18,7 +18,7 @@ use servobench_base::Setpoint;
 use servobench_motion::PlanError;
 use servobench_motion::online::{Target, passing_velocity};
 
-/// The way from `from` to `x` within `bounds` on an axis with the bounds `axis`, begun `lead` seconds ago, which is passed at a
+/// Trajectory from `from` to `x` within `bounds` on an axis with the bounds `axis`, begun `lead` seconds ago, which passes `x` at a
 /// speed of at most `wanted`.
 pub(super) fn blended(
     from: &Setpoint,
@@ -45,15 +45,15 @@ pub(super) fn blended(
     planned(from, &target, &fast, axis, lead)
 }
 
-/// The highest speed up to `most` with which `x` can be passed; zero where there is none.
+/// Highest speed up to `most` with which `x` can be passed; zero if there is none.
 fn speed_at(from: &Setpoint, x: f64, bounds: &Bounds, most: f64) -> Result<f64, PlanError> {
     let limits = bounds.limits().towards(x - from.x);
     Ok(passing_velocity(bounds.order(), from, x, &limits, most)?.unwrap_or(0.0))
 }
 
 impl Axis {
-    /// The highest speed with which a command of the velocity `velocity` that leads to `x` in `direction` can be ended, so that
-    /// those that wait from this `place` in the queue on follow as they ask for it.
+    /// Highest final speed of a command with the velocity `velocity` that leads to `x` in `direction` from which the commands waiting
+    /// from this `place` in the queue on can follow within their own limits.
     pub(super) fn exit_speed(
         &self,
         x: f64,
@@ -77,7 +77,7 @@ impl Axis {
         if length <= 0.0 || wanted == 0.0 {
             return Ok(0.0);
         }
-        // Who is to turn round behind the end comes to rest there.
+        // A command that turns round behind the end comes to rest there.
         let exit = if command.is_endless() {
             end_velocity.max(0.0)
         } else {

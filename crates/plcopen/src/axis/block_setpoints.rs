@@ -1,4 +1,4 @@
-//! Motions whose set-points a block gives itself: its course is one that the axis need not hold.
+//! Motions whose set-points come from a block: the axis need not store their trajectory.
 use super::Axis;
 use super::activity::Activity;
 use super::queue::Queue;
@@ -9,7 +9,7 @@ use crate::error::AxisError;
 use crate::ledger::{CommandId, Progress};
 use servobench_base::Setpoint;
 
-/// What rounding may add to a limit, as a part of it.
+/// Relative tolerance of a limit for rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl Axis {
@@ -22,9 +22,9 @@ impl Axis {
         }
     }
 
-    /// Gives the set-point of this cycle to the active command `id`, which has the goal [`Led`](crate::Goal::Led), in the
-    /// coordinate that the program had when it began. It is called in every cycle after the first until it is concluded; where
-    /// it is not, or a limit of the axis is not kept, the axis stops with an error.
+    /// Gives the set-point of this cycle to the active command `id`, which has the goal [`Led`](crate::Goal::Led), in the coordinate
+    /// that the program had when the command began. Call it in every cycle after the first until the command is concluded; if a call is
+    /// missing, or a limit of the axis is exceeded, the axis stops with an error.
     pub fn lead(&mut self, id: CommandId, setpoint: Setpoint) {
         let Activity::Led(led) = &mut self.activity else { return };
         if led.id != id {
@@ -32,7 +32,7 @@ impl Axis {
         }
         let setpoint = Setpoint { x: setpoint.x - led.offset - self.shift, ..setpoint };
         let (block, before, limits, h) = (led.command.block, self.base, &self.params.limits, self.params.cycle_time);
-        // What lies between two set-points: the mean velocity and acceleration.
+        // Mean velocity and acceleration between two set-points.
         let way = (setpoint.x - before.x) / h;
         let gain = (setpoint.v - before.v) / h;
         let checks = [
@@ -52,7 +52,7 @@ impl Axis {
         self.add_up();
     }
 
-    /// A cycle ends: without a set-point of the block that leads the axis it stops with an error.
+    /// Ends a cycle: without a set-point from the leading block the axis stops with an error.
     pub(super) fn watch_leading(&mut self) {
         if let Activity::Led(led) = &self.activity
             && !led.is_fresh
@@ -62,7 +62,7 @@ impl Axis {
         }
     }
 
-    /// The active command `id` begins where the program sees the axis now.
+    /// Begins the active command `id` at the position where the program sees the axis now.
     pub(crate) fn begin_leading(&mut self, id: CommandId) {
         if let Activity::Led(led) = &mut self.activity
             && led.id == id
@@ -71,7 +71,7 @@ impl Axis {
         }
     }
 
-    /// The active command `id` leads beyond a limit of the axis: it stops with an error.
+    /// Ends the active command `id`, which exceeds a limit of the axis: the axis stops with an error.
     pub(crate) fn abandon(&mut self, id: CommandId, quantity: &'static str, value: f64, limit: f64) {
         if let Activity::Led(led) = &self.activity
             && led.id == id
@@ -81,8 +81,8 @@ impl Axis {
         }
     }
 
-    /// The course of the command `id` has reached its end: it is done. The axis rests there, or keeps the velocity that it has
-    /// there, as the goal of the command says.
+    /// Concludes the command `id` at the end of its trajectory: it is done. The axis rests there or keeps its velocity, depending on the
+    /// goal of the command.
     pub fn conclude(&mut self, id: CommandId) {
         let Activity::Led(led) = &self.activity else { return };
         if led.id != id {

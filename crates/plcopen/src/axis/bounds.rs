@@ -1,7 +1,7 @@
-//! From the inputs of a block, the limits of the axis and the override factors to a planned way.
+//! Plans trajectories from the inputs of a block, the limits of the axis and the override factors.
 //!
-//! Acceleration is for a speed that grows, Deceleration for one that falls. An axis that has to turn round does both in the same
-//! direction: [`Transition::plan_ramps`] says how both are kept.
+//! Acceleration is for a rising speed, Deceleration for a falling one. An axis that turns round uses both in the same direction:
+//! [`Transition::plan_ramps`] documents how both are kept.
 use crate::command::Dynamics;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
@@ -19,7 +19,7 @@ impl Override {
     pub(crate) const NONE: Self = Self { velocity: 1.0, acceleration: 1.0, jerk: 1.0 };
 }
 
-/// What a way may not exceed, magnitudes.
+/// Bounds of a trajectory, magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Bounds {
     pub(crate) velocity: f64,
@@ -42,18 +42,18 @@ impl Bounds {
         }
     }
 
-    /// All that the axis has.
+    /// Full bounds of the axis.
     pub(crate) const fn of_axis(limits: &Limits) -> Self {
         let Limits { velocity, acceleration, jerk, snap } = *limits;
         Self { velocity, acceleration, deceleration: acceleration, jerk, snap }
     }
 
-    /// The same with room for `speed`.
+    /// The same bounds with room for `speed`.
     pub(crate) fn faster(self, speed: f64) -> Self {
         Self { velocity: self.velocity.max(speed), ..self }
     }
 
-    /// Those of the same way run backwards.
+    /// Bounds of the same trajectory run backwards.
     pub(crate) const fn backwards(self) -> Self {
         Self { acceleration: self.deceleration, deceleration: self.acceleration, ..self }
     }
@@ -73,12 +73,12 @@ impl Bounds {
         RampLimits { velocity: Sides::both(velocity), acceleration, deceleration, jerk, snap }
     }
 
-    /// The way from `from` to `target`.
+    /// Trajectory from `from` to `target`.
     pub(crate) fn plan(&self, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
         Transition::plan_ramps(self.order(), from, target, &self.limits(), Effort::Fast)
     }
 
-    /// How far it is from `from` to the velocity `v`.
+    /// Distance covered from `from` until the velocity is `v`.
     pub(crate) fn covered(&self, from: &Setpoint, v: f64) -> Result<f64, PlanError> {
         let way = self.plan(from, &Target::Velocity(v))?;
         Ok(way.at(way.duration()).x - from.x)

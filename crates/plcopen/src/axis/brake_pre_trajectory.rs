@@ -1,18 +1,18 @@
 //! Commands that are gentler than the state from which they start.
 //!
-//! An axis that is about to reach its limit of velocity or acceleration, as a brisk command leads it, would pass that limit if a
-//! command with less jerk or snap took over at once. Where that is so, acceleration and jerk are brought to zero with what the
-//! axis allows, and the command starts from there.
+//! An axis about to reach its limit of velocity or acceleration under a brisk command would exceed that limit if a command with less
+//! jerk or snap took over at once. In that case acceleration and jerk are first brought to zero within the limits of the axis, and the
+//! command starts from there.
 use super::bounds::Bounds;
 use super::run::Run;
 use servobench_base::Setpoint;
 use servobench_motion::PlanError;
 use servobench_motion::online::{Target, Transition};
 
-/// What rounding may add to a limit, as a part of it.
+/// Relative tolerance of a limit for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The way from `from` to `target` within `bounds`, begun `lead` seconds ago, on an axis with the bounds `axis`.
+/// Trajectory from `from` to `target` within `bounds`, begun `lead` seconds ago, on an axis with the bounds `axis`.
 pub(super) fn planned(
     from: &Setpoint,
     target: &Target,
@@ -24,14 +24,14 @@ pub(super) fn planned(
     if is_fit_for(&way, axis) {
         return Ok(Run::new(way, lead, None, axis).planned_for(*target, *bounds));
     }
-    // What is left of the velocity when the acceleration goes to zero at the jerk of the axis.
+    // Velocity that is left when the acceleration goes to zero at the jerk of the axis.
     let rest = from.v + from.a * from.a.abs() / (2.0 * axis.jerk);
     let calmed = axis.plan(from, &Target::Velocity(rest.clamp(-axis.velocity, axis.velocity)))?;
     Ok(Run::new(calmed, lead, Some((*target, *bounds)), axis).planned_for(*target, *bounds))
 }
 
-/// `from` with no more jerk and acceleration than the velocity that is left on an axis with the bounds `axis` takes up: a table
-/// whose velocity has corners leads to states that no way within the limits of the axis does, and from which none leads on. The
+/// `from` with jerk and acceleration reduced to those that the remaining velocity of an axis with the bounds `axis` absorbs: a table
+/// whose velocity has corners leads to states that no trajectory within the limits of the axis reaches, and from which none continues. The
 /// acceleration then falls in a step, as it does at each of the corners.
 pub(super) fn settled(from: &Setpoint, axis: &Bounds) -> Setpoint {
     let keeps_limits = axis.plan(from, &Target::Velocity(0.0)).is_ok_and(|way| keeps(&way, axis));
@@ -43,7 +43,7 @@ pub(super) fn settled(from: &Setpoint, axis: &Bounds) -> Setpoint {
     Setpoint { a: from.a.clamp(-steepest, steepest), j: 0.0, s: 0.0, ..*from }
 }
 
-/// The acceleration that is brought to zero while the velocity rises by `room`.
+/// Highest acceleration that can be brought to zero while the velocity rises by `room`.
 fn steepest_before(room: f64, axis: &Bounds) -> f64 {
     let Bounds { jerk, snap, .. } = *axis;
     if snap == f64::INFINITY {
@@ -55,12 +55,12 @@ fn steepest_before(room: f64, axis: &Bounds) -> f64 {
     if trapezoid >= least { trapezoid } else { libm::cbrt(snap * room * room) }
 }
 
-/// Whether an axis with the bounds `axis` can go the way.
+/// True if an axis with the bounds `axis` can follow the trajectory.
 pub(super) fn is_fit_for(way: &Transition, axis: &Bounds) -> bool {
     way.excess() == 0.0 || keeps(way, axis)
 }
 
-/// Whether velocity and acceleration stay within those of the axis, as far as `way` is not on its way back into them.
+/// True if velocity and acceleration stay within those of the axis, except while `way` returns into them.
 fn keeps(way: &Transition, axis: &Bounds) -> bool {
     let (mut velocity, mut acceleration) = (way.at(0.0).v.abs(), way.at(0.0).a.abs());
     for segment in way.segments() {

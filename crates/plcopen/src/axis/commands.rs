@@ -1,4 +1,4 @@
-//! Taking commands from blocks: what is refused, what waits, what begins at once.
+//! Submission of commands by blocks: refused, queued or begun at once.
 use super::Axis;
 use super::activity::{Activity, EffortRamp, HomingWait, Leaving, Led, Moving};
 use super::blending::blended;
@@ -18,16 +18,16 @@ use servobench_base::Setpoint;
 use servobench_motion::PlanError;
 use servobench_motion::online::Target;
 
-/// A state from which the axis goes on.
+/// State from which the axis continues.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Start {
     pub(super) from: Setpoint,
-    /// How long ago it was (s).
+    /// Time since that state (s).
     pub(super) lead: f64,
 }
 
 impl Axis {
-    /// Takes a command: it begins, or waits behind others.
+    /// Submits a command: it begins, or waits behind others.
     pub(crate) fn submit(&mut self, command: Command) -> Result<CommandId, BlockError> {
         let block = command.block;
         let Some(arrow) = arrow(self.state_before(&command)?, Cause::Block(block)) else {
@@ -61,7 +61,7 @@ impl Axis {
         Ok(id)
     }
 
-    /// MC_Stop. An instance whose stop `before` still brakes may stop anew; no other one may.
+    /// Submits an MC_Stop. Only the instance whose stop `before` still brakes may stop anew.
     pub(crate) fn stop(&mut self, command: Command, before: Option<CommandId>) -> Result<CommandId, BlockError> {
         let block = command.block;
         let is_its_own = self.state == AxisState::Stopping && before.is_some() && self.activity.id() == before;
@@ -82,7 +82,7 @@ impl Axis {
         Ok(id)
     }
 
-    /// Execute of an MC_Stop is FALSE: it holds the axis no more.
+    /// Releases the axis from an MC_Stop whose Execute is FALSE.
     pub(crate) fn release_stop(&mut self, id: CommandId) {
         if self.stop_holder != Some(id) {
             return;
@@ -93,7 +93,7 @@ impl Axis {
         }
     }
 
-    /// The state of the axis out of which `command` leads: the present one, or Standstill where it waits for that.
+    /// State of the axis before `command`: the present one, or Standstill if the command waits for that.
     fn state_before(&self, command: &Command) -> Result<AxisState, BlockError> {
         if command.buffer_mode == BufferMode::Aborting {
             return match self.activity {
@@ -115,13 +115,13 @@ impl Axis {
         })
     }
 
-    /// Whether a position of the program will mean something when a command with this mode begins.
+    /// True if a program position is referenced when a command with this mode begins.
     pub(crate) fn has_reference(&self, buffer_mode: BufferMode) -> bool {
         let is_homed_before = || buffer_mode != BufferMode::Aborting && self.below().any(Command::ends_homing);
         !self.params.needs_homing || self.is_homed || is_homed_before()
     }
 
-    /// Changes the inputs of a command that runs or waits.
+    /// Changes the inputs of an active or waiting command.
     pub(crate) fn update(&mut self, id: CommandId, command: Command) -> Result<(), BlockError> {
         let was_in_target = self.ledger.progress(id) == Progress::InTarget;
         command.check(&self.params)?;
@@ -135,7 +135,7 @@ impl Axis {
             Activity::Moving(moving) if moving.id == id => {
                 let origin = moving.origin;
                 let target = match (command.goal, moving.target) {
-                    // The position is behind; what goes on is the velocity.
+                    // The position is behind; only the velocity continues.
                     (
                         Goal::Absolute { end_velocity: Some(v), .. } | Goal::Relative { end_velocity: Some(v), .. },
                         Target::Velocity(_),
@@ -158,7 +158,7 @@ impl Axis {
             }
             _ => return Err(BlockError::Ended { block: command.block }),
         }
-        // What changes neither velocity nor effort leaves the axis where it was to be.
+        // A change of neither velocity nor effort leaves the axis in target.
         let is_there = match &self.activity {
             Activity::Moving(moving) => moving.run.is_over(),
             Activity::Effort(effort) => (effort.target - effort.present).abs() <= 0.0,
@@ -168,7 +168,7 @@ impl Axis {
         Ok(())
     }
 
-    /// MC_SetOverride: what runs is planned anew from where it is.
+    /// MC_SetOverride: replans active motions from the present set-point.
     pub(crate) fn set_factors(&mut self, factors: Override) -> Result<(), BlockError> {
         if factors == self.factors {
             return Ok(());
@@ -190,7 +190,7 @@ impl Axis {
         done
     }
 
-    /// MC_SetPosition: `position` is what the program sees from now on where the axis actually is, or this much more than now.
+    /// MC_SetPosition: sets the actual position that the program sees to `position`, or shifts it by that much.
     pub(crate) fn set_position(&mut self, position: f64, is_relative: bool) -> Result<(), BlockError> {
         let block = BlockName::SetPosition;
         if self.state == AxisState::Homing {
@@ -201,12 +201,11 @@ impl Axis {
         Ok(())
     }
 
-    /// Where an aborting command goes on from: the set-point, which is that of the cycle before as long as the one of this cycle is
-    /// not there.
+    /// Start of an aborting command: the set-point, which is that of the cycle before until that of this cycle exists.
     pub(super) fn present(&self) -> Start {
         let cycle_time = self.params.cycle_time;
         match &self.activity {
-            // Follows what the drive says, which it has just said.
+            // Follows the drive's feedback, which has just arrived.
             Activity::Effort(_) | Activity::Homing(_) | Activity::Leaving(_) if self.is_beginning => {
                 Start { from: self.base, lead: 0.0 }
             }
@@ -261,7 +260,7 @@ impl Axis {
         self.ledger.set(id, Progress::Active);
     }
 
-    /// Plans the rest of the active command anew, with what has changed, on what there is of the `axis`.
+    /// Replans the rest of the active command, with the changes, on the given share of the `axis`.
     fn rejoin(&mut self, axis: &Bounds) -> Result<(), BlockError> {
         let Activity::Moving(moving) = &self.activity else { return Ok(()) };
         if moving.command.goal == Goal::Rest {
@@ -277,10 +276,11 @@ impl Axis {
         Ok(())
     }
 
-    /// Another way than `run` for `moving`, where that would turn round before a position ahead that it is to pass, because its
-    /// velocity there is out of reach since the override has changed: the way straight to that velocity, which passes the position faster
-    /// or slower than wanted. Next to rest the fastest one may turn round as well: then `moving` goes on as it is, and to that
-    /// velocity afterwards.
+    /// Alternative to `run` for `moving`, if `run` would turn round before a position ahead that it is to pass, because its velocity there
+    /// is out of reach since a change of the override: the trajectory straight to that velocity, which passes the position faster or slower
+    /// than desired. Close to rest the fastest trajectory may turn round as well: then `moving` continues unchanged, and goes to that
+    /// velocity
+    /// afterwards.
     fn without_turning_round(&self, moving: &Moving, axis: &Bounds, run: &Run) -> Result<Option<Run>, BlockError> {
         let Target::Position { x, v } = moving.target else { return Ok(None) };
         let from = self.base;
@@ -293,7 +293,7 @@ impl Axis {
         Ok(Some(way.passing(x, sign, run)))
     }
 
-    /// `command` as it begins at `from`, `lead` seconds ago, with those that wait behind it.
+    /// Activity of `command` as it begins at `from`, `lead` seconds ago, with the commands waiting behind it.
     pub(super) fn prepared(
         &self,
         id: CommandId,
@@ -325,7 +325,7 @@ impl Axis {
                 let origin = if is_aborting { self.last_target().unwrap_or(from.x) } else { from.x };
                 let target = self.target(&command, &from, origin)?;
                 self.check_target(block, &from, &target)?;
-                // An aborting command has the axis for itself.
+                // An aborting command has the whole axis.
                 let axis = if is_aborting { Bounds::of_axis(&self.params.limits) } else { self.beside() };
                 let (run, is_paused) = self.run(&command, &target, &from, &axis, lead, behind)?;
                 let origin = if matches!(command.goal, Goal::Additive(_)) { origin } else { from.x };
@@ -334,7 +334,7 @@ impl Axis {
         }
     }
 
-    /// MC_Power permits the direction in which a way to `target` leads, and a position is within the software limits.
+    /// Checks that MC_Power permits the direction to `target`, and that a position is within the software limits.
     fn check_target(&self, block: BlockName, from: &Setpoint, target: &Target) -> Result<(), BlockError> {
         let direction = match target {
             Target::Position { x, .. } => {
@@ -349,8 +349,7 @@ impl Axis {
         }
     }
 
-    /// Where the command that runs leads, together with what ended superimposed motions have added: MC_MoveAdditive counts from
-    /// there.
+    /// Target of the active command plus the distance of finished superimposed motions: MC_MoveAdditive counts from there.
     fn last_target(&self) -> Option<f64> {
         match (&self.activity, self.state) {
             (Activity::Moving(Moving { target: Target::Position { x, .. }, .. }), AxisState::DiscreteMotion) => {
@@ -360,7 +359,7 @@ impl Axis {
         }
     }
 
-    /// Where a command leads, in the unit of the drive.
+    /// Target of a command, in the unit of the drive.
     pub(super) fn target(
         &self,
         command: &Command,
@@ -391,7 +390,7 @@ impl Axis {
         })
     }
 
-    /// `value` with the sign that it has in `direction`.
+    /// `value` with its sign in `direction`.
     fn directed(&self, value: f64, direction: Direction) -> f64 {
         match direction {
             Direction::Positive | Direction::Shortest => value,
@@ -400,7 +399,7 @@ impl Axis {
         }
     }
 
-    /// Where the axis comes to rest when `command` does nothing but brake.
+    /// Position at which the axis comes to rest if `command` only brakes.
     fn stopping_place(&self, command: &Command, from: &Setpoint) -> Result<f64, BlockError> {
         if from.v == 0.0 && from.a == 0.0 {
             return Ok(from.x);
@@ -411,7 +410,7 @@ impl Axis {
         Ok(from.x + covered)
     }
 
-    /// The way of `command` to `target` on what there is of the axis, blended with those `behind`; and whether the override holds it.
+    /// Trajectory of `command` to `target` on this share of the axis, blended with those `behind`; and true if the override holds it.
     fn run(
         &self,
         command: &Command,
@@ -422,7 +421,7 @@ impl Axis {
         behind: &Queue,
     ) -> Result<(Run, bool), BlockError> {
         let plan_error = |error: PlanError| BlockError::Plan { block: command.block, error };
-        // A command without a velocity of its own has what there is; on an axis that has none left it stands.
+        // A command without its own velocity uses the spare one; on an axis that has none left it stands.
         let spare = Some(axis.velocity.max(from.v.abs())).filter(|spare| *spare > 0.0);
         let bounds_with = |factors: &Override| {
             let bounds = Bounds::of(&command.dynamics, &self.params.limits, factors);

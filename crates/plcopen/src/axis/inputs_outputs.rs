@@ -2,14 +2,14 @@
 use super::Axis;
 use servobench_fieldbus::{ProbeTrigger, TouchProbe};
 
-/// What became of a question for the position at a trigger.
+/// Result of a touch probe request.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Probed {
     /// The trigger has not come.
     Waiting,
     /// The axis was at this position, as the program sees it.
     At(f64),
-    /// Something else is asked for, or nothing.
+    /// Another request, or none, is active.
     Aborted,
 }
 
@@ -24,19 +24,19 @@ impl Axis {
         self.digital_outputs = if value { self.digital_outputs | mask } else { self.digital_outputs & !mask };
     }
 
-    /// Asks for the position at the next trigger: the number of the question.
+    /// Requests the position at the next trigger; returns the number of the request.
     pub(crate) fn probe(&mut self, trigger: ProbeTrigger) -> u32 {
         self.probes = self.probes.wrapping_add(1).max(1);
         self.probe = Some(TouchProbe { number: self.probes, trigger });
         self.probes
     }
 
-    /// Asks no more.
+    /// Withdraws the request.
     pub(crate) const fn end_probe(&mut self) {
         self.probe = None;
     }
 
-    /// What became of question `number`.
+    /// Result of request `number`.
     pub(crate) fn probed(&self, number: u32) -> Probed {
         let answer = self.feedback.touch_probe;
         match self.probe {

@@ -1,12 +1,12 @@
 //! Positions that come round again.
 use crate::command::Direction;
 
-/// A position that is nearer than this part of the period counts as reached: it is rounding that keeps it from being so.
+/// Part of the period within which a position counts as reached: the difference is rounding.
 const NEAR: f64 = 1e-9;
 
-/// The place of `position` on an axis of this `period` that is to be gone to from `from`, counted without the period.
+/// Target equivalent to `position` on an axis of this `period`, approached from `from`, without wrapping.
 ///
-/// `from` is where the axis can stop, so that nobody has to turn back for a place that lies before it.
+/// `from` is the position at which the axis can stop, so that no motion has to turn back for a target before it.
 pub(crate) fn place(position: f64, period: f64, from: f64, direction: Direction, last: f64) -> f64 {
     let turns = (from - position) / period;
     let above = position + libm::ceil(turns - NEAR) * period;

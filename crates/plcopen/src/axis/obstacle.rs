@@ -1,8 +1,8 @@
-//! Steps of homing: against an obstacle, with limited effort.
+//! Homing steps against an obstacle, with limited effort.
 //!
-//! Where the axis gives all the effort that it may, its set-point stays: one that goes on beyond the obstacle would be a following
-//! error, and a push as soon as the limit is lifted. When the obstacle is found, what there is of it is led to zero before the step is
-//! done. A drive that is told velocities follows no position, and goes on being told the velocity until then.
+//! While the axis gives its maximum permitted effort, its set-point stays: one that continued beyond the obstacle would build up a
+//! following error, and a push as soon as the limit is lifted. Once the obstacle is found, the remaining following error is led to zero
+//! before the step is done. A drive in velocity mode follows no position, and receives the velocity until then.
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::{Bounds, Override};
@@ -16,7 +16,7 @@ use servobench_fieldbus::AxisFeedback;
 use servobench_motion::PlanError;
 use servobench_motion::online::Target;
 
-/// What is nearer to a whole number of cycles than this part of one is that number.
+/// Part of a cycle within which a duration counts as a whole number of cycles.
 const ROUNDING: f64 = 1e-9;
 
 /// A search under way.
@@ -25,35 +25,35 @@ pub(super) struct Search {
     pub(super) id: CommandId,
     pub(super) command: Command,
     obstacle: Obstacle,
-    /// Actual position where it began.
+    /// Actual position at the start.
     from: f64,
-    /// The way of the set-point, as long as it goes on.
+    /// Trajectory of the set-point while it moves.
     run: Option<Run>,
-    /// When the obstacle is found, what the program then adds to the position of the drive.
+    /// Once the obstacle is found: offset that the program then adds to the position of the drive.
     offset: Option<f64>,
-    /// Cycles since it began.
+    /// Cycles since the start.
     cycles: u64,
-    /// Whether the axis gives all the effort that it may, and for how many cycles it has done so at less than the velocity.
+    /// True if the axis gives its maximum permitted effort, and number of cycles in which it did so below the velocity threshold.
     is_pushing: bool,
     held: u64,
 }
 
-/// What the steps of homing have left: the axis stays in Homing until a block ends it.
+/// Results of homing steps: the axis stays in Homing until a block ends it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct HomingSteps {
     /// Effort with which the axis stays at the obstacle.
     effort_limit: Option<f64>,
-    /// Whether it has found its reference.
+    /// True if the axis has found its reference.
     pub(super) has_reference: bool,
 }
 
-/// What a cycle of a search shows.
+/// Result of one cycle of a search.
 enum Finding {
     /// The axis is held.
     Obstacle,
-    /// Nothing within this limit.
+    /// No obstacle within this limit.
     Nothing(AxisError),
-    /// Nothing yet.
+    /// No obstacle yet.
     Continues,
 }
 
@@ -62,7 +62,7 @@ impl Search {
         Self { id, command, obstacle, from, run: None, offset: None, cycles: 0, is_pushing: false, held: 0 }
     }
 
-    /// Whether the axis is held; another command then goes on from where it is.
+    /// True if the axis is held; another command then continues from the actual position.
     pub(super) const fn is_held(&self) -> bool {
         self.is_pushing || self.offset.is_some()
     }
@@ -86,7 +86,7 @@ impl Search {
 }
 
 impl Axis {
-    /// The largest effort that the axis may give; `None` leaves it to the drive.
+    /// Largest permitted effort of the axis; `None` leaves it to the drive.
     pub(super) const fn effort_limit(&self) -> Option<f64> {
         match (&self.activity, self.state) {
             (Activity::Search(search), _) => Some(search.obstacle.effort),
@@ -95,7 +95,7 @@ impl Axis {
         }
     }
 
-    /// One cycle of a search on.
+    /// Advances a search by one cycle.
     pub(super) fn advance_search(&mut self) {
         let follows_positions = self.params.velocity_ramps.is_none();
         let Activity::Search(search) = &mut self.activity else { return };
@@ -121,7 +121,7 @@ impl Axis {
         self.take_for_reference();
     }
 
-    /// The set-point of a search one cycle on: towards the obstacle, or back to where the axis is held by it.
+    /// Next set-point of a search: towards the obstacle, or back to the position at which the obstacle holds the axis.
     fn search_on(&mut self) -> Result<Setpoint, PlanError> {
         let Self { params, feedback, base, .. } = self;
         let Activity::Search(search) = &mut self.activity else { return Ok(*base) };
@@ -137,7 +137,7 @@ impl Axis {
         search.run.as_mut().map_or(Ok(*base), |run| run.advance(params.cycle_time))
     }
 
-    /// From now on the position counts from where the axis is held, when its set-point is there.
+    /// Takes the position at the obstacle for the reference once the set-point is there.
     fn take_for_reference(&mut self) {
         let Activity::Search(search) = &self.activity else { return };
         let (Some(offset), true) = (search.offset, search.run.as_ref().is_some_and(Run::is_over)) else { return };

@@ -1,7 +1,7 @@
-//! The parameters that blocks read and write, and what the axis supervises by them.
+//! Parameters that blocks read and write, and the supervision by them.
 //!
-//! A command whose target is beyond a software limit is refused. A motion without such a target (one that is endless, that a block
-//! leads, or on top of another) is stopped with an error as soon as the axis, braking with all it has, would only just stop before the limit.
+//! A command whose target is beyond a software limit is refused. A motion without such a target (endless, led by a block, or
+//! superimposed) is stopped with an error as soon as the axis, braking with all it has, would only just stop before the limit.
 use super::Axis;
 use super::activity::{Activity, Moving};
 use super::bounds::Bounds;
@@ -15,7 +15,7 @@ use servobench_base::{Stateful, positive};
 use servobench_motion::Limits;
 use servobench_motion::online::Target;
 
-/// What a program has set.
+/// Supervision set by a program.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Supervision {
     /// Limits of the position, as the program sees it: the negative and the positive one.
@@ -27,7 +27,7 @@ pub(super) struct Supervision {
 }
 
 impl Supervision {
-    /// As an axis has it at first.
+    /// Initial supervision of an axis.
     pub(super) const NONE: Self = Self {
         software_limits: [f64::NEG_INFINITY, f64::INFINITY],
         limits_hold: [false; 2],
@@ -35,7 +35,7 @@ impl Supervision {
         monitors_lag: false,
     };
 
-    /// The limit that `position` is beyond, and the direction that leads there, 1 or −1.
+    /// Limit that `position` exceeds, and the direction of the excess, 1 or −1.
     fn passed(&self, position: f64) -> Option<(f64, f64)> {
         let [lowest, highest] = self.software_limits;
         match self.limits_hold {
@@ -47,7 +47,7 @@ impl Supervision {
 }
 
 impl Axis {
-    /// A number among the parameters (SI); infinite where there is no limit.
+    /// Value of a numeric parameter (SI); infinite if there is no limit.
     pub(crate) fn parameter(&self, parameter: AxisParameter) -> f64 {
         let (limits, system) = (&self.params.limits, &self.system_limits);
         match parameter {
@@ -69,7 +69,7 @@ impl Axis {
         }
     }
 
-    /// A BOOL among the parameters.
+    /// Value of a BOOL parameter.
     pub(crate) const fn bool_parameter(&self, parameter: AxisBoolParameter) -> bool {
         match parameter {
             AxisBoolParameter::EnablePositiveLimit => self.supervision.limits_hold[1],
@@ -78,7 +78,7 @@ impl Axis {
         }
     }
 
-    /// Writes a number among the parameters. The limits of motions change while there is no motion only.
+    /// Writes a numeric parameter. The limits of motions change only while there is no motion.
     pub(crate) fn write_parameter(
         &mut self,
         block: BlockName,
@@ -118,7 +118,7 @@ impl Axis {
         }
     }
 
-    /// Writes a BOOL among the parameters.
+    /// Writes a BOOL parameter.
     pub(crate) const fn write_bool_parameter(&mut self, parameter: AxisBoolParameter, value: bool) {
         match parameter {
             AxisBoolParameter::EnablePositiveLimit => self.supervision.limits_hold[1] = value,
@@ -145,7 +145,7 @@ impl Axis {
         Ok(())
     }
 
-    /// A position in the unit of the drive is within the software limits.
+    /// Checks a position in the unit of the drive against the software limits.
     pub(super) fn check_software_limits(&self, block: BlockName, position: f64) -> Result<(), BlockError> {
         let value = position + self.offset;
         match self.supervision.passed(value) {
@@ -154,7 +154,7 @@ impl Axis {
         }
     }
 
-    /// Stops an axis that is about to pass a software limit.
+    /// Stops an axis that is about to exceed a software limit.
     pub(super) fn watch_software_limits(&mut self) {
         let is_motion = matches!(self.state, AxisState::DiscreteMotion | AxisState::ContinuousMotion);
         let leads_to_a_target =
@@ -163,11 +163,11 @@ impl Axis {
         {
             return;
         }
-        // In the next cycle it would be too late; a way that cannot be planned is at its end.
+        // The next cycle would be too late; a trajectory that cannot be planned counts as over.
         let next = self.setpoint.after(self.params.cycle_time);
         let bounds = Bounds::of_axis(&self.params.limits).faster(next.v.abs());
         let stop = next.x + self.offset + bounds.covered(&next, 0.0).unwrap_or(0.0);
-        // An axis that is beyond a limit may come back.
+        // An axis beyond a limit may come back.
         if let Some((limit, direction)) = self.supervision.passed(stop)
             && direction * next.v > 0.0
         {
@@ -192,7 +192,7 @@ fn above_zero(block: BlockName, value: f64) -> Result<f64, BlockError> {
     positive("Value", value).map_err(|_| BlockError::Input { block, input: "Value", value, bound: "positive" })
 }
 
-/// A limit of motions, at most that of the system.
+/// A limit of motions, at most the system limit.
 fn up_to(block: BlockName, value: f64, limit: f64) -> Result<f64, BlockError> {
     if above_zero(block, value)? > limit {
         return Err(BlockError::AboveLimit { block, input: "Value", value, limit });

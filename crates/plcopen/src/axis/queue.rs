@@ -1,4 +1,4 @@
-//! The commands that wait.
+//! Waiting commands.
 use crate::command::Command;
 use crate::ledger::CommandId;
 use servobench_base::Stateful;
@@ -6,7 +6,7 @@ use servobench_base::Stateful;
 /// Most commands that an axis can hold behind the active one.
 pub const MOST_BUFFERED: usize = 8;
 
-/// The commands that wait, in the order in which they were given.
+/// Waiting commands, in the order in which they were given.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Queue {
     waiting: [Option<(CommandId, Command)>; MOST_BUFFERED],
@@ -20,7 +20,7 @@ impl Queue {
         self.count
     }
 
-    /// Adds a command; the caller has seen that there is room.
+    /// Adds a command; the caller has checked that there is room.
     pub(crate) fn push(&mut self, id: CommandId, command: Command) {
         self.waiting[self.count] = Some((id, command));
         self.count += 1;
@@ -38,7 +38,7 @@ impl Queue {
         self.waiting.get(place)?.as_ref().map(|(_, command)| command)
     }
 
-    /// Takes the last command away.
+    /// Removes the last command.
     pub(crate) fn drop_last(&mut self) {
         self.count = self.count.saturating_sub(1);
         self.waiting[self.count] = None;

@@ -1,14 +1,14 @@
-//! The request of the program: what its commands want of the axis in a cycle.
+//! Request of the program: the demand of its commands on the axis in a cycle.
 use super::Axis;
 use super::activity::{Activity, Led, Moving};
 use crate::command::{Command, Ending, Goal};
 use crate::state::AxisState;
 use servobench_base::Request;
 
-/// Wish of a command's goal while it runs, and once a course has passed its end.
+/// Demand of a command's goal while it runs, and once its trajectory has passed the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Wanted {
-    /// Nothing: the drive or the axis looks for a reference.
+    /// Nothing: the drive or the axis searches for a reference.
     Nothing,
     /// To stand still.
     Stand,
@@ -18,7 +18,7 @@ enum Wanted {
     Velocity,
 }
 
-/// Every goal wants something of its own; `is_over` says whether the planned course is behind.
+/// Demand of a goal; `is_over`: true if the planned trajectory is over.
 const fn wanted(goal: &Goal, is_over: bool) -> Wanted {
     match goal {
         Goal::Absolute { end_velocity: None, .. } | Goal::Relative { end_velocity: None, .. } | Goal::Additive(_) => {
@@ -34,19 +34,19 @@ const fn wanted(goal: &Goal, is_over: bool) -> Wanted {
         Goal::Velocity { .. } => Wanted::Velocity,
         Goal::Rest => Wanted::Stand,
         Goal::Led(Ending::AtRest | Ending::Moving) => Wanted::Position,
-        // An effort is an activity of its own.
+        // An effort is a separate activity.
         Goal::Reference(_) | Goal::Obstacle(_) | Goal::Away(_) | Goal::Effort { .. } => Wanted::Nothing,
     }
 }
 
 impl Axis {
-    /// The request of the cycle that ended last, positions as they are [sent](Self::sent).
+    /// Request of the cycle that ended last, positions as [sent](Self::sent).
     #[must_use]
     pub const fn request(&self) -> Request {
         self.request
     }
 
-    /// The request of this cycle, where that of the cycle before still stands in its place.
+    /// Request of this cycle, while the field still holds that of the cycle before.
     pub(super) fn requested(&self) -> Request {
         if !self.is_powered() || matches!(self.state, AxisState::Disabled | AxisState::ErrorStop | AxisState::Homing) {
             return Request::Nothing;
@@ -59,7 +59,7 @@ impl Axis {
         };
         match &self.activity {
             Activity::Rest if self.superimposed.is_some() => Request::Follow(self.setpoint),
-            // The end of a course is a target; whatever else came to rest stands.
+            // The end of a followed trajectory is a target; any other axis at rest stands.
             Activity::Rest => match self.request {
                 Request::Follow(_) | Request::Rest(_) => Request::Rest(self.setpoint.x),
                 _ => Request::Stand,

@@ -1,14 +1,14 @@
-//! A planned way under way.
+//! Progress along a planned trajectory.
 use super::bounds::Bounds;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Target, Transition};
 use servobench_motion::{Piece, PlanError};
 
-/// What rounding may make of a whole: an end that is nearer to a cycle than this part of its time is in that cycle, a way that is
-/// beyond a limit by this part of it is not.
+/// Relative tolerance for rounding: an end nearer to a cycle than this part of the cycle time is in that cycle, and a trajectory that
+/// exceeds a limit by this part of it does not.
 const ROUNDING: f64 = 1e-9;
 
-/// A way and how much of it is behind.
+/// A trajectory and the time spent on it.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Run {
     way: Transition,
@@ -18,13 +18,13 @@ pub(crate) struct Run {
     cycles: u64,
     /// Time of this cycle (s).
     time: f64,
-    /// What follows at the end of the way, planned when it is reached.
+    /// Continuation at the end of the trajectory, planned when that is reached.
     then: Option<(Target, Bounds)>,
-    /// What there is of the axis for the way where it may use more than its command does.
+    /// Share of the axis for a trajectory that may use more than its command does.
     axis: Bounds,
-    /// The target and the bounds for which it was planned.
+    /// Target and bounds of the plan.
     planned_for: Option<(Target, Bounds)>,
-    /// Position that it passes, and with which sign of the velocity, where that position is not its end.
+    /// Position that is passed although it is not the end, and the sign of the velocity there.
     passed: Option<(f64, f64)>,
 }
 
@@ -36,33 +36,33 @@ impl Run {
         Self { way, piece, lead, cycles: 0, time: lead, then, axis, planned_for: None, passed: None }
     }
 
-    /// The same, planned for `target` within `bounds`.
+    /// The same run, marked as planned for `target` within `bounds`.
     pub(crate) fn planned_for(self, target: Target, bounds: Bounds) -> Self {
         Self { planned_for: Some((target, bounds)), ..self }
     }
 
-    /// The same for the request of `other`, whose position `x` is passed on the way in the direction of `sign`.
+    /// The same run for the request of `other`, passing its position `x` in the direction of `sign`.
     pub(crate) fn passing(self, x: f64, sign: f64, other: &Self) -> Self {
         Self { planned_for: other.planned_for, passed: Some((x, sign)), ..self }
     }
 
-    /// The same, and from its end on to what `other` is planned for.
+    /// The same run, continued from its end to the target of `other`.
     pub(crate) fn then_as(self, other: &Self) -> Self {
         Self { then: self.then.or(other.planned_for), ..self }
     }
 
-    /// True where it leads on from `from` to `target` within `bounds` as it is, on an axis with the bounds `axis`.
+    /// True if the run already leads from `from` to `target` within `bounds`, on an axis with the bounds `axis`.
     pub(crate) fn is_for(&self, from: &Setpoint, target: Target, bounds: Bounds, axis: &Bounds) -> bool {
         let is_same = self.planned_for == Some((target, bounds)) && self.axis == *axis;
         is_same && self.beyond() < 0.0 && self.way.at(self.time) == *from
     }
 
-    /// True where it has passed the position that is not its end, at `x`.
+    /// True if the run has passed, at `x`, the position that is not its end.
     pub(crate) fn has_passed(&self, x: f64) -> bool {
         self.passed.is_some_and(|(position, sign)| sign * (x - position) >= 0.0)
     }
 
-    /// True where the velocity never leaves the side of `sign`.
+    /// True if the velocity never leaves the side of `sign`.
     pub(crate) fn keeps_direction(&self, sign: f64) -> bool {
         let goes_on = |(target, bounds): (Target, Bounds)| {
             bounds.plan(&self.end(), &target).is_ok_and(|way| way.keeps_direction(sign))
@@ -94,29 +94,29 @@ impl Run {
         self.piece.at(self.time)
     }
 
-    /// By how much its end is behind (s), below zero before it.
+    /// Time since the end (s), below zero before it.
     #[inline]
     pub(crate) fn beyond(&self) -> f64 {
         self.time - self.way.duration()
     }
 
-    /// Whether its end is reached, and nothing follows.
+    /// True if the end is reached and nothing follows.
     #[inline]
     pub(crate) fn is_over(&self) -> bool {
         self.beyond() >= 0.0 && self.then.is_none()
     }
 
-    /// What there is of the axis for it, while it may use more than its command does.
+    /// Share of the axis, while the run may use more than its command does.
     pub(crate) fn bounds_beyond_command(&self) -> Option<&Bounds> {
         self.is_leading_in().then_some(&self.axis)
     }
 
-    /// Whether it may use more than its command does: on the way back into the limits of that, or before it.
+    /// True while the run may use more than its command does: on the return into the limits of that, or before it.
     pub(crate) fn is_leading_in(&self) -> bool {
         self.then.is_some() || (self.way.excess() > ROUNDING && self.beyond() < 0.0)
     }
 
-    /// The set-point at its end.
+    /// Set-point at the end.
     pub(crate) fn end(&self) -> Setpoint {
         self.way.at(self.way.duration())
     }

@@ -1,4 +1,4 @@
-//! What a motion leaves of the axis to another one on top of it.
+//! Sharing of the axis's limits between a motion and a superimposed one.
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::Bounds;
@@ -9,7 +9,7 @@ use servobench_motion::Limits;
 
 const INPUTS: [&str; 4] = ["Velocity", "Acceleration", "Jerk", "Snap"];
 
-/// What a command uses at most, in the order of the inputs.
+/// Most that a command uses, in the order of the inputs.
 fn demand(command: &Command, limits: &Limits) -> [f64; 4] {
     let dynamics = &command.dynamics;
     let velocity = match command.goal {
@@ -30,7 +30,7 @@ const fn supply(limits: &Limits) -> [f64; 4] {
 }
 
 impl Axis {
-    /// Whether a command that does not abort leaves the superimposed motion what it needs.
+    /// Checks that a command that does not abort leaves enough of the limits to the superimposed motion.
     pub(super) fn check_beside(&self, command: &Command) -> Result<(), BlockError> {
         match &self.superimposed {
             Some(superimposed) if superimposed.run.is_leading_in() => Err(self.nothing_to_spare(command)),
@@ -39,7 +39,7 @@ impl Axis {
         }
     }
 
-    /// Two motions on top of each other keep the limits of the axis together.
+    /// Checks that two superimposed motions keep the limits of the axis together.
     pub(super) fn check_sum(&self, block: BlockName, one: &Command, other: &Command) -> Result<(), BlockError> {
         let limits = &self.params.limits;
         let sums = demand(one, limits).into_iter().zip(demand(other, limits)).map(|(one, other)| one + other);
@@ -49,18 +49,18 @@ impl Axis {
         }
     }
 
-    /// The refusal of a motion on top of one that uses all that the axis has for a while.
+    /// Refusal of a motion on top of one that uses the whole axis for a while.
     pub(super) fn nothing_to_spare(&self, command: &Command) -> BlockError {
         let (limit, own) = (self.params.limits.jerk, demand(command, &self.params.limits)[2]);
         BlockError::SumAboveLimit { block: command.block, input: INPUTS[2], value: limit + own, limit }
     }
 
-    /// What the axis has beside a superimposed motion.
+    /// Bounds left by a superimposed motion.
     pub(super) fn beside(&self) -> Bounds {
         self.without(&self.used_on_top())
     }
 
-    /// What the axis has beside the commands that run or wait below a superimposed motion.
+    /// Bounds left by the active and waiting commands below a superimposed motion.
     pub(super) fn on_top(&self) -> Bounds {
         let used = match &self.activity {
             Activity::Moving(moving) => moving.run.bounds_beyond_command().map_or([0.0; 4], used_of),
@@ -69,7 +69,7 @@ impl Axis {
         self.without(&most(used, self.used_below()))
     }
 
-    /// What the motion below may use where it and the superimposed one are planned anew: of what neither command asks for, half.
+    /// Bounds of the motion below when it and the superimposed one are replanned: half of what neither command requests is added.
     pub(super) fn half_beside(&self) -> Bounds {
         let (limits, below) = (supply(&self.params.limits), self.used_below());
         let Some(superimposed) = &self.superimposed else { return self.beside() };
@@ -78,28 +78,28 @@ impl Axis {
         self.without(&core::array::from_fn(|k| on_top[k] + half(k).max(0.0)))
     }
 
-    /// The commands that run or wait, without the one on top of them.
+    /// Active and waiting commands, without the superimposed one.
     pub(super) fn below(&self) -> impl Iterator<Item = &Command> {
         let active = self.activity.command().map(|(_, command)| command);
         active.into_iter().chain(self.queue.iter().map(|(_, command)| command))
     }
 
-    /// The most that one of the commands below a superimposed motion asks for.
+    /// Most that any of the commands below a superimposed motion requests.
     fn used_below(&self) -> [f64; 4] {
         self.below().fold([0.0; 4], |used, command| most(used, demand(command, &self.params.limits)))
     }
 
-    /// What a superimposed motion uses.
+    /// Most that a superimposed motion uses.
     fn used_on_top(&self) -> [f64; 4] {
         let Some(superimposed) = &self.superimposed else { return [0.0; 4] };
         let used = superimposed.run.bounds_beyond_command().map_or([0.0; 4], used_of);
         most(used, demand(&superimposed.command, &self.params.limits))
     }
 
-    /// What the axis has beside what is `used`.
+    /// Bounds of the axis minus `used`.
     fn without(&self, used: &[f64; 4]) -> Bounds {
         let limits = supply(&self.params.limits);
-        // Of an infinite limit all is left, whatever is used.
+        // An infinite limit stays infinite, whatever is used.
         let left = |k: usize| if limits[k] < f64::INFINITY { limits[k] - used[k] } else { limits[k] };
         Bounds { velocity: left(0), acceleration: left(1), deceleration: left(1), jerk: left(2), snap: left(3) }
     }

@@ -1,4 +1,4 @@
-//! A motion on top of another one.
+//! Superimposed motion.
 use super::Axis;
 use super::activity::Activity;
 use super::bounds::Bounds;
@@ -17,9 +17,9 @@ use servobench_motion::online::Target;
 pub(super) struct Superimposed {
     pub(super) id: CommandId,
     pub(super) command: Command,
-    /// Where the one before had come to that this one replaced.
+    /// Distance that the motion replaced by this one had covered.
     pub(super) origin: f64,
-    /// Where it leads; `None`: to rest.
+    /// Target; `None`: to rest.
     pub(super) end: Option<f64>,
     pub(super) is_paused: bool,
     pub(super) run: Run,
@@ -27,7 +27,7 @@ pub(super) struct Superimposed {
 }
 
 impl Superimposed {
-    /// Together with the motion below.
+    /// Sum with the motion below.
     pub(super) fn on(&self, base: &Setpoint, shift: f64) -> Setpoint {
         let top = &self.now;
         Setpoint {
@@ -67,7 +67,7 @@ impl Axis {
         Ok(id)
     }
 
-    /// MC_HaltSuperimposed; `None` where nothing is on top.
+    /// MC_HaltSuperimposed; `None` if there is no superimposed motion.
     pub(crate) fn halt_superimposed(&mut self, command: &Command) -> Result<Option<CommandId>, BlockError> {
         let block = command.block;
         if !matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion | AxisState::ContinuousMotion) {
@@ -77,7 +77,7 @@ impl Axis {
         let Some(&Superimposed { id: before, now: from, command: halted, .. }) = self.superimposed.as_ref() else {
             return Ok(None);
         };
-        // Until it rests it may be as fast as what it halts.
+        // Until it rests it may be as fast as the motion that it halts.
         let dynamics = Dynamics { velocity: halted.dynamics.velocity, ..command.dynamics };
         let command = &Command { dynamics, ..*command };
         self.below().try_for_each(|below| self.check_sum(block, command, below))?;
@@ -93,7 +93,7 @@ impl Axis {
         Ok(Some(id))
     }
 
-    /// Changes the inputs of a superimposed motion that runs.
+    /// Changes the inputs of an active superimposed motion.
     pub(crate) fn update_superimposed(
         &mut self,
         id: CommandId,
@@ -123,7 +123,7 @@ impl Axis {
         self.below().try_for_each(|below| self.check_sum(command.block, command, below))
     }
 
-    /// What a superimposed motion has covered since it began.
+    /// Distance that a superimposed motion has covered since it began.
     pub(crate) fn covered(&self, id: CommandId) -> Option<f64> {
         self.superimposed
             .as_ref()
@@ -131,7 +131,7 @@ impl Axis {
             .map(|superimposed| superimposed.now.x - superimposed.origin)
     }
 
-    /// One cycle on.
+    /// Advances by one cycle.
     pub(super) fn advance_superimposed(&mut self) {
         let Some(superimposed) = &mut self.superimposed else { return };
         let cycle_time = self.params.cycle_time;
@@ -149,7 +149,7 @@ impl Axis {
         }
     }
 
-    /// The way on top, and whether the override holds it.
+    /// Trajectory of the superimposed motion, and true if the override holds it.
     pub(super) fn superimposed_run(
         &self,
         command: &Command,

@@ -1,4 +1,4 @@
-//! Power, faults and the reset: the arrows that no motion command sets off.
+//! Power, faults and the reset: the arrows that no motion command triggers.
 use super::Axis;
 use super::activity::{Activity, Leaving, Moving};
 use super::bounds::Bounds;
@@ -13,10 +13,10 @@ use crate::state::AxisState;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::Target;
 
-/// A commanded velocity below this part of the limit is rounding, not motion in a direction.
+/// Part of the velocity limit below which a commanded velocity is rounding, not motion in a direction.
 const CREEP: f64 = 1e-6;
 
-/// What MC_Power asks for.
+/// Inputs of MC_Power.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) struct PowerRequest {
     pub(crate) enable: bool,
@@ -30,15 +30,15 @@ impl Default for PowerRequest {
     }
 }
 
-/// How far a reset is.
+/// Progress of a reset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) enum Reset {
-    /// Not asked for.
+    /// Not requested.
     #[default]
     Idle,
     /// The signal is up.
     Asked,
-    /// Asked for again: down for a cycle, so that there is an edge.
+    /// Requested again: down for a cycle, so that there is an edge.
     Again,
 }
 
@@ -56,14 +56,14 @@ impl Reset {
 }
 
 impl Axis {
-    /// Takes the arrow of `cause`, if there is one.
+    /// Follows the arrow of `cause`, if there is one.
     pub(super) fn follow(&mut self, cause: Cause) {
         if let Some(arrow) = arrow(self.state, cause) {
             self.state = arrow.to;
         }
     }
 
-    /// Looks at the power and the faults of the axis.
+    /// Supervises the power and the faults of the axis.
     pub(super) fn supervise(&mut self) {
         if let Some(fault) = self.feedback.fault
             && self.state != AxisState::ErrorStop
@@ -84,7 +84,7 @@ impl Axis {
         }
     }
 
-    /// Leaves Disabled when the power is there that was asked for.
+    /// Leaves Disabled once the requested power is there.
     fn try_enable(&mut self, is_powered: bool) {
         if self.power.enable && is_powered {
             self.base = Setpoint::at_rest(self.feedback.demanded());
@@ -92,7 +92,7 @@ impl Axis {
         }
     }
 
-    /// Leaves ErrorStop when a reset was asked for, the fault is gone and the axis at rest.
+    /// Leaves ErrorStop once a reset was requested, the fault is gone and the axis at rest.
     fn try_reset(&mut self, is_powered: bool) {
         let is_clear = self.feedback.fault.is_none() && matches!(self.activity, Activity::Rest);
         if self.reset == Reset::Idle || !is_clear {
@@ -106,7 +106,7 @@ impl Axis {
         (self.reset, self.error) = (Reset::Idle, None);
     }
 
-    /// An error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
+    /// Fails with an error of the axis: it comes to rest if the power allows it, and takes no command until MC_Reset.
     pub(super) fn fail(&mut self, error: AxisError) {
         let start = self.present();
         let was_homing = matches!(self.activity, Activity::Homing(_) | Activity::Leaving(_));
@@ -150,12 +150,12 @@ impl Axis {
         Ok(())
     }
 
-    /// Whether a reset is under way.
+    /// True while a reset is pending.
     pub(crate) fn is_resetting(&self) -> bool {
         self.reset != Reset::Idle
     }
 
-    /// The direction of the set-point, 1 or −1, while it moves.
+    /// Direction of the set-point, 1 or −1, while it moves.
     pub(super) fn direction(&self) -> Option<f64> {
         let moves = self.setpoint.v.abs() > CREEP * self.params.limits.velocity;
         moves.then(|| 1.0_f64.copysign(self.setpoint.v))
@@ -174,7 +174,7 @@ impl Axis {
         }
     }
 
-    /// The input of MC_Power that forbids a motion in the direction of `sign`.
+    /// Input of MC_Power that forbids a motion in the direction of `sign`.
     pub(super) fn forbidden(&self, sign: f64) -> Option<&'static str> {
         match sign {
             s if s > 0.0 && !self.power.positive => Some("EnablePositive"),
@@ -183,7 +183,7 @@ impl Axis {
         }
     }
 
-    /// Ends the active command with `progress` and all others as aborted.
+    /// Ends the active command and the superimposed one with `progress` and all others as aborted.
     pub(super) fn end_all(&mut self, progress: Progress) {
         if let Some(id) = self.activity.id() {
             self.ledger.set(id, progress);
@@ -197,14 +197,14 @@ impl Axis {
         self.stop_holder = None;
     }
 
-    /// Takes the commands away that wait.
+    /// Removes the waiting commands with `progress`.
     pub(super) fn end_waiting(&mut self, progress: Progress) {
         while let Some((id, _)) = self.queue.pop() {
             self.ledger.set(id, progress);
         }
     }
 
-    /// Brings the axis to rest, without a block that asked for it.
+    /// Brings the axis to rest without a request from a block.
     pub(super) fn halt(&mut self) {
         let start = self.present();
         self.end_all(Progress::Aborted);
@@ -214,7 +214,7 @@ impl Axis {
         self.add_up();
     }
 
-    /// The axis's own stop, when the drive has ended its reference run; at once where it cannot be planned.
+    /// Begins the axis's own stop, once the drive has ended its reference run; immediate if it cannot be planned.
     fn halt_from(&mut self, Start { from, lead }: Start, was_homing: bool) {
         let (limits, target) = (&self.params.limits, Target::Velocity(0.0));
         let dynamics = Dynamics::braking(limits.acceleration, None, None);

@@ -1,8 +1,8 @@
 //! `MAM`: Rockwell's Motion Axis Move, as a block of this axis.
 //!
-//! It goes from rest to rest by the [two profiles](servobench_motion::rockwell) of that instruction, and begins at Standstill only: what the
-//! instruction does to a motion under way (merging, a change of its dynamics) is left to the blocks of the standard. The jerk that the axis
-//! is configured for is the limit of the axis.
+//! It moves from rest to rest by the [two profiles](servobench_motion::rockwell) of that instruction, and begins at Standstill only:
+//! the instruction's effects on an active motion (merging, a change of its dynamics) are left to the blocks of the standard. The
+//! configured jerk of the axis is its limit of jerk.
 //!
 //! | output | TRUE |
 //! |---|---|
@@ -12,7 +12,7 @@
 //! | IP, AC | while the move is under way |
 //! | PC | at the target, until Execute rises again |
 //!
-//! A move that another command takes the axis from ends without PC and without ER, as that of the instruction does; CommandAborted
+//! A move from which another command takes the axis ends without PC and without ER, as that of the instruction does; CommandAborted
 //! is then TRUE, as with the blocks of the standard.
 //!
 //! Source: Rockwell Automation, *Logix5000 Controllers Motion Instructions*, MOTION-RM002, "Motion Axis Move".
@@ -29,7 +29,7 @@ use servobench_motion::rockwell::{Jerk, MaximumJerk, Move, Shape, ShapeKind};
 use servobench_motion::{Limits, PlanError, Trajectory};
 
 servobench_config::choices! {
-    /// What the position of a move is.
+    /// Meaning of the position of a move.
     #[derive(Stateful)]
     pub enum MoveType default Absolute {
         /// the position to move to
@@ -39,7 +39,7 @@ servobench_config::choices! {
     }
 }
 
-/// From rest to rest by a trapezoid or an S-curve.
+/// Move from rest to rest by a trapezoid or an S-curve.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct AxisMove {
     leading: Leading,
@@ -53,7 +53,7 @@ inputs! {
     pub struct AxisMoveInputs on execute {
         /// Move type.
         move_type: MoveType = optional(Input::MoveType),
-        /// Position: where to, or how far (m or rad).
+        /// Position: target or distance (m or rad).
         position: f64 = required(Input::Position),
         /// Speed (m/s or rad/s).
         velocity: f64 = limit(Input::Velocity),
@@ -65,19 +65,19 @@ inputs! {
         shape: ShapeKind = optional(Input::Shape),
         /// Accel jerk in units per second cubed (m/s³ or rad/s³).
         jerk: Option<f64> = optional(Input::Jerk),
-        /// The same as the part of the ramp in which the acceleration changes (above 0 to 1).
+        /// Accel jerk as the part of the ramp in which the acceleration changes (above 0 to 1).
         jerk_of_time: Option<f64> = optional(Input::JerkOfTime),
-        /// The same as a part of that of the axis (above 0 to 1).
+        /// Accel jerk as a part of that of the axis (above 0 to 1).
         jerk_of_maximum: Option<f64> = optional(Input::JerkOfMaximum),
-        /// The same as the time in which the acceleration rises, and falls (s).
+        /// Accel jerk as the time in which the acceleration rises, and falls (s).
         jerk_time: Option<f64> = optional(Input::JerkTime),
-        /// Decel jerk in the same four ways.
+        /// Decel jerk (m/s³ or rad/s³).
         deceleration_jerk: Option<f64> = optional(Input::DecelerationJerk),
-        /// As the part of its ramp.
+        /// Decel jerk as the part of its ramp (above 0 to 1).
         deceleration_jerk_of_time: Option<f64> = optional(Input::DecelerationJerkOfTime),
-        /// As a part of that of the axis.
+        /// Decel jerk as a part of that of the axis (above 0 to 1).
         deceleration_jerk_of_maximum: Option<f64> = optional(Input::DecelerationJerkOfMaximum),
-        /// As a time.
+        /// Decel jerk as a time (s).
         deceleration_jerk_time: Option<f64> = optional(Input::DecelerationJerkTime),
     }
 }
@@ -106,7 +106,7 @@ outputs! {
 }
 
 impl AxisMoveInputs {
-    /// To `position` as fast as `limits` allow, by a trapezoid; not executed.
+    /// Move to `position` as fast as `limits` allow, by a trapezoid; not executed.
     #[must_use]
     pub const fn to(position: f64, limits: &Limits) -> Self {
         Self {
@@ -128,7 +128,7 @@ impl AxisMoveInputs {
         }
     }
 
-    /// The shape with its jerks.
+    /// Shape with its jerks.
     fn shape(&self) -> Result<Shape, BlockError> {
         let up = said([self.jerk, self.jerk_of_time, self.jerk_of_maximum, self.jerk_time], "AccelJerk")?;
         let down = said(
@@ -154,7 +154,7 @@ impl AxisMoveInputs {
         }
     }
 
-    /// Looks at everything that the axis need not be at rest for.
+    /// Checks everything that does not require an axis at rest.
     fn check(&self, axis: &Axis) -> Result<(), BlockError> {
         let block = BlockName::AxisMove;
         let limits = &axis.params().limits;
@@ -186,7 +186,7 @@ impl AxisMoveInputs {
     }
 }
 
-/// Jerk as one of four inputs says it: value, part of the time, part of that of the axis, time.
+/// Jerk from one of four inputs: value, part of the time, part of that of the axis, time.
 fn said(inputs: [Option<f64>; 4], input: &'static str) -> Result<Option<Jerk>, BlockError> {
     let mut given = inputs.into_iter().enumerate().filter_map(|(way, value)| Some((way, value?)));
     let Some((way, value)) = given.next() else { return Ok(None) };
@@ -206,7 +206,7 @@ const fn maximum(limits: &Limits) -> MaximumJerk {
     MaximumJerk { acceleration: limits.jerk, deceleration: limits.jerk }
 }
 
-/// A move on its way.
+/// Trajectory of a move.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 struct Way {
     asked: Option<(Move, MoveType, MaximumJerk)>,

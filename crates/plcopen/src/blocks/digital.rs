@@ -1,6 +1,6 @@
 //! `MC_ReadDigitalInput`, `MC_ReadDigitalOutput`, `MC_WriteDigitalOutput`: digital inputs (60FDh) and outputs (60FEh) of the drive.
 //!
-//! ExecutionMode is left out: what is written counts at once.
+//! ExecutionMode is left out: a write takes effect at once.
 use super::execution::Execution;
 use super::outputs::{DoneOutputs, FunctionBlock};
 use super::parameters::ReadBoolOutputs;
@@ -16,7 +16,7 @@ pub struct ReadDigitalInput {
     error: Option<BlockError>,
 }
 
-/// Reads a digital output: what it was last set to.
+/// Reads a digital output: the level to which it was last set.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ReadDigitalOutput {
     error: Option<BlockError>,
@@ -54,13 +54,13 @@ inputs! {
     }
 }
 
-/// The mask of a bit.
+/// Mask of a bit.
 fn mask(block: BlockName, input: &'static str, number: u32) -> Result<u32, BlockError> {
     let bound = "a bit from 0 to 31";
     1_u32.checked_shl(number).ok_or(BlockError::Input { block, input, value: number.into(), bound })
 }
 
-/// A bit as a block reads it while it is enabled; keeps the error of one that is none.
+/// Reads a bit while the block is enabled; keeps the error of an invalid bit number.
 fn read(enable: bool, bits: u32, mask: Result<u32, BlockError>, kept: &mut Option<BlockError>) -> ReadBoolOutputs {
     *kept = mask.err().filter(|_| enable);
     match (mask, &*kept) {

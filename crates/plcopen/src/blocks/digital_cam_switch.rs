@@ -1,18 +1,17 @@
-//! `MC_DigitalCamSwitch`: digital outputs (60FEh) that the position of the axis switches, like the cams on a shaft.
+//! `MC_DigitalCamSwitch`: digital outputs (60FEh) switched by the position of the axis, like the cams on a shaft.
 //!
 //! A switch is on one of 32 tracks, and track k is bit k of the outputs; several switches of a track are ORed. A switch is TRUE from
-//! FirstOnPosition to LastOnPosition, both included, or for a time from where the axis passes FirstOnPosition. What the standard
-//! (PLCopen part 1, version 2.0, section 3.25) leaves open is so:
+//! FirstOnPosition to LastOnPosition, both included, or for a time after the axis passes FirstOnPosition. Choices where the standard
+//! (PLCopen part 1, version 2.0, section 3.25) leaves the behaviour open:
 //!
 //! - **Direction** is that of the last motion: an axis that has stopped keeps it. Before the first motion there is none, and a switch for
 //!   one direction is FALSE.
-//! - **Compensation** moves an edge by velocity × time, against the motion where it is negative: the output switches when the position
-//!   at t − compensation passes the edge, at the velocity of this cycle. Where it makes a window less than nothing, the output stays
-//!   FALSE.
-//! - **Hysteresis** holds an output that has switched as long as the axis is that near to the edge, and the direction until the axis has
-//!   come that far back.
-//! - A window that is passed between two cycles is TRUE for one.
-//! - Positions that jump (MC_SetPosition, homing) pass nothing.
+//! - **Compensation** moves an edge by velocity × time, against the motion if it is negative: the output switches when the position at t −
+//!   compensation passes the edge, at the velocity of this cycle. If it shrinks a window to less than nothing, the output stays FALSE.
+//! - **Hysteresis** holds an output that has switched while the axis is within that distance of the edge, and the direction until the axis
+//!   has moved back by that distance.
+//! - A window passed between two cycles is TRUE for one.
+//! - Position jumps (MC_SetPosition, homing) pass no edge.
 mod cam;
 use servobench_base::Stateful;
 
@@ -30,7 +29,7 @@ use cam::Place;
 pub use cam::CamState;
 
 servobench_config::choices! {
-    /// In which direction of the axis a switch acts.
+    /// Direction of the axis in which a switch acts.
     pub enum CamDirection default Both {
         /// upwards and downwards
         Both = "both",
@@ -42,7 +41,7 @@ servobench_config::choices! {
 }
 
 servobench_config::choices! {
-    /// Whose position and velocity count (MC_SOURCE).
+    /// Source of the position and velocity (MC_SOURCE).
     pub enum ValueSource default SetPoint {
         /// those of the set-point
         SetPoint = "set-point",
@@ -51,10 +50,10 @@ servobench_config::choices! {
     }
 }
 
-/// Where a switch ends: CamSwitchMode, with LastOnPosition or Duration.
+/// End of a switch: CamSwitchMode, with LastOnPosition or Duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CamEnd {
-    /// At LastOnPosition (m or rad), the upper end of the window; below FirstOnPosition where that goes over the zero.
+    /// At LastOnPosition (m or rad), the upper end of the window; below FirstOnPosition if the window crosses zero.
     Position(f64),
     /// Duration after the axis has passed FirstOnPosition (s).
     Duration(f64),
@@ -73,24 +72,24 @@ pub struct CamSwitch {
     pub direction: CamDirection,
 }
 
-/// What holds for all switches of a track (MC_TRACK_REF).
+/// Options of all switches of a track (MC_TRACK_REF).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TrackOptions {
-    /// Its number, from 0 to 31.
+    /// Track number, from 0 to 31.
     pub track: u32,
-    /// OnCompensation (s): how much later the output is switched on, earlier where it is negative.
+    /// OnCompensation (s): delay of switching on, negative for earlier.
     pub on_compensation: f64,
-    /// OffCompensation (s): the same of switching off.
+    /// OffCompensation (s): delay of switching off, negative for earlier.
     pub off_compensation: f64,
     /// Hysteresis (m or rad).
     pub hysteresis: f64,
 }
 
-/// Switches digital outputs by the position; `M` has the memory for the switches.
+/// Switches digital outputs by the position; `M` is the memory for the switches.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct DigitalCamSwitch<M> {
     memory: M,
-    /// Outputs that the block has.
+    /// Outputs that the block switches.
     outputs: u32,
     before: Option<Place>,
     error: Option<BlockError>,
@@ -103,7 +102,7 @@ pub struct DigitalCamSwitchInputs<'a> {
     pub enable: bool,
     /// Switches.
     pub switches: &'a [CamSwitch],
-    /// TrackOptions, of a track at most once.
+    /// TrackOptions, at most once for a track.
     pub track_options: &'a [TrackOptions],
     /// EnableMask: track k is enabled by bit k.
     pub enable_mask: u32,
@@ -115,9 +114,9 @@ outputs! {
     /// Outputs of [`DigitalCamSwitch`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct DigitalCamSwitchOutputs {
-        /// InOperation: the tracks that are enabled are switched.
+        /// InOperation: the enabled tracks are switched.
         in_operation: bool = InOperation,
-        /// Busy: it goes on, also after an error.
+        /// Busy: the block continues, also after an error.
         busy: bool = Busy,
         /// Error.
         error: bool = Error,
@@ -158,10 +157,10 @@ fn check_track(track: u32) -> Result<(), BlockError> {
 }
 
 impl CamSwitch {
-    /// Whether it can be on an axis that comes round after `modulo`, or has ends.
+    /// Checks the switch for an axis with the period `modulo`, or with ends.
     ///
     /// # Errors
-    /// [`BlockError::Input`] with the first of its parts that is wrong, by its name in the standard.
+    /// [`BlockError::Input`] with the first wrong part, by its name in the standard.
     pub fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
         check_track(self.track)?;
         finite_input(BLOCK, "FirstOnPosition", self.first)?;
@@ -188,10 +187,10 @@ impl CamSwitch {
 }
 
 impl TrackOptions {
-    /// Whether they can be on an axis that comes round after `modulo`, or has ends.
+    /// Checks the options for an axis with the period `modulo`, or with ends.
     ///
     /// # Errors
-    /// [`BlockError::Input`] with the first of its parts that is wrong, by its name in the standard.
+    /// [`BlockError::Input`] with the first wrong part, by its name in the standard.
     pub fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
         check_track(self.track)?;
         finite_input(BLOCK, "OnCompensation", self.on_compensation)?;
@@ -207,7 +206,7 @@ impl TrackOptions {
 }
 
 impl<'a> DigitalCamSwitchInputs<'a> {
-    /// `switches` by the set-point, all tracks enabled and without options; not enabled.
+    /// Inputs for `switches` by the set-point, with all tracks enabled and without options; not enabled.
     #[must_use]
     pub const fn of(switches: &'a [CamSwitch]) -> Self {
         let value_source = ValueSource::SetPoint;
@@ -236,13 +235,13 @@ impl<'a> DigitalCamSwitchInputs<'a> {
 }
 
 impl<M: Memory<CamState>> DigitalCamSwitch<M> {
-    /// With the memory for as many switches as `memory` holds.
+    /// A block with memory for as many switches as `memory` holds.
     #[must_use]
     pub const fn new(memory: M) -> Self {
         Self { memory, outputs: 0, before: None, error: None }
     }
 
-    /// The outputs of all tracks.
+    /// Computes the outputs of all tracks.
     fn switch(&mut self, axis: &Axis, inputs: &DigitalCamSwitchInputs<'_>) -> u32 {
         let place = Place::of(axis, inputs.value_source);
         if self.before.is_none() {
@@ -274,7 +273,7 @@ impl<M: Memory<CamState>> FunctionBlock for DigitalCamSwitch<M> {
             self.before = None;
             0
         };
-        // Outputs of no track are left to others; one that was of a track is given back FALSE.
+        // Outputs without a track are left to other blocks; an output whose track is gone is reset to FALSE.
         let outputs = if in_operation { inputs.switches.iter().fold(0, |all, one| all | 1 << one.track) } else { 0 };
         axis.set_digital_output(self.outputs | outputs, false);
         axis.set_digital_output(bits, true);

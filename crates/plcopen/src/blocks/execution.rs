@@ -1,10 +1,10 @@
-//! The rules of Execute, which all blocks that have it share.
+//! The rules of Execute, shared by all blocks that have it.
 use crate::axis::Axis;
 use crate::error::{BlockError, ErrorId};
 use crate::ledger::{CommandId, Progress};
 use servobench_base::Stateful;
 
-/// What a block with Execute has to say in a cycle.
+/// Status of a block with Execute in a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub enum Report {
     /// Nothing.
@@ -14,7 +14,7 @@ pub enum Report {
     Buffered,
     /// Commands the axis.
     Active,
-    /// The same, and is at the velocity or effort that it was to reach.
+    /// Commands the axis, at the velocity or effort that it was to reach.
     InTarget,
     /// Done.
     Done,
@@ -47,7 +47,7 @@ impl Report {
     }
 }
 
-/// What an instance remembers of its Execute.
+/// State of an instance's Execute.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(crate) struct Execution {
     execute: bool,
@@ -59,16 +59,16 @@ pub(crate) struct Execution {
 enum Phase {
     #[default]
     Idle,
-    /// The command runs.
+    /// The command is active.
     Running(CommandId),
-    /// What runs is not a command of the axis.
+    /// A task that is not a command of the axis is active.
     Waiting,
-    /// It is over, as was said at least once.
+    /// The command is over and was reported at least once.
     Over(Report),
 }
 
 impl Execution {
-    /// One call: `start` is asked at a rising edge; a block that starts no command of the axis says so with `None`.
+    /// Handles one call: calls `start` at a rising edge, which returns `None` if the block starts no command of the axis.
     #[inline]
     pub(crate) fn step(
         &mut self,
@@ -91,7 +91,7 @@ impl Execution {
         self.report(axis)
     }
 
-    /// One call of a block that does at a rising edge all it has to do.
+    /// Handles one call of a block that completes its work at a rising edge.
     pub(crate) fn at_once(
         &mut self,
         axis: &mut Axis,
@@ -107,7 +107,7 @@ impl Execution {
         if is_done { self.complete() } else { report }
     }
 
-    /// What there is to say of the command.
+    /// Report of the command.
     pub(super) fn report(&mut self, axis: &Axis) -> Report {
         let id = match self.phase {
             Phase::Idle => return Report::Idle,
@@ -130,19 +130,19 @@ impl Execution {
         report
     }
 
-    /// What was waited for has come.
+    /// Completes the task.
     pub(crate) fn complete(&mut self) -> Report {
         self.phase = Phase::Over(Report::Done);
         Report::Done
     }
 
-    /// What was waited for will not come.
+    /// Aborts the task.
     pub(crate) fn abort(&mut self) -> Report {
         self.phase = Phase::Over(Report::Aborted);
         Report::Aborted
     }
 
-    /// The command, or what was waited for, failed.
+    /// Fails the command or task.
     pub(crate) fn fail(&mut self, error: BlockError) -> Report {
         self.phase = self.failed(error);
         Report::Error(error.id())
@@ -153,7 +153,7 @@ impl Execution {
         Phase::Over(Report::Error(error.id()))
     }
 
-    /// The command, while it waits or runs.
+    /// The command, while it waits or is active.
     pub(crate) const fn running(&self) -> Option<CommandId> {
         match self.phase {
             Phase::Running(id) => Some(id),
@@ -161,7 +161,7 @@ impl Execution {
         }
     }
 
-    /// Why Error is TRUE.
+    /// Error behind Error = TRUE.
     pub(crate) const fn error(&self) -> Option<&BlockError> {
         self.error.as_ref()
     }

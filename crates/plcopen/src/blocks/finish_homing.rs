@@ -1,12 +1,12 @@
-//! `MC_FinishHoming` of part 5: the end of steps of homing.
+//! `MC_FinishHoming` of part 5: the end of homing steps.
 use super::motion::{MotionBlock, moves};
 use super::outputs::MotionOutputs;
 use crate::blocks::{BlockName, Input};
 use crate::command::Goal;
 use crate::interface::or;
 
-/// By a distance away from the reference that the steps of homing have found, which is what the position counts from then on.
-/// Without such a step the axis is not homed by it.
+/// Moves by a distance away from the reference found by the homing steps, from which the position counts from then on. Without such a step
+/// it does not home the axis.
 pub type FinishHoming = MotionBlock<FinishHomingInputs>;
 
 moves! {

@@ -1,4 +1,4 @@
-//! `MC_HaltSuperimposed`: what runs on top of the motion comes to rest.
+//! `MC_HaltSuperimposed`: brings a superimposed motion to rest.
 use super::execution::Execution;
 use super::outputs::FunctionBlock;
 use super::stop::StopOutputs;
@@ -9,9 +9,9 @@ use crate::error::BlockError;
 use crate::interface::{inputs, limit_if_any, required_for};
 use servobench_base::Stateful;
 
-/// Brakes the motion of `MC_MoveSuperimposed` and leaves the one below alone; what was covered stays.
+/// Brakes the motion of `MC_MoveSuperimposed` and leaves the one below alone; the distance covered stays.
 ///
-/// Done at once where nothing is on top. A new `MC_MoveSuperimposed` takes over from it.
+/// Done at once without a superimposed motion. A new `MC_MoveSuperimposed` takes over from it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HaltSuperimposed {
     execution: Execution,

@@ -1,4 +1,4 @@
-//! `MC_Home`, and of part 5 `MC_HomeDirect` and `MC_HomeAbsolute`: what the position counts from.
+//! `MC_Home`, and of part 5 `MC_HomeDirect` and `MC_HomeAbsolute`: the reference of the position.
 use super::execution::Execution;
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
@@ -8,20 +8,20 @@ use crate::error::BlockError;
 use crate::interface::{buffer_mode, inputs, or};
 use servobench_base::Stateful;
 
-/// Has the drive look for its reference, by the method that it is set to.
+/// Starts the drive's search for its reference, by its configured method.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Home {
     execution: Execution,
 }
 
-/// Gives the position at which the axis stands, without a motion: its reference from then on.
+/// Sets the position of an axis at rest, without a motion: its reference from then on.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HomeDirect {
     execution: Execution,
 }
 
-/// Takes the position of the drive's encoder, which is an absolute one, for that of the axis: without a motion, and without what
-/// MC_SetPosition or MC_HomeDirect added to it.
+/// Takes the position of the drive's absolute encoder for that of the axis: without a motion, and without the offset of MC_SetPosition or
+/// MC_HomeDirect.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct HomeAbsolute {
     execution: Execution,
@@ -33,7 +33,7 @@ inputs! {
     pub struct HomeInputs on execute {
         /// Position of the reference (m or rad).
         position: f64 = or(Input::Position, 0.0),
-        /// BufferMode: aborting at Standstill, where there is nothing to abort, or buffered behind a command that ends there.
+        /// BufferMode: aborting at Standstill, where there is nothing to abort, or buffered behind a command that ends at Standstill.
         buffer_mode: BufferMode = buffer_mode(),
     }
 }
@@ -42,7 +42,7 @@ inputs! {
     /// Inputs of [`HomeDirect`].
     #[derive(Default)]
     pub struct HomeDirectInputs on execute {
-        /// SetPosition: the position where the axis stands (m or rad).
+        /// SetPosition: the position at which the axis stands (m or rad).
         position: f64 = or(Input::Position, 0.0),
         /// BufferMode, as of [`Home`].
         buffer_mode: BufferMode = buffer_mode(),
@@ -58,7 +58,7 @@ inputs! {
     }
 }
 
-/// The command of `block`, for which nothing is planned.
+/// Command of `block`, for which nothing is planned.
 const fn command(block: BlockName, reference: Reference, buffer_mode: BufferMode) -> Command {
     Command { block, goal: Goal::Reference(reference), dynamics: Dynamics::NONE, buffer_mode }
 }

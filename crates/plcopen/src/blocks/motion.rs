@@ -8,7 +8,7 @@ use crate::error::BlockError;
 use crate::interface::BlockInputs;
 use servobench_base::Stateful;
 
-/// The inputs of a block that gives one motion command.
+/// Inputs of a block that gives one motion command.
 pub trait MotionInputs: Copy + PartialEq + for<'i> BlockInputs<'i> {
     /// Name of the block.
     const NAME: BlockName;
@@ -23,7 +23,7 @@ pub trait MotionInputs: Copy + PartialEq + for<'i> BlockInputs<'i> {
         false
     }
 
-    /// The command that these inputs ask for.
+    /// Command that these inputs request.
     fn command(&self) -> Command;
 }
 
@@ -31,7 +31,7 @@ pub trait MotionInputs: Copy + PartialEq + for<'i> BlockInputs<'i> {
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct MotionBlock<I> {
     execution: Execution,
-    /// The inputs that act, where they may change.
+    /// Inputs in effect, if they may change.
     updated: Option<I>,
 }
 
@@ -59,7 +59,7 @@ impl<I: MotionInputs> FunctionBlock for MotionBlock<I> {
                 let changed = self.execution.running().map(|id| axis.update(id, inputs.command()));
                 match changed {
                     Some(Err(error)) => self.execution.fail(error),
-                    // A velocity that was reached may not be the one that is commanded now (section 2.4.1).
+                    // The velocity that was reached may differ from the commanded one (section 2.4.1).
                     _ => self.execution.report(axis),
                 }
             }
@@ -73,8 +73,8 @@ impl<I: MotionInputs> FunctionBlock for MotionBlock<I> {
     }
 }
 
-/// Declares the inputs of a block that moves to a goal within limits: what is its own, before and behind the limits that all
-/// such blocks have, and the goal that it makes of them.
+/// Declares the inputs of a block that moves to a goal within limits: its own ones, before and behind the limits that all such blocks have,
+/// and the goal computed from them.
 macro_rules! moves {
     (
         $(#[$meta:meta])*
@@ -109,7 +109,7 @@ macro_rules! moves {
         }
 
         impl $inputs {
-            /// To zero as fast as `limits` allow, not executed.
+            /// Inputs of a motion to zero as fast as `limits` allow, not executed.
             #[must_use]
             pub fn within(limits: &servobench_motion::Limits) -> Self {
                 Self {

@@ -1,11 +1,11 @@
-//! `MC_MoveAbsolute`: to a position.
+//! `MC_MoveAbsolute`: moves to a position.
 use super::motion::{MotionBlock, moves};
 use super::outputs::MotionOutputs;
 use crate::blocks::{BlockName, Input};
 use crate::command::{Direction, Goal};
 use crate::interface::{direction, required};
 
-/// To a position, counted from the reference.
+/// Moves to a position, counted from the reference.
 pub type MoveAbsolute = MotionBlock<MoveAbsoluteInputs>;
 
 moves! {

@@ -1,11 +1,11 @@
-//! `MC_MoveAdditive`: by a distance from the last target.
+//! `MC_MoveAdditive`: moves by a distance from the last target.
 use super::motion::{MotionBlock, moves};
 use super::outputs::MotionOutputs;
 use crate::blocks::{BlockName, Input};
 use crate::command::Goal;
 use crate::interface::required;
 
-/// By a distance, counted from where the last command leads; in ContinuousMotion from where the axis is commanded to be.
+/// Moves by a distance from the target of the last command; in ContinuousMotion from the commanded position.
 pub type MoveAdditive = MotionBlock<MoveAdditiveInputs>;
 
 moves! {

@@ -1,10 +1,10 @@
-//! `MC_MoveContinuousAbsolute`: to a position that is passed at a velocity, which is kept.
+//! `MC_MoveContinuousAbsolute`: passes a position at a velocity and keeps that.
 use super::motion::{MotionBlock, moves};
 use crate::blocks::{BlockName, Input};
 use crate::command::{Direction, Goal};
 use crate::interface::{command_outputs, direction, required};
 
-/// To a position that is passed at a velocity, which is kept from then on.
+/// Passes a position at a velocity and keeps that from then on.
 pub type MoveContinuousAbsolute = MotionBlock<MoveContinuousAbsoluteInputs>;
 
 moves! {

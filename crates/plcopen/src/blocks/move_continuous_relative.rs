@@ -1,12 +1,11 @@
-//! `MC_MoveContinuousRelative`: by a distance whose end is passed at a velocity, which is kept.
+//! `MC_MoveContinuousRelative`: moves by a distance, passes its end at a velocity and keeps that.
 use super::motion::{MotionBlock, moves};
 use super::move_continuous_absolute::MoveContinuousAbsoluteOutputs;
 use crate::blocks::{BlockName, Input};
 use crate::command::Goal;
 use crate::interface::required;
 
-/// By a distance, counted from where the axis is commanded to be when the motion begins; its end is passed at a velocity, which is
-/// kept from then on.
+/// Moves by a distance from the commanded position at the beginning, passes its end at a velocity and keeps that from then on.
 pub type MoveContinuousRelative = MotionBlock<MoveContinuousRelativeInputs>;
 
 moves! {

@@ -1,11 +1,11 @@
-//! `MC_MoveRelative`: by a distance.
+//! `MC_MoveRelative`: moves by a distance.
 use super::motion::{MotionBlock, moves};
 use super::outputs::MotionOutputs;
 use crate::blocks::{BlockName, Input};
 use crate::command::Goal;
 use crate::interface::required;
 
-/// By a distance, counted from where the axis is commanded to be when the motion begins.
+/// Moves by a distance from the commanded position at the beginning.
 pub type MoveRelative = MotionBlock<MoveRelativeInputs>;
 
 moves! {

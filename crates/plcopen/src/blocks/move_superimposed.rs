@@ -1,4 +1,4 @@
-//! `MC_MoveSuperimposed`: by a distance, on top of what runs.
+//! `MC_MoveSuperimposed`: moves by a distance on top of the active motion.
 use super::execution::{Execution, Report};
 use super::outputs::{FunctionBlock, MotionOutputs};
 use crate::axis::Axis;
@@ -9,14 +9,14 @@ use crate::interface::{flag, inputs, like, limit, limit_if_any, outputs, require
 use servobench_base::Stateful;
 use servobench_motion::Limits;
 
-/// By a distance on top of the motion below, which goes on; at Standstill on its own.
+/// Moves by a distance on top of the motion below, which continues; at Standstill it is the only motion.
 ///
-/// A command that aborts the motion below aborts this one too; buffered and blended ones leave it alone, and lead to where they
-/// lead plus the distance. A second one replaces the first and counts from where that one is.
+/// A command that aborts the motion below aborts this one too; buffered and blended ones leave it alone, and end at their target plus the
+/// distance. A second one replaces the first and counts from its present position.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct MoveSuperimposed {
     execution: Execution,
-    /// The inputs that act.
+    /// Inputs in effect.
     latched: Option<MoveSuperimposedInputs>,
     covered: f64,
 }
@@ -42,7 +42,7 @@ inputs! {
 }
 
 impl MoveSuperimposedInputs {
-    /// By no distance as fast as `limits` allow, not executed.
+    /// Inputs of a zero distance as fast as `limits` allow, not executed.
     #[must_use]
     pub fn within(limits: &Limits) -> Self {
         Self {
@@ -74,7 +74,7 @@ outputs! {
     pub struct MoveSuperimposedOutputs {
         /// Done: the distance is covered.
         done: bool = Done,
-        /// Busy: it is not yet.
+        /// Busy: the distance is not yet covered.
         busy: bool = Busy,
         /// CommandAborted: another command took the axis.
         command_aborted: bool = CommandAborted,
@@ -82,7 +82,7 @@ outputs! {
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
-        /// CoveredDistance since the motion on top began (m or rad).
+        /// CoveredDistance since the superimposed motion began (m or rad).
         covered_distance: f64 = CoveredDistance,
     }
 }

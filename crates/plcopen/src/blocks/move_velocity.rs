@@ -1,17 +1,17 @@
-//! `MC_MoveVelocity`: to a velocity.
+//! `MC_MoveVelocity`: moves to a velocity.
 use super::motion::{MotionBlock, MotionInputs};
 use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Direction, Dynamics, Goal};
 use crate::interface::{buffer_mode, command_outputs, direction, flag, inputs, like, limit, limit_if_any};
 use servobench_motion::Limits;
 
-/// To a velocity, which is kept.
+/// Moves to a velocity and keeps it.
 pub type MoveVelocity = MotionBlock<MoveVelocityInputs>;
 
 inputs! {
     /// Inputs of [`MoveVelocity`].
     pub struct MoveVelocityInputs on execute {
-        /// Velocity (m/s or rad/s); a sign counts in the direction.
+        /// Velocity (m/s or rad/s), with a sign relative to the direction.
         velocity: f64 = limit(Input::Velocity),
         /// Acceleration (m/s² or rad/s²).
         acceleration: f64 = limit(Input::Acceleration),
@@ -31,7 +31,7 @@ inputs! {
 }
 
 impl MoveVelocityInputs {
-    /// As fast as `limits` allow, not executed.
+    /// Inputs of a motion as fast as `limits` allow, not executed.
     #[must_use]
     pub fn within(limits: &Limits) -> Self {
         Self {

@@ -1,34 +1,34 @@
-//! What every block is, and the outputs that most have in common.
+//! The trait of all blocks, and the outputs that most have in common.
 use super::execution::Report;
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Output};
 use crate::error::{BlockError, ErrorId};
 use crate::interface::{BlockInputs, command_outputs, outputs};
 
-/// A function block: an instance keeps what the standard's instance keeps.
+/// A function block: an instance keeps the state of the standard's instance.
 pub trait FunctionBlock {
-    /// Its name.
+    /// Block name.
     const NAME: BlockName;
-    /// Its inputs, borrowed for a call at most.
+    /// Inputs, borrowed for a call at most.
     type Inputs<'i>: BlockInputs<'i>;
-    /// Its outputs.
+    /// Outputs.
     type Outputs: Outputs;
 
-    /// One call: between [`Axis::begin`] and [`Axis::end`], once per cycle.
+    /// Handles one call: between [`Axis::begin`] and [`Axis::end`], once per cycle.
     fn step(&mut self, axis: &mut Axis, inputs: &Self::Inputs<'_>) -> Self::Outputs;
 
-    /// What ErrorID stands for, in words; `None` while Error is FALSE.
+    /// Error behind ErrorID; `None` while Error is FALSE.
     fn error(&self) -> Option<&BlockError> {
         None
     }
 }
 
-/// Outputs as a recording keeps them.
+/// Outputs that can be recorded.
 pub trait Outputs: Copy {
-    /// Which, in the order of the standard.
+    /// List of the outputs, in the order of the standard.
     const LIST: &'static [Output];
 
-    /// Hands the values to `record`, in the order of the list; TRUE is 1.
+    /// Passes the values to `record`, in the order of the list; TRUE is 1.
     fn each(&self, record: impl FnMut(f64));
 }
 
@@ -40,12 +40,12 @@ command_outputs! {
 }
 
 outputs! {
-    /// Outputs of a block that does something which is then done.
+    /// Outputs of a block that ends with Done and without a motion.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct DoneOutputs {
         /// Done.
         done: bool = Done,
-        /// Busy: there is something left to do.
+        /// Busy: not done yet.
         busy: bool = Busy,
         /// Error.
         error: bool = Error,

@@ -1,6 +1,6 @@
 //! `MC_ReadParameter`, `MC_ReadBoolParameter`, `MC_WriteParameter`, `MC_WriteBoolParameter`.
 //!
-//! ExecutionMode is left out: what is written counts at once.
+//! ExecutionMode is left out: a write takes effect at once.
 use super::execution::Execution;
 use super::outputs::{DoneOutputs, FunctionBlock};
 use crate::axis::Axis;
@@ -10,21 +10,21 @@ use crate::interface::{inputs, outputs, required};
 use crate::parameter::{AxisBoolParameter, AxisParameter};
 use servobench_base::Stateful;
 
-/// Reads a number.
+/// Reads a numeric parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadParameter;
 
-/// Reads a BOOL.
+/// Reads a BOOL parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadBoolParameter;
 
-/// Writes a number.
+/// Writes a numeric parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct WriteParameter {
     execution: Execution,
 }
 
-/// Writes a BOOL.
+/// Writes a BOOL parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct WriteBoolParameter {
     execution: Execution,
@@ -72,13 +72,13 @@ outputs! {
     pub struct ReadParameterOutputs {
         /// Valid.
         valid: bool = Valid,
-        /// Busy: as Valid.
+        /// Busy: same as Valid.
         busy: bool = Busy,
         /// Error: the block cannot fail.
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
-        /// Value (SI, in the axis unit m or rad); infinite where there is no limit, 0 while it is not valid.
+        /// Value (SI, in the axis unit m or rad); infinite if there is no limit, 0 while it is not valid.
         value: f64 = Value,
     }
 }
@@ -89,9 +89,9 @@ outputs! {
     pub struct ReadBoolOutputs {
         /// Valid.
         valid: bool = Valid,
-        /// Busy: it goes on reading, also after an error.
+        /// Busy: the block continues to read, also after an error.
         busy: bool = Busy,
-        /// Error: there is no such input or output.
+        /// Error: the input or output does not exist.
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
@@ -101,12 +101,12 @@ outputs! {
 }
 
 impl ReadBoolOutputs {
-    /// Those of a block that cannot read.
+    /// Outputs of a block that cannot read.
     pub(super) fn failed(error: &BlockError) -> Self {
         Self { busy: true, error: true, error_id: error.id(), ..Self::default() }
     }
 
-    /// Those of a block that is enabled or not.
+    /// Outputs of a block that is enabled or not.
     pub(super) fn of(enable: bool, value: impl FnOnce() -> bool) -> Self {
         Self { valid: enable, busy: enable, value: enable && value(), ..Self::default() }
     }

@@ -1,10 +1,10 @@
-//! `MC_PositionProfile`: along a table of positions.
+//! `MC_PositionProfile`: moves along a table of positions.
 //!
-//! The standard leaves open how the axis goes from position to position. Here are the two ways of N. D. Baikov and A. N. Godunov,
-//! *An Approach to Implementing Functional Blocks of the PLCopen Specification*, sections 4 and 5: plateaus of velocity, and the
-//! cubic spline. Both begin with the velocity that the axis has. An axis that is told positions follows the profile itself, set-point by
-//! set-point. One that is told velocities ([`AxisParams::velocity_ramps`]) gets what the paper sends to a drive in the profile velocity
-//! mode: a command for each ramp between two plateaus, or one for each step along the spline, in its cycles.
+//! The standard leaves the path between the positions open. Two are implemented here, both from N. D. Baikov and A. N. Godunov, *An
+//! Approach to Implementing Functional Blocks of the PLCopen Specification*, sections 4 and 5: plateaus of velocity, and the cubic spline.
+//! Both begin with the present velocity of the axis. An axis in position mode follows the profile set-point by set-point. One in velocity
+//! mode ([`AxisParams::velocity_ramps`]) receives the commands of the paper for a drive in profile velocity mode: one for each ramp between
+//! two plateaus, or one for each step along the spline, in its cycles.
 use super::outputs::{FunctionBlock, MotionOutputs};
 use super::profile::{
     Beyond, Call, Course, Leading, Memory, Names, Pair, Scales, TIME_SCALE, VALUE_SCALE, check_room, pairs,
@@ -25,25 +25,25 @@ use servobench_motion::{Limits, Piece, PlanError};
 /// `MC_TP_REF`: positions and the times between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimePosition<'a> {
-    /// `MC_TP_Array`, as long as `NumberOfPairs` says.
+    /// `MC_TP_Array`, of `NumberOfPairs` elements.
     pub pairs: &'a [Pair],
-    /// `IsAbsolute`; otherwise the positions count from where the profile begins.
+    /// `IsAbsolute`; otherwise the positions count from the beginning of the profile.
     pub is_absolute: bool,
 }
 
-/// How the axis goes from position to position.
+/// Interpolation between the positions.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Follow {
     /// At a constant velocity in each segment, but for this share of its time at either end, above 0 up to 1/2; `None` for the share that
-    /// takes the smallest part of the velocity and the acceleration of the axis.
+    /// uses the smallest part of the velocity and the acceleration of the axis.
     Plateaus(Option<f64>),
     /// Along the cubic spline, whose acceleration is continuous.
     Spline,
-    /// Along the cubic spline on an axis that is told velocities, of which so many are sent per second (1/s).
+    /// Along the cubic spline on an axis in velocity mode, with this rate of velocity commands (1/s).
     Steps(f64),
 }
 
-/// Along a table of positions, which it keeps in the memory `K` and `S`.
+/// Moves along a table of positions, which it keeps in the memory `K` and `S`.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct PositionProfile<K, S> {
     leading: Leading,
@@ -63,7 +63,7 @@ pub struct PositionProfileInputs<'a> {
     pub position_scale: f64,
     /// Offset (m or rad).
     pub offset: f64,
-    /// How the axis goes from position to position, beyond the standard.
+    /// Interpolation between the positions, beyond the standard.
     pub follow: Follow,
     /// Velocity at the last position (m/s or rad/s), beyond the standard.
     pub end_velocity: f64,
@@ -72,7 +72,7 @@ pub struct PositionProfileInputs<'a> {
 }
 
 impl<'a> PositionProfileInputs<'a> {
-    /// Along the absolute positions of `pairs` as they are, by the spline, to rest; not executed.
+    /// Inputs for the absolute positions of `pairs`, unscaled, by the spline, to rest; not executed.
     #[must_use]
     pub fn along(pairs: &'a [Pair]) -> Self {
         let Scales { time: time_scale, value: position_scale, offset } = Scales::NONE;
@@ -118,7 +118,7 @@ const OFFSET: BlockInput = or(Input::PositionOffset, 0.0);
 const END_VELOCITY: BlockInput = or(Input::EndVelocity, 0.0);
 
 impl<K: Memory<Knot>, S: Memory<f64>> PositionProfile<K, S> {
-    /// With the memory for a table of one pair less than `knots` and `scratch` hold.
+    /// A block with memory for a table of one pair less than `knots` and `scratch` hold.
     #[must_use]
     pub fn new(knots: K, scratch: S) -> Self {
         let way = Way {
@@ -196,13 +196,13 @@ impl<K: Memory<Knot>, S: Memory<f64>> FunctionBlock for PositionProfile<K, S> {
 #[cfg(feature = "program")]
 impl crate::program::New for PositionProfile<alloc::vec::Vec<Knot>, alloc::vec::Vec<f64>> {
     fn new_for(inputs: &crate::program::Inputs) -> Self {
-        // Where the profile begins is a point too.
+        // The beginning of the profile is a point too.
         let points = pairs(inputs).len() + 1;
         Self::new(alloc::vec![Knot::default(); points], alloc::vec![0.0; points])
     }
 }
 
-/// A table on its way.
+/// A table being followed.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 struct Way<K, S> {
     knots: K,
@@ -210,14 +210,14 @@ struct Way<K, S> {
     count: usize,
     follow: Follow,
     is_absolute: bool,
-    /// From where the positions of the knots count now.
+    /// Present origin of the positions of the knots.
     origin: f64,
-    /// Whether the table says where the profile begins.
+    /// True if the table defines where the profile begins.
     says_where: bool,
     end_velocity: f64,
-    /// The cycles of an axis that is told velocities.
+    /// Cycles of an axis in velocity mode.
     clock: Option<Clock>,
-    /// Of plateaus: the share that is asked for, and the one that was found.
+    /// Plateaus: the requested share, and the one that was found.
     share: PlateauShare,
     alpha: f64,
     is_solved: bool,
@@ -225,7 +225,7 @@ struct Way<K, S> {
 }
 
 impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
-    /// Takes the table over, behind a first point that is where the profile will begin on an axis with `params`.
+    /// Loads the table, behind a first point at which the profile will begin on an axis with `params`.
     fn load(&mut self, inputs: &PositionProfileInputs<'_>, params: &AxisParams) {
         let (scales, pairs) = (inputs.scales(), inputs.time_position.pairs);
         let knots = self.knots.as_mut();
@@ -257,7 +257,7 @@ impl<K: Memory<Knot>, S: Memory<f64>> Way<K, S> {
         &self.knots.as_ref()[..self.count]
     }
 
-    /// Solves for the velocities of the points; on an axis that is told velocities, of those that its cycles can tell apart.
+    /// Solves for the velocities of the points; on an axis in velocity mode, of those that its cycles can resolve.
     fn solve(&mut self, start: f64) -> Result<(), PlanError> {
         let Self { knots, scratch, count, follow, end_velocity: end, clock, share, alpha, .. } = self;
         let (knots, scratch, end) = (&mut knots.as_mut()[..*count], scratch.as_mut(), *end);
@@ -290,7 +290,7 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
             knots[0] = Knot::new(0.0, from.x);
         }
         self.is_solved = self.solve(from.v).is_ok();
-        // Whatever cannot be solved is beyond every limit.
+        // A profile that cannot be solved is beyond every limit.
         let beyond = Setpoint { v: f64::NAN, ..*from };
         self.piece = if self.is_solved { self.look_up(0.0) } else { Piece::held(beyond, f64::INFINITY) };
     }
@@ -303,7 +303,7 @@ impl<K: Memory<Knot>, S: Memory<f64>> Course for Way<K, S> {
             return self.piece.at(t);
         }
         if self.end_velocity == 0.0 {
-            // The end bit for bit.
+            // The end, bit for bit.
             return Setpoint::at_rest(self.points()[self.count - 1].x);
         }
         Setpoint { a: 0.0, j: 0.0, ..self.piece.at(t) }

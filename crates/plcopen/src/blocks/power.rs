@@ -33,7 +33,7 @@ outputs! {
     pub struct PowerOutputs {
         /// Status: the axis is powered.
         status: bool = Status,
-        /// Valid: the outputs mean something.
+        /// Valid: the other outputs are valid.
         valid: bool = Valid,
         /// Error: the axis is in ErrorStop.
         error: bool = Error,

@@ -1,20 +1,19 @@
-//! What the blocks that follow a table have in common: its pairs, and how the axis is led along it.
+//! Common parts of the blocks that follow a table: its pairs, and leading the axis along it.
 //!
 //! # The table
 //!
-//! PLCopen part 1, version 2.0, sections 3.14 to 3.16, leaves the type of the table to the supplier and gives an example, which
-//! is the one here: pairs of the time since the pair before and a value, for any number of them. Between the pairs position,
-//! velocity or acceleration goes in the way that the block says; where the axis is when the block takes it is before the first.
-//! A first pair without time says where the axis must be then: what it would have to jump is beyond its limits.
+//! PLCopen part 1, version 2.0, sections 3.14 to 3.16, leaves the type of the table to the supplier and gives an example, which is
+//! implemented here: any number of pairs of the time since the previous pair and a value. The block defines the interpolation of position,
+//! velocity or acceleration between the pairs; the present state of the axis comes before the first one. A first pair without time defines
+//! the state at the beginning: any jump to it is beyond the limits of the axis.
 //!
-//! Each value is scaled and moved by the offset, each time scaled by `TimeScale`.
+//! Each value is scaled and shifted by the offset, each time scaled by `TimeScale`.
 //!
-//! # On the way
+//! # During the profile
 //!
-//! The set-points are those of the profile at the cycles. A block that follows a profile is called in every cycle until it is
-//! done. A profile that does not keep the limits of the axis is refused; where it begins later, behind another command, or in
-//! the place of one of the same instance, it stops the axis with an error when it begins. `MC_SetOverride` does not act on it
-//! (which the standard leaves to the supplier).
+//! The set-points are those of the profile at the cycles. Call a block that follows a profile in every cycle until it is done. A profile
+//! that exceeds the limits of the axis is refused; one that begins later, behind another command or in place of one of the same instance,
+//! stops the axis with an error when it begins. `MC_SetOverride` does not act on it (which the standard leaves to the supplier).
 use super::execution::{Execution, Report};
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
@@ -30,13 +29,13 @@ use servobench_motion::{Limits, PlanError};
 /// A row of a table: `DeltaTime` and `Position`, `Velocity` or `Acceleration`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Pair {
-    /// Time since the pair before, or since the start (s): positive, but for the first pair, and those of accelerations that jump.
+    /// Time since the previous pair, or since the start (s): positive, but for the first pair and jumps of acceleration.
     pub delta_time: f64,
     /// Position, velocity or acceleration (SI).
     pub value: f64,
 }
 
-/// Memory for a table: an array, a slice that is lent, or a vector.
+/// Memory for a table: an array, a borrowed slice, or a vector.
 pub trait Memory<T>: AsRef<[T]> + AsMut<[T]> {}
 
 impl<T, M: AsRef<[T]> + AsMut<[T]>> Memory<T> for M {}
@@ -56,7 +55,7 @@ pub(super) fn check_room(
     Ok(())
 }
 
-/// The rows of the table; none where there is no table.
+/// Rows of the table; empty if there is no table.
 pub(super) fn pairs<T: Tables>(values: &Values<T>) -> &[Pair] {
     values.table(Input::Table).and_then(Tables::profile).map_or(&[], |table| table.pairs)
 }
@@ -64,7 +63,7 @@ pub(super) fn pairs<T: Tables>(values: &Values<T>) -> &[Pair] {
 pub(super) const TIME_SCALE: BlockInput = or(Input::TimeScale, 1.0);
 pub(super) const VALUE_SCALE: BlockInput = or(Input::ValueScale, 1.0);
 
-/// What the inputs of the block make of a table.
+/// Scaling of a table by the inputs of the block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scales {
     pub(super) time: f64,
@@ -80,7 +79,7 @@ impl Scales {
         Pair { delta_time: self.time * pair.delta_time, value: self.value * pair.value + self.offset }
     }
 
-    /// Checks the inputs by the names that they have at `block`, and the table that they are for.
+    /// Checks the inputs, by their names at `block`, and their table.
     pub(super) fn check(&self, block: BlockName, names: &Names, pairs: &[Pair]) -> Result<(), BlockError> {
         let Self { time, value, offset } = *self;
         let refuse = |input, value, bound| Err(BlockError::Input { block, input, value, bound });
@@ -112,31 +111,31 @@ impl Scales {
     }
 }
 
-/// What is larger, or smaller than its inverse, was written in the wrong unit.
+/// Largest plausible magnitude, and inverse of the smallest: a value outside was written in the wrong unit.
 const LARGEST: f64 = 1e15;
 
 fn within(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
-/// What the inputs of a block are called.
+/// Names of a block's inputs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Names {
     pub(super) table: &'static str,
     pub(super) scale: &'static str,
-    /// Whether a value may jump.
+    /// True if a value may jump.
     pub(super) may_jump: bool,
 }
 
-/// What a block leads the axis along.
+/// Trajectory along which a block leads the axis.
 pub(super) trait Course {
-    /// Begins where the axis is; as often as that is asked after it was loaded.
+    /// Begins at the set-point of the axis; may be called repeatedly after loading.
     fn begin(&mut self, from: &Setpoint);
 
-    /// The set-point `t` seconds after the beginning; asked in the order of time.
+    /// Set-point `t` seconds after the beginning; called in the order of time.
     fn at(&mut self, t: f64) -> Setpoint;
 
-    /// The line of velocity that leads to the set-point of `t`, for a drive that is told velocities; `None` for one that lasts a cycle.
+    /// Velocity ramp to the set-point at `t`, for a drive in velocity mode; `None` for a ramp of one cycle.
     fn ramp(&self, t: f64) -> Option<VelocityRamp> {
         let _ = t;
         None
@@ -145,7 +144,7 @@ pub(super) trait Course {
     /// Duration (s).
     fn duration(&self) -> f64;
 
-    /// What of it, once it has begun, is beyond `limits`, if anything is.
+    /// First excess of the trajectory, once begun, beyond `limits`.
     fn beyond(&self, limits: &Limits) -> Option<Beyond>;
 }
 
@@ -158,7 +157,7 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    /// What is beyond `limits` from `from` on for `length` seconds, in which the jerk is constant.
+    /// First excess beyond `limits` from `from` on for `length` seconds, in which the jerk is constant.
     pub(super) fn within(from: &Setpoint, length: f64, limits: &Limits) -> Option<Self> {
         let (end, turn) = (from.after(length), -from.a / from.j);
         let fastest = if turn > 0.0 && turn < length { from.after(turn).v } else { from.v };
@@ -176,10 +175,10 @@ impl Beyond {
     }
 }
 
-/// What rounding may be, as a part of a limit, or of a cycle in which a profile ends.
+/// Tolerance for rounding, as a part of a limit, or of the cycle in which a profile ends.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// The inputs of a call that are not the table's.
+/// Inputs of a call other than the table.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Call {
     pub(super) block: BlockName,
@@ -188,7 +187,7 @@ pub(super) struct Call {
     pub(super) buffer_mode: BufferMode,
 }
 
-/// Execute and the command that leads the axis.
+/// Execute, and the command that leads the axis.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub(super) struct Leading {
     pub(super) execution: Execution,
@@ -196,7 +195,7 @@ pub(super) struct Leading {
 }
 
 impl Leading {
-    /// One call: `check` looks at the inputs, before anything is changed, and `load` takes them over.
+    /// Handles one call: `check` validates the inputs before anything is changed, and `load` takes them over.
     pub(super) fn step<C: Course>(
         &mut self,
         axis: &mut Axis,
@@ -223,7 +222,7 @@ impl Leading {
                     }
                 }
             } else if !is_aborting {
-                // One instance holds one course.
+                // One instance holds one trajectory.
                 return Err(BlockError::BufferFull { block, held: 1 });
             }
             let goal = Goal::Led(ending);
@@ -235,7 +234,7 @@ impl Leading {
             Ok(*id)
         });
         if has_begun {
-            // Where another block led the axis in the cycle before and not yet in this one.
+            // Another block may have led the axis in the cycle before and not yet in this one.
             self.lead(axis, course);
         } else {
             self.begin(axis, course);
@@ -243,7 +242,7 @@ impl Leading {
         report
     }
 
-    /// Begins where the command has just got the axis.
+    /// Begins the trajectory if the command has just got the axis.
     fn begin(&self, axis: &mut Axis, course: &mut impl Course) {
         let Some(id) = self.id.filter(|id| axis.led_cycles(*id) == Some(0)) else { return };
         course.begin(&axis.commanded());
@@ -253,7 +252,7 @@ impl Leading {
         }
     }
 
-    /// Goes on along the course, as long as the command has the axis.
+    /// Continues along the trajectory while the command has the axis.
     fn go_on(&mut self, axis: &mut Axis, course: &mut impl Course) {
         let Some(id) = self.id else { return };
         if matches!(axis.progress(id), Progress::Done | Progress::Aborted | Progress::Failed) {
@@ -263,7 +262,7 @@ impl Leading {
         self.lead(axis, course);
     }
 
-    /// Gives the set-point of this cycle, where the command has the axis and it is not there yet.
+    /// Gives the set-point of this cycle, if the command has the axis and has not given it yet.
     fn lead(&mut self, axis: &mut Axis, course: &mut impl Course) {
         let Some(id) = self.id else { return };
         let (cycle_time, Some(cycles)) = (axis.params().cycle_time, axis.led_cycles(id)) else { return };
@@ -282,7 +281,7 @@ impl Leading {
     }
 }
 
-/// What the axis does with the velocity at the end, when nothing follows: it keeps it, within its limits.
+/// Dynamics of the velocity after the end, when nothing follows: the axis keeps it, within its limits.
 fn dynamics(axis: &Axis) -> Dynamics {
     let limits = &axis.params().limits;
     let (velocity, acceleration) = (limits.velocity, limits.acceleration);

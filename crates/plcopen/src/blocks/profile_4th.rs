@@ -1,23 +1,21 @@
-//! `Profile4th`: an axis that follows the published [generator](crate::generator) of order 4.
+//! `Profile4th`: an axis following the published [generator](crate::generator) of order 4.
 //!
-//! The generator knows of no axis: it makes a reference. Here its set-points are what the axis follows, as it follows those of a
-//! profile block, from where the axis is commanded to be. As each move goes from rest to rest and ends by itself, it is one of
-//! Discrete Motion, and begins at Standstill only; Done of the axis comes with its last set-point, `CmdDone` of the generator
-//! `T_set` later.
+//! The generator only computes a reference, without an axis. Here the axis follows its set-points, like those of a profile block, from its
+//! commanded position. Each move goes from rest to rest and ends by itself, so it is a Discrete Motion and begins at Standstill only; Done
+//! of the axis comes with the last set-point, `CmdDone` of the generator `T_set` later.
 //!
 //! | output | TRUE |
 //! |---|---|
-//! | Ready | a rise of Enable starts a move |
+//! | Ready | a rising edge of Enable starts a move |
 //! | Done | the last move is over, and its settling time too |
 //! | Busy | from the start of a move until Ready |
 //! | Active | the axis follows the generator |
-//! | CommandAborted, Error | until Enable is FALSE, and a cycle at least |
+//! | CommandAborted, Error | until Enable is FALSE, for at least one cycle |
 //!
-//! Position, Velocity, Acceleration, `pref_add`, Jerk and `dJerk` are those of the generator; the axis follows them while Active is
-//! TRUE.
+//! Position, Velocity, Acceleration, `pref_add`, Jerk and `dJerk` are those of the generator; the axis follows them while Active is TRUE.
 //!
-//! As at the generator, a falling Enable does not end the move, and one that stays TRUE starts again as soon as the block is
-//! ready: here, when `pref` is another than that of the last start.
+//! As with the generator, a falling Enable does not end the move, and one that stays TRUE starts another as soon as the block is ready:
+//! here, if `pref` differs from that of the last start.
 use super::outputs::FunctionBlock;
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Input};
@@ -36,7 +34,7 @@ use servobench_motion::{Limits, Order};
 pub struct Profile4th {
     generator: generator::State,
     id: Option<CommandId>,
-    /// Where the last start leads, as long as Enable is TRUE.
+    /// Target of the last start, as long as Enable is TRUE.
     reference: Option<f64>,
     is_aborted: bool,
     error: Option<BlockError>,
@@ -47,15 +45,15 @@ pub struct Profile4th {
 pub struct Profile4thInputs {
     /// `TriggerEnable`.
     pub enable: bool,
-    /// `pref`: where to (m or rad).
+    /// `pref`: target (m or rad).
     pub position: f64,
-    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order count.
+    /// `vel_bnd`, `acc_bnd`, `jerk_bnd` and `djerk_bnd`, of which those up to the order apply.
     pub limits: Limits,
-    /// `T_set`: from the end of a move until the block is ready for the next (s).
+    /// `T_set`: time from the end of a move until the block is ready for the next (s).
     pub settling_time: f64,
-    /// Whether the axis goes the opposite way.
+    /// Mounting of the motor, which may reverse the references.
     pub mounting: Mounting,
-    /// Which derivative is switched: 2, 3 or 4. The block refuses others.
+    /// Order of the switched derivative: 2, 3 or 4. The block refuses others.
     pub order: f64,
 }
 
@@ -83,7 +81,7 @@ outputs! {
         velocity: f64 = Velocity,
         /// `Acceleration`.
         acceleration: f64 = Acceleration,
-        /// `pref_add`: what the move adds to the position.
+        /// `pref_add`: position that the move adds.
         added: f64 = Added,
         /// `Jerk`.
         jerk: f64 = Jerk,
@@ -93,7 +91,7 @@ outputs! {
 }
 
 impl Profile4thInputs {
-    /// To `position` by `limits` at order 4, ready as soon as it is there; not enabled.
+    /// Inputs of a move to `position` by `limits` at order 4, without a settling time; not enabled.
     #[must_use]
     pub const fn to(position: f64, limits: Limits) -> Self {
         Self { enable: false, position, limits, settling_time: 0.0, mounting: Mounting::Same, order: 4.0 }
@@ -104,7 +102,7 @@ impl BlockInputs<'_> for Profile4thInputs {
     const TRIGGER: Trigger = Trigger::Enable;
     const INPUTS: &'static [BlockInput] =
         &[POSITION, VELOCITY, ACCELERATION, JERK, SNAP, SETTLING_TIME, REVERSED, ORDER];
-    /// A start takes them over.
+    /// Inputs are taken over at a start.
     const ARE_FOLLOWED: bool = false;
 
     fn read<T: Tables>(values: &Values<T>, enable: bool) -> Self {
@@ -161,7 +159,7 @@ impl FunctionBlock for Profile4th {
 }
 
 impl Profile4th {
-    /// Sees whether the axis still follows.
+    /// Checks that the axis still follows.
     fn watch(&mut self, axis: &Axis) {
         let Some(id) = self.id else { return };
         match axis.progress(id) {
@@ -172,7 +170,7 @@ impl Profile4th {
         (self.id, self.generator) = (None, generator::State::default());
     }
 
-    /// One sample of the generator, and the axis led to it.
+    /// Computes one sample of the generator and leads the axis to it.
     fn generate(&mut self, axis: &mut Axis, inputs: &Profile4thInputs) -> Result<generator::Output, BlockError> {
         let &Profile4thInputs { enable, position, limits, settling_time, mounting, order } = inputs;
         let order = order_of(order)?;
@@ -215,7 +213,7 @@ impl Profile4th {
         Ok(generated)
     }
 
-    /// Lets go of an axis that has not been moved.
+    /// Releases an axis that has not been moved.
     fn release(&mut self, axis: &mut Axis) {
         self.generator = generator::State::default();
         if let Some(id) = self.id.take() {
@@ -245,12 +243,12 @@ impl Profile4th {
     }
 }
 
-/// What a generator shows that was set back: it would begin where the axis is.
+/// Output of a reset generator: it would begin at the commanded position.
 fn at_rest(axis: &Axis) -> generator::Output {
     generator::Output { set_point: Setpoint::at_rest(axis.commanded().x), ..generator::Output::default() }
 }
 
-/// The order by its number.
+/// Order by its number.
 fn order_of(number: f64) -> Result<Order, BlockError> {
     let of_number = |order: &Order| (order.derivative() as f64).to_bits() == number.to_bits();
     [Order::Second, Order::Third, Order::Fourth].into_iter().find(of_number).ok_or(BlockError::Input {
@@ -261,7 +259,7 @@ fn order_of(number: f64) -> Result<Order, BlockError> {
     })
 }
 
-/// Has the axis follow.
+/// Submits the command that makes the axis follow.
 fn begin(axis: &mut Axis, order: Order, limits: &Limits, position: f64) -> Result<CommandId, BlockError> {
     let block = BlockName::Profile4th;
     if !axis.has_reference(BufferMode::Aborting) {

@@ -1,6 +1,6 @@
 //! `MC_ReadStatus`, `MC_ReadAxisError`, `MC_ReadActualPosition`, `MC_ReadActualVelocity`, `MC_ReadActualTorque`.
 //!
-//! They cannot fail: Error and ErrorID stay what they are without an error.
+//! They cannot fail: Error and ErrorID keep their values without an error.
 use super::outputs::{FunctionBlock, Outputs};
 use crate::axis::Axis;
 use crate::blocks::{BlockName, Output};
@@ -10,23 +10,23 @@ use crate::state::AxisState;
 use core::marker::PhantomData;
 use servobench_base::Stateful;
 
-/// The state of the axis.
+/// Reads the state of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadStatus;
 
-/// The error for which the axis is in ErrorStop.
+/// Reads the error for which the axis is in ErrorStop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadAxisError;
 
-/// The actual position.
+/// Reads the actual position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualPosition;
 
-/// The actual velocity.
+/// Reads the actual velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualVelocity;
 
-/// The actual effort.
+/// Reads the actual effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadActualTorque;
 
@@ -53,7 +53,7 @@ pub struct ReadAxisErrorOutputs {
     pub valid: bool,
     /// AxisErrorID.
     pub axis_error_id: ErrorId,
-    /// The code of the drive or its link, where the error is a fault of it; 0 without one. Beyond the standard.
+    /// Code of the drive or its link, if the error is one of their faults; 0 otherwise. Beyond the standard.
     pub drive_code: u16,
 }
 
@@ -69,7 +69,7 @@ pub struct ReadValueOutputs<Block> {
 
 /// A block that reads a value.
 pub trait ReadsValue: Copy {
-    /// The output that has the value.
+    /// Output that carries the value.
     const OUTPUT: Output;
 }
 

@@ -8,7 +8,7 @@ use crate::interface::outputs;
 use servobench_base::Stateful;
 use servobench_fieldbus::{Fault, LinkFault, Power};
 
-/// What the axis says of itself beside its motion.
+/// Reads the status of the axis apart from its motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct ReadAxisInfo;
 
@@ -18,7 +18,7 @@ outputs! {
     pub struct ReadAxisInfoOutputs {
         /// Valid.
         valid: bool = Valid,
-        /// Busy: as Valid.
+        /// Busy: same as Valid.
         busy: bool = Busy,
         /// Error: the block cannot fail.
         error: bool = Error,
@@ -30,7 +30,7 @@ outputs! {
         limit_switch_pos: bool = LimitSwitchPos,
         /// LimitSwitchNeg: the switch of the negative end is met.
         limit_switch_neg: bool = LimitSwitchNeg,
-        /// Simulation: the axis is not taken for one without a drive; always FALSE.
+        /// Simulation: the axis has no drive; always FALSE.
         simulation: bool = Simulation,
         /// CommunicationReady: the drive answers.
         communication_ready: bool = CommunicationReady,

@@ -1,4 +1,4 @@
-//! `MC_ReadMotionState`: whether the axis speeds up or slows down, and in which direction.
+//! `MC_ReadMotionState`: acceleration, deceleration and direction of the axis.
 use super::outputs::FunctionBlock;
 use super::read::ReadInputs;
 use crate::axis::Axis;
@@ -7,9 +7,9 @@ use crate::error::ErrorId;
 use crate::interface::outputs;
 use servobench_base::Stateful;
 
-/// How the axis moves: as the set-points say, or as it actually does where it follows none (in homing and by a torque).
+/// Reads the state of motion: that of the set-points, or the actual one if the axis follows none (in homing and torque control).
 ///
-/// A change of velocity within a cycle that is a millionth of what the acceleration limit allows is rounding: the velocity is constant.
+/// A change of velocity within a cycle of a millionth of what the acceleration limit allows is rounding: the velocity is constant.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ReadMotionState {
     /// Velocity of the cycle before; `None` before the first one.
@@ -22,7 +22,7 @@ outputs! {
     pub struct ReadMotionStateOutputs {
         /// Valid.
         valid: bool = Valid,
-        /// Busy: as Valid.
+        /// Busy: same as Valid.
         busy: bool = Busy,
         /// Error: the block cannot fail.
         error: bool = Error,
@@ -41,7 +41,7 @@ outputs! {
     }
 }
 
-/// A part of a limit that is rounding.
+/// Part of a limit that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl FunctionBlock for ReadMotionState {

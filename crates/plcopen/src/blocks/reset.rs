@@ -1,4 +1,4 @@
-//! `MC_Reset`: out of ErrorStop.
+//! `MC_Reset`: leaves ErrorStop.
 use super::execution::{Execution, Report};
 use super::outputs::{DoneOutputs, FunctionBlock};
 use crate::axis::Axis;
@@ -7,7 +7,7 @@ use crate::error::BlockError;
 use crate::interface::inputs;
 use servobench_base::Stateful;
 
-/// Takes the error of the axis away, once its cause is gone and the axis at rest.
+/// Clears the error of the axis, once its cause is gone and the axis at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Reset {
     execution: Execution,

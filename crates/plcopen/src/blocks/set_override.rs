@@ -1,4 +1,4 @@
-//! `MC_SetOverride`: slower.
+//! `MC_SetOverride`: scales the dynamics of commands.
 use super::outputs::FunctionBlock;
 use crate::axis::{Axis, Override};
 use crate::blocks::{BlockName, Input};
@@ -6,10 +6,10 @@ use crate::error::{BlockError, ErrorId};
 use crate::interface::{inputs, or, outputs};
 use servobench_base::Stateful;
 
-/// Scales velocity, acceleration and jerk of all commands but MC_Stop and MC_Halt while Enable is TRUE; the factors stay when it
-/// falls. A command that runs is planned anew from where it is, so that nothing jumps.
+/// Scales velocity, acceleration and jerk of all commands but MC_Stop and MC_Halt while Enable is TRUE; the factors stay when it falls. An
+/// active command is replanned from the present set-point, so that nothing jumps.
 ///
-/// A lower acceleration or jerk needs a longer way to brake: set near a target, the axis passes it and comes back.
+/// A lower acceleration or jerk needs a longer braking distance: set near a target, the axis passes it and comes back.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct SetOverride {
     error: Option<BlockError>,
@@ -39,7 +39,7 @@ outputs! {
     pub struct SetOverrideOutputs {
         /// Enabled: the factors act.
         enabled: bool = Enabled,
-        /// Busy: it goes on, also after an error.
+        /// Busy: the block continues, also after an error.
         busy: bool = Busy,
         /// Error.
         error: bool = Error,
@@ -48,7 +48,7 @@ outputs! {
     }
 }
 
-/// A smaller factor other than 0 was meant to be something else.
+/// Smallest plausible factor other than 0.
 const SMALLEST: f64 = 1e-6;
 
 impl SetOverride {

@@ -1,4 +1,4 @@
-//! `MC_SetPosition`: what the program sees as the position.
+//! `MC_SetPosition`: sets the position that the program sees.
 use super::execution::Execution;
 use super::outputs::{DoneOutputs, FunctionBlock};
 use crate::axis::Axis;
@@ -7,8 +7,8 @@ use crate::error::BlockError;
 use crate::interface::{flag, inputs, required};
 use servobench_base::Stateful;
 
-/// Shifts what the program sees as position, actual and commanded alike, without a motion; commands that run go on to where they
-/// lead. Refused in Homing, which sets the position itself. ExecutionMode is left out: it is always immediately.
+/// Shifts the position that the program sees, actual and commanded alike, without a motion; active commands continue to their targets.
+/// Refused in Homing, which sets the position itself. ExecutionMode is left out: it is always immediately.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct SetPosition {
     execution: Execution,
@@ -18,7 +18,7 @@ inputs! {
     /// Inputs of [`SetPosition`].
     #[derive(Default)]
     pub struct SetPositionInputs on execute {
-        /// Position (m or rad): the actual one from now on; with Relative, what is added to it.
+        /// Position (m or rad): the actual one from now on; with Relative, the shift.
         position: f64 = required(Input::Position),
         /// Relative.
         relative: bool = flag(Input::Relative, false),

@@ -6,11 +6,11 @@ use crate::command::{BufferMode, Command, Direction, Dynamics, Goal, Obstacle};
 use crate::interface::{buffer_mode, direction, inputs, like, limit, limit_if_any, optional, or, required};
 use servobench_motion::Limits;
 
-/// Against an obstacle, which blocks the axis: at it the position is the given one. A step of homing, which leaves the axis there
+/// Moves against an obstacle that blocks the axis, where the position is set to the given one. A homing step, which leaves the axis there
 /// and in Homing; `MC_FinishHoming` ends that.
 pub type StepBlock = MotionBlock<StepBlockInputs>;
 
-/// Of TorqueLimit, where there is no TorqueTolerance.
+/// Default TorqueTolerance, as a part of TorqueLimit.
 const TOLERANCE: f64 = 0.05;
 
 inputs! {
@@ -30,9 +30,9 @@ inputs! {
         direction: Direction = direction(Direction::Positive),
         /// SetPosition: the position of the axis at the obstacle (m or rad).
         position: f64 = or(Input::Position, 0.0),
-        /// DetectionVelocityLimit (m/s or rad/s): the axis is slower at an obstacle,
+        /// DetectionVelocityLimit (m/s or rad/s): velocity below which the axis is held by an obstacle.
         detection_velocity_limit: f64 = required(Input::DetectionVelocityLimit),
-        /// DetectionVelocityTime (s): for so long.
+        /// DetectionVelocityTime (s): duration for which the velocity must be that low.
         detection_velocity_time: f64 = required(Input::DetectionVelocityTime),
         /// TorqueLimit (N·m or N).
         torque_limit: f64 = required(Input::TorqueLimit),
@@ -48,8 +48,8 @@ inputs! {
 }
 
 impl StepBlockInputs {
-    /// Upwards with at most `torque` (N·m or N) and a tenth of the velocity of `limits`, until the axis has been slower than a tenth of
-    /// that for 50 ms; not executed.
+    /// Inputs of a search upwards with at most `torque` (N·m or N) and a tenth of the velocity of `limits`, until the axis has been slower
+    /// than a tenth of that for 50 ms; not executed.
     #[must_use]
     pub fn pushing(torque: f64, limits: &Limits) -> Self {
         let velocity = 0.1 * limits.velocity;

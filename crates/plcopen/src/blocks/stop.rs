@@ -1,4 +1,4 @@
-//! `MC_Halt` and `MC_Stop`: to rest.
+//! `MC_Halt` and `MC_Stop`: brake to rest.
 use super::execution::{Execution, Report};
 use super::motion::{MotionBlock, MotionInputs};
 use super::outputs::{FunctionBlock, MotionOutputs};
@@ -11,7 +11,7 @@ use crate::ledger::CommandId;
 use servobench_base::Stateful;
 use servobench_motion::Limits;
 
-/// To rest; another command may take the axis on the way.
+/// Brakes to rest; another command may take over meanwhile.
 pub type Halt = MotionBlock<HaltInputs>;
 
 inputs! {
@@ -29,7 +29,7 @@ inputs! {
 }
 
 impl HaltInputs {
-    /// As fast as `limits` allow, not executed.
+    /// Inputs of braking as fast as `limits` allow, not executed.
     #[must_use]
     pub fn within(limits: &Limits) -> Self {
         let StopInputs { execute, deceleration, jerk, snap } = StopInputs::within(limits);
@@ -52,7 +52,7 @@ impl MotionInputs for HaltInputs {
     }
 }
 
-/// To rest; the axis takes no other command until Execute is FALSE and it stands still.
+/// Brakes to rest; the axis takes no other command until Execute is FALSE and it stands still.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Stop {
     execution: Execution,
@@ -73,7 +73,7 @@ inputs! {
 }
 
 impl StopInputs {
-    /// As fast as `limits` allow, not executed.
+    /// Inputs of braking as fast as `limits` allow, not executed.
     #[must_use]
     pub fn within(limits: &Limits) -> Self {
         Self {
@@ -91,7 +91,7 @@ outputs! {
     pub struct StopOutputs {
         /// Done: the axis stands still.
         done: bool = Done,
-        /// Busy: it brakes.
+        /// Busy: the axis brakes.
         busy: bool = Busy,
         /// CommandAborted: the power was taken away.
         command_aborted: bool = CommandAborted,

@@ -1,8 +1,8 @@
-//! `MC_VelocityProfile` and `MC_AccelerationProfile`: along a table of velocities or accelerations.
+//! `MC_VelocityProfile` and `MC_AccelerationProfile`: motion along a table of velocities or accelerations.
 //!
-//! The velocity goes in straight lines from that of the axis to those of the pairs; the acceleration likewise, so that the velocity
-//! is made of parabolas. Behind the last pair the velocity is kept and the acceleration zero (PLCopen part 1, version 2.0,
-//! sections 3.15 and 3.16), and the axis stays in Continuous Motion.
+//! The velocity is linear from that of the axis to those of the pairs; so is the acceleration, whose velocity consists of parabolas. Behind
+//! the last pair the velocity is kept and the acceleration zero (PLCopen part 1, version 2.0, sections 3.15 and 3.16), and the axis stays
+//! in Continuous Motion.
 use super::outputs::FunctionBlock;
 use super::profile::{
     Beyond, Call, Course, Leading, Memory, Names, Pair, ROUNDING, Scales, TIME_SCALE, VALUE_SCALE, check_room, pairs,
@@ -17,14 +17,14 @@ use crate::interface::{
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Limits;
 
-/// Along a table of velocities, which it keeps in the memory `M`.
+/// Moves along a table of velocities, which it keeps in the memory `M`.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct VelocityProfile<M> {
     leading: Leading,
     sequence: Sequence<M>,
 }
 
-/// Along a table of accelerations, which it keeps in the memory `M`.
+/// Moves along a table of accelerations, which it keeps in the memory `M`.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 pub struct AccelerationProfile<M> {
     leading: Leading,
@@ -32,7 +32,7 @@ pub struct AccelerationProfile<M> {
 }
 
 impl<M: Memory<Pair>> VelocityProfile<M> {
-    /// With the memory for a table of as many pairs as `pairs` holds.
+    /// A block with memory for a table of as many pairs as `pairs` holds.
     #[must_use]
     pub fn new(pairs: M) -> Self {
         Self { leading: Leading::default(), sequence: Sequence::new(pairs, Quantity::Velocity) }
@@ -40,7 +40,7 @@ impl<M: Memory<Pair>> VelocityProfile<M> {
 }
 
 impl<M: Memory<Pair>> AccelerationProfile<M> {
-    /// With the memory for a table of as many pairs as `pairs` holds.
+    /// A block with memory for a table of as many pairs as `pairs` holds.
     #[must_use]
     pub fn new(pairs: M) -> Self {
         Self { leading: Leading::default(), sequence: Sequence::new(pairs, Quantity::Acceleration) }
@@ -82,7 +82,7 @@ pub struct AccelerationProfileInputs<'a> {
 }
 
 impl<'a> VelocityProfileInputs<'a> {
-    /// Along `time_velocity` as it is, not executed.
+    /// Inputs for `time_velocity`, unscaled, not executed.
     #[must_use]
     pub fn along(time_velocity: &'a [Pair]) -> Self {
         let Scales { time: time_scale, value: velocity_scale, offset } = Scales::NONE;
@@ -92,7 +92,7 @@ impl<'a> VelocityProfileInputs<'a> {
 }
 
 impl<'a> AccelerationProfileInputs<'a> {
-    /// Along `time_acceleration` as it is, not executed.
+    /// Inputs for `time_acceleration`, unscaled, not executed.
     #[must_use]
     pub fn along(time_acceleration: &'a [Pair]) -> Self {
         let Scales { time: time_scale, value: acceleration_scale, offset } = Scales::NONE;
@@ -143,7 +143,7 @@ impl VelocityProfileInputs<'_> {
         Scales { time: self.time_scale, value: self.velocity_scale, offset: self.offset }
     }
 
-    /// The pairs as the scales and the offset make them.
+    /// Pairs after scaling and offset.
     pub fn scaled(&self) -> impl Iterator<Item = Pair> {
         let scales = self.scales();
         self.time_velocity.iter().map(move |pair| scales.of(pair))
@@ -155,7 +155,7 @@ impl AccelerationProfileInputs<'_> {
         Scales { time: self.time_scale, value: self.acceleration_scale, offset: self.offset }
     }
 
-    /// The pairs as the scales and the offset make them.
+    /// Pairs after scaling and offset.
     pub fn scaled(&self) -> impl Iterator<Item = Pair> {
         let scales = self.scales();
         self.time_acceleration.iter().map(move |pair| scales.of(pair))
@@ -222,17 +222,17 @@ impl<M: Memory<Pair>> FunctionBlock for AccelerationProfile<M> {
     }
 }
 
-/// What the values of a table are.
+/// Quantity in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 enum Quantity {
     Velocity,
     Acceleration,
 }
 
-/// A table on its way.
+/// A table being followed.
 #[derive(Debug, Clone, PartialEq, Stateful)]
 struct Sequence<M> {
-    /// The pairs after scaling are the first `count`.
+    /// Memory, whose first `count` elements are the pairs after scaling.
     memory: M,
     count: usize,
     quantity: Quantity,
@@ -240,7 +240,7 @@ struct Sequence<M> {
     place: Place,
 }
 
-/// The pair to which the way leads now, and where and when it began.
+/// Next pair, with the state and time at the beginning of the stretch to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Place {
     next: usize,
@@ -248,7 +248,7 @@ struct Place {
     began: f64,
 }
 
-/// What holds from a place on, and where it leads.
+/// Motion from a place on, and its end.
 struct Stretch {
     from: Setpoint,
     length: f64,
@@ -260,7 +260,7 @@ impl<M: Memory<Pair>> Sequence<M> {
         Self { memory, count: 0, quantity, duration: 0.0, place: Place::default() }
     }
 
-    /// Takes the table over.
+    /// Loads the table.
     fn load(&mut self, pairs: &[Pair], scales: &Scales) {
         self.count = pairs.len();
         for (own, pair) in self.memory.as_mut().iter_mut().zip(pairs) {
@@ -272,7 +272,7 @@ impl<M: Memory<Pair>> Sequence<M> {
         &self.memory.as_ref()[..self.count]
     }
 
-    /// The stretch from `place` on; `None` behind the last pair.
+    /// Stretch from `place` on; `None` behind the last pair.
     fn stretch(&self, place: &Place) -> Option<Stretch> {
         let Place { next, anchor, began } = *place;
         let Pair { delta_time: length, value } = *self.pairs().get(next)?;
@@ -304,7 +304,7 @@ impl<M: Memory<Pair>> Course for Sequence<M> {
             }
             self.place = end;
         }
-        // Behind the last pair, at its velocity.
+        // Behind the last pair the velocity is kept.
         Setpoint { a: 0.0, j: 0.0, ..self.place.anchor }.after(t - self.place.began)
     }
 
@@ -315,7 +315,7 @@ impl<M: Memory<Pair>> Course for Sequence<M> {
     fn beyond(&self, limits: &Limits) -> Option<Beyond> {
         let mut ahead = self.place;
         while let Some(Stretch { from, length, end }) = self.stretch(&ahead) {
-            // A jump of velocity is one that no acceleration makes.
+            // No acceleration produces a jump of velocity.
             let jump = Setpoint { a: f64::INFINITY, ..from };
             let gap = (end.anchor.v - from.v).abs();
             let is_jump = length == 0.0 && gap > ROUNDING * limits.velocity;

@@ -1,20 +1,20 @@
-//! `MC_TorqueControl`: to an effort.
+//! `MC_TorqueControl`: applies an effort.
 use super::motion::{MotionBlock, MotionInputs};
 use crate::blocks::{BlockName, Input};
 use crate::command::{BufferMode, Command, Direction, Dynamics, Goal};
 use crate::interface::{buffer_mode, command_outputs, direction, flag, inputs, limit, or, required};
 use servobench_motion::Limits;
 
-/// To an effort, which is kept; the axis moves as its load lets it.
+/// Applies an effort and keeps it; the load determines the motion.
 pub type TorqueControl = MotionBlock<TorqueControlInputs>;
 
 inputs! {
     /// Inputs of [`TorqueControl`].
     ///
-    /// The drive is given the effort alone, so that the axis only watches Velocity: one that runs faster fails. Acceleration,
-    /// Deceleration and Jerk, which would limit the motion, are left out for that reason.
+    /// The drive receives the effort alone, so the axis only monitors Velocity: one that runs faster fails. Acceleration, Deceleration and
+    /// Jerk, which would limit the motion, are therefore left out.
     pub struct TorqueControlInputs on execute {
-        /// Torque (N·m or N); a sign counts in the direction.
+        /// Torque (N·m or N), with a sign relative to the direction.
         torque: f64 = required(Input::Torque),
         /// TorqueRamp (N·m/s or N/s); infinite for a step.
         torque_ramp: f64 = or(Input::TorqueRamp, f64::INFINITY),
@@ -30,7 +30,7 @@ inputs! {
 }
 
 impl TorqueControlInputs {
-    /// No effort, at once, at any velocity that `limits` allow, not executed.
+    /// Inputs of zero effort, without a ramp, at any velocity that `limits` allow, not executed.
     #[must_use]
     pub fn within(limits: &Limits) -> Self {
         Self {

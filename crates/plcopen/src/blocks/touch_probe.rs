@@ -1,6 +1,6 @@
-//! `MC_TouchProbe`, `MC_AbortTrigger`: where the axis is when a trigger comes.
+//! `MC_TouchProbe`, `MC_AbortTrigger`: position of the axis at a trigger.
 //!
-//! The drive latches the position (60B8h to 60BBh) and the link hands it on. It has one probe: another MC_TouchProbe takes it over.
+//! The drive latches the position (60B8h to 60BBh) and the link passes it on. It has one probe: another MC_TouchProbe takes it over.
 use super::execution::Execution;
 use super::outputs::{DoneOutputs, FunctionBlock, MotionOutputs};
 use crate::axis::{Axis, Probed};
@@ -12,18 +12,17 @@ use servobench_fieldbus::ProbeTrigger;
 
 /// Records the position at the first trigger.
 ///
-/// A trigger outside the window does not count: the drive is asked for the next one, and one that comes on the way there and back is
-/// missed.
+/// A trigger outside the window does not count: the block requests the next one, and misses one that comes before the drive is armed again.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct TouchProbe {
     execution: Execution,
-    /// Number of what the drive is asked for, while it is.
+    /// Number of the request to the drive, while it is active.
     number: Option<u32>,
     latched: Option<TouchProbeInputs>,
     recorded: f64,
 }
 
-/// Ends what an MC_TouchProbe waits for.
+/// Aborts a waiting MC_TouchProbe.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct AbortTrigger {
     execution: Execution,
@@ -34,9 +33,9 @@ inputs! {
     pub struct TouchProbeInputs on execute {
         /// TriggerInput.
         trigger: ProbeTrigger = required(Input::TriggerInput),
-        /// FirstPosition (m or rad); `None` without a beginning of the window.
+        /// FirstPosition (m or rad); `None` for a window without a beginning.
         first_position: Option<f64> = optional(Input::FirstPosition),
-        /// LastPosition (m or rad); `None` without an end of the window.
+        /// LastPosition (m or rad); `None` for a window without an end.
         last_position: Option<f64> = optional(Input::LastPosition),
     }
 }
@@ -53,7 +52,7 @@ outputs! {
     pub struct TouchProbeOutputs {
         /// Done: the position is recorded.
         done: bool = Done,
-        /// Busy: the trigger is waited for.
+        /// Busy: the block waits for the trigger.
         busy: bool = Busy,
         /// CommandAborted: by MC_AbortTrigger, or another MC_TouchProbe.
         command_aborted: bool = CommandAborted,
@@ -61,13 +60,13 @@ outputs! {
         error: bool = Error,
         /// ErrorID.
         error_id: ErrorId = ErrorId,
-        /// RecordedPosition (m or rad); that of the last trigger.
+        /// RecordedPosition (m or rad) of the last trigger.
         recorded_position: f64 = RecordedPosition,
     }
 }
 
 impl TouchProbeInputs {
-    /// Whether the window is one of an axis that comes round again or has ends.
+    /// Checks the window for an axis with the period `modulo`, or with ends.
     fn check(&self, modulo: Option<f64>) -> Result<(), BlockError> {
         let window = [("FirstPosition", self.first_position), ("LastPosition", self.last_position)];
         for (input, value) in window.into_iter().filter_map(|(input, value)| Some((input, value?))) {

@@ -1,25 +1,25 @@
-//! When something happens in a program.
+//! Conditions in a program.
 use crate::blocks::Output;
 use alloc::vec::Vec;
 use servobench_base::Stateful;
 
-/// How far after its time a cycle may be by rounding (s).
+/// Tolerance of a time for rounding (s).
 const ROUNDING: f64 = 1e-9;
 
-/// When something happens: in the first cycle in which it holds.
+/// Condition of an event, which happens in the first cycle in which it holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
     /// In the first cycle of the run; of an update: of the execution.
     AtOnce,
     /// At a time of the run (s).
     At(f64),
-    /// So long after an output has become TRUE.
+    /// After an output has become TRUE, with a delay.
     After {
-        /// Index of the call whose output it is.
+        /// Index of the call that has the output.
         call: usize,
-        /// Which output.
+        /// Output.
         output: Output,
-        /// How long after (s).
+        /// Delay (s).
         delay: f64,
     },
     /// The actual position passes this one upwards, or is above it already.
@@ -28,19 +28,19 @@ pub enum Condition {
     Below(f64),
 }
 
-/// What conditions are about, in a cycle.
+/// State of a cycle on which conditions depend.
 #[derive(Debug, Clone, Stateful)]
 pub(super) struct Situation {
     /// Time (s).
     pub(super) t: f64,
     /// Actual position.
     pub(super) position: f64,
-    /// Of each call, when each of its outputs first became TRUE (s).
+    /// For each call, the times at which its outputs first became TRUE (s).
     pub(super) rises: Vec<Vec<(Output, Option<f64>)>>,
 }
 
 impl Situation {
-    /// Whether a condition holds; `begun` is when the execution began that an update or a stop belongs to.
+    /// True if a condition holds; `begun` is the beginning of the execution to which an update or a stop belongs (s).
     pub(super) fn holds(&self, condition: Condition, begun: f64) -> bool {
         match condition {
             Condition::AtOnce => self.t >= begun,
@@ -54,7 +54,7 @@ impl Situation {
         }
     }
 
-    /// When `output` of `call` first became TRUE (s).
+    /// Time at which `output` of `call` first became TRUE (s).
     pub(super) fn risen(&self, call: usize, output: Output) -> Option<f64> {
         self.rises.get(call)?.iter().find(|(own, _)| *own == output)?.1
     }

@@ -1,4 +1,4 @@
-//! A program in a run.
+//! Execution of a program.
 use super::Call;
 use super::condition::Situation;
 use super::motion_tracker::Motion;
@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use servobench_base::{Coordinate, ParamError, Setpoint, Stateful};
 use servobench_fieldbus::{AxisCommand, AxisFeedback};
 
-/// Hears what happens in a program; calls and outputs are named by their indices.
+/// Receives the events of a program; calls and outputs are given by index.
 pub trait Listener {
     /// From `t` (s) on Execute or Enable of `call` is `trigger`.
     fn on_trigger(&mut self, t: f64, call: usize, trigger: bool);
@@ -36,7 +36,7 @@ pub struct Executor {
 }
 
 impl Executor {
-    /// The program `calls` on an axis that is disabled; `motion` says what its positions are, for messages.
+    /// The program `calls` on a disabled axis; `motion` provides the unit of its positions, for messages.
     ///
     /// # Errors
     /// [`ParamError`] names the first parameter of the axis outside its bound.
@@ -57,10 +57,10 @@ impl Executor {
         &self.axis
     }
 
-    /// One cycle at `t` (s).
+    /// Executes one cycle at `t` (s).
     ///
     /// # Errors
-    /// [`Overdue`] when a call was waited for for too long.
+    /// [`Overdue`] if a call has waited longer than its timeout.
     pub fn cycle(
         &mut self,
         t: f64,
@@ -75,14 +75,14 @@ impl Executor {
         Ok(self.axis.end())
     }
 
-    /// Follows the motions of a cycle, in which the axis is commanded to be at `commanded`.
+    /// Tracks the motions in a cycle with the set-point `commanded`.
     pub fn follow_motions(&mut self, t: f64, commanded: Setpoint) {
         for call in &mut self.calls {
             call.follow_motion(t, commanded, &mut self.motions);
         }
     }
 
-    /// Ends the motions at `t` (s), and returns all of them by when they began.
+    /// Ends the motions at `t` (s), and returns all of them by start time.
     pub fn end_motions(&mut self, t: f64, commanded: Setpoint) -> Vec<Motion> {
         for call in &mut self.calls {
             call.end_motion(t, commanded, &mut self.motions);
@@ -91,11 +91,11 @@ impl Executor {
         core::mem::take(&mut self.motions)
     }
 
-    /// What became of each call so far, and whether the run may do without it.
+    /// Result of each call so far, and true if the run may succeed without it.
     #[must_use]
     pub fn fates(&self) -> Vec<(Fate, bool)> {
         let mut idle: Vec<bool> = vec![false; self.calls.len()];
-        // A call that waits on an idle one is idle too, and may stand before it: there are at most as many links as calls.
+        // A call that waits for an idle one is idle too, and may stand before it: there are at most as many links as calls.
         for _ in 0..self.calls.len() {
             idle = self.calls.iter().map(|call| call.is_idle() && call.may_be_left_out(&idle)).collect();
         }

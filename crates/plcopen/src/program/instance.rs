@@ -1,4 +1,4 @@
-//! Blocks of a program: whatever their inputs and outputs are, it executes them and reads numbers.
+//! Type-erased blocks of a program: an instance is executed with the inputs of its call and returns its outputs as numbers.
 use super::Inputs;
 use crate::axis::Axis;
 use crate::blocks::{FunctionBlock, Outputs as _};
@@ -11,9 +11,9 @@ use servobench_base::state::{Damaged, Reader, Writer};
 
 /// An instance of a block.
 pub(crate) trait Instance: fmt::Debug + Stateful + Send + Sync {
-    /// One call with these inputs and Execute or Enable as `trigger`; fills `values` with the outputs, TRUE is 1.
+    /// Handles one call with these inputs and Execute or Enable as `trigger`; fills `values` with the outputs, TRUE is 1.
     fn step(&mut self, axis: &mut Axis, inputs: &Inputs, trigger: bool, values: &mut [f64]);
-    /// What its error is.
+    /// Error of the block.
     fn error(&self) -> Option<&BlockError>;
 }
 
@@ -27,9 +27,9 @@ impl Stateful for Box<dyn Instance> {
     }
 }
 
-/// A block that a program can make.
+/// A block that a program can instantiate.
 pub(crate) trait New: FunctionBlock {
-    /// A new one, with room for the table that `inputs` have.
+    /// A new instance, with room for the table of `inputs`.
     fn new_for(inputs: &Inputs) -> Self;
 }
 

@@ -1,26 +1,26 @@
-//! The motions that blocks have the axis make.
+//! Motions of the axis commanded by blocks.
 use servobench_base::{Ending, Setpoint, Stateful};
 
-/// A motion that a block had the axis make.
+/// A motion of the axis commanded by a block.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Motion {
-    /// Index of its call.
+    /// Index of the call.
     pub call: usize,
-    /// When it began (s).
+    /// Start time (s).
     pub start: f64,
-    /// When it ended (s).
+    /// End time (s).
     pub end: f64,
-    /// Where it began.
+    /// Start position.
     pub from: f64,
-    /// Where it ended.
+    /// End position.
     pub to: f64,
-    /// Largest |velocity|, |acceleration|, |jerk|, |snap| of its set-points.
+    /// Largest |velocity|, |acceleration|, |jerk|, |snap| of the set-points.
     pub peaks: [f64; 4],
-    /// How it ended.
+    /// End of the motion: aborted, at rest or in motion.
     pub ending: Ending,
 }
 
-/// A motion that is being made.
+/// A motion in progress.
 #[derive(Debug, Clone, Copy, Stateful)]
 pub(super) struct MotionTracker {
     start: f64,
@@ -29,21 +29,21 @@ pub(super) struct MotionTracker {
 }
 
 impl MotionTracker {
-    /// Begins at `t` (s) from where the axis is commanded to be.
+    /// Begins at `t` (s) from the commanded position.
     pub(super) fn begin(t: f64, commanded: Setpoint) -> Self {
         let mut tracker = Self { start: t, from: commanded.x, peaks: [0.0; 4] };
         tracker.follow(commanded);
         tracker
     }
 
-    /// Goes on by a cycle.
+    /// Tracks the set-point of a cycle.
     pub(super) fn follow(&mut self, Setpoint { v, a, j, s, .. }: Setpoint) {
         for (peak, value) in self.peaks.iter_mut().zip([v, a, j, s]) {
             *peak = peak.max(value.abs());
         }
     }
 
-    /// Ends at `t` (s); `None` where nothing moved.
+    /// Ends at `t` (s); `None` if nothing moved.
     pub(super) fn end(self, call: usize, t: f64, commanded: Setpoint, ending: Ending) -> Option<Motion> {
         let Self { start, from, peaks } = self;
         let is_motion = peaks[0] > 0.0 && t > start;

@@ -1,4 +1,4 @@
-//! A call in a run: when it is executed, and what became of it.
+//! A call in a run: its execution and its result.
 use super::condition::{Condition, Situation};
 use super::executor::Listener;
 use super::instance::Instance;
@@ -14,7 +14,7 @@ use alloc::{format, vec};
 use servobench_base::{Ending, Setpoint, Stateful};
 use thiserror::Error;
 
-/// The outputs that say that a block came to what it is for; of a block that has several, the first of these.
+/// Outputs that report success of a block; of several outputs of a block, the first one counts.
 const AIMS: [Output; 9] = [
     Output::Done,
     Output::ProcessComplete,
@@ -27,38 +27,38 @@ const AIMS: [Output; 9] = [
     Output::Valid,
 ];
 
-/// The outputs that say that a block controls the axis, that something is wrong with it, and that its command has ended.
+/// Outputs that report that a block controls the axis, that it has an error, and that its command has ended.
 const ACTIVE: [Output; 2] = [Output::Active, Output::MoveActive];
 const WRONG: [Output; 2] = [Output::Error, Output::MoveFailed];
 const ENDED: [Output; 2] = [Output::Done, Output::ProcessComplete];
 
-/// What became of a call.
+/// Result of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fate {
-    /// It came to what it is for, or another command took the axis.
+    /// The call reported success, or another command took the axis.
     Executed,
-    /// It ended in Error.
+    /// The call ended in Error.
     Failed {
-        /// When (s).
+        /// Time (s).
         time: f64,
         /// ErrorID.
         id: u16,
-        /// The error in words.
+        /// Error message.
         message: String,
     },
-    /// Its `start` did not come: what it waited for.
+    /// The `start` of the call never held: the condition, in words.
     NeverExecuted(String),
-    /// The output that says that it came to what it is for did not become TRUE.
+    /// This output, which reports success, did not become TRUE.
     Unfinished(Output),
 }
 
-/// A call was waited for for too long.
+/// A call waited longer than its timeout.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{waiting} within {timeout} s")]
 pub struct Overdue {
-    /// Which call, and for what it waits.
+    /// The call and its condition, in words.
     pub waiting: String,
-    /// How long it was waited for (s).
+    /// Timeout (s).
     pub timeout: f64,
 }
 
@@ -66,7 +66,7 @@ pub struct Overdue {
 #[expect(clippy::struct_excessive_bools, reason = "each is a state that a cycle asks for, and they are independent")]
 #[derive(Debug, Stateful)]
 pub(super) struct RunningCall {
-    /// Where it stands in the program.
+    /// Index in the program.
     #[state(constant)]
     index: usize,
     #[state(constant)]
@@ -83,26 +83,26 @@ pub(super) struct RunningCall {
     stop: Option<Condition>,
     #[state(constant)]
     timeout: f64,
-    /// Inputs of the first execution, and what they become.
+    /// Inputs of the first execution, and their updates.
     #[state(constant)]
     inputs: Inputs,
     #[state(constant)]
     updates: Vec<Update>,
     /// Updates so far.
     updated: usize,
-    /// When Execute or Enable became TRUE.
+    /// Time at which Execute or Enable became TRUE (s).
     started: Option<f64>,
     #[state(constant)]
     is_optional: bool,
-    /// When it first ended in Error (s), ErrorID, and the error in words.
+    /// Time at which the call first ended in Error (s), ErrorID, and the error message.
     error: Option<(f64, u16, String)>,
-    /// Whether Execute or Enable became FALSE again.
+    /// True if Execute or Enable became FALSE again.
     is_over: bool,
     trigger: bool,
-    /// What was told of Execute or Enable last.
+    /// Last reported Execute or Enable.
     told: Option<bool>,
     has_ended: bool,
-    /// Outputs in this cycle, and as they were told last.
+    /// Outputs in this cycle, and as last reported.
     values: Vec<f64>,
     told_values: Vec<f64>,
     motion: Option<MotionTracker>,
@@ -136,10 +136,10 @@ impl RunningCall {
         }
     }
 
-    /// One cycle.
+    /// Executes one cycle.
     ///
     /// # Errors
-    /// [`Overdue`] when `start` was waited for for too long.
+    /// [`Overdue`] if `start` has not held within the timeout.
     pub(super) fn cycle(
         &mut self,
         situation: &mut Situation,
@@ -165,7 +165,7 @@ impl RunningCall {
         Ok(())
     }
 
-    /// Execute or Enable in this cycle.
+    /// Updates Execute or Enable and the inputs for this cycle.
     fn decide(&mut self, situation: &Situation) {
         match self.started {
             None => {
@@ -190,7 +190,7 @@ impl RunningCall {
         }
     }
 
-    /// Tells of an output where it changed.
+    /// Reports an output that has changed.
     fn tell(&mut self, place: usize, output: Output, situation: &mut Situation, listener: &mut impl Listener) {
         let t = situation.t;
         let value = self.values[place];
@@ -219,12 +219,12 @@ impl RunningCall {
         }
     }
 
-    /// Whether `output` is TRUE.
+    /// True if `output` is TRUE.
     fn is(&self, output: Output) -> bool {
         self.block.outputs().iter().zip(&self.values).any(|(own, value)| *own == output && *value > 0.0)
     }
 
-    /// Follows the motion that the block has the axis make.
+    /// Tracks the motion that the block commands.
     pub(super) fn follow_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
         // An effort leaves the motion to the load.
         let moves = self.block.is_command() && self.block != BlockName::TorqueControl;
@@ -239,7 +239,7 @@ impl RunningCall {
 
     pub(super) fn end_motion(&mut self, t: f64, commanded: Setpoint, motions: &mut Vec<Motion>) {
         if let Some(motion) = self.motion.take() {
-            // A motion that ends as commanded ends in Done, and at rest: any other one is broken off, or goes on.
+            // A motion that ends as commanded ends in Done and at rest; any other is aborted, or continues.
             let is_aborted = self.is(Output::CommandAborted) || WRONG.into_iter().any(|output| self.is(output));
             let ending = match (is_aborted, commanded.v == 0.0) {
                 (true, _) => Ending::Aborted,
@@ -250,12 +250,12 @@ impl RunningCall {
         }
     }
 
-    /// Whether it was never executed.
+    /// True if the call was never executed.
     pub(super) const fn is_idle(&self) -> bool {
         self.started.is_none()
     }
 
-    /// Whether the run may do without it, beside what its program says: it waits on the failure of another call, or on one of
+    /// True if the run may succeed without this call: its program allows it, or it waits for the failure of another call, or for one of the
     /// `idle` ones, which are optional and were never executed.
     pub(super) fn may_be_left_out(&self, idle: &[bool]) -> bool {
         let waits_in_vain = match self.start {
@@ -266,12 +266,13 @@ impl RunningCall {
         self.is_optional || waits_in_vain
     }
 
-    /// Whether it need not come to anything: what waits in vain may; what is executed has to end well unless it is marked.
+    /// True if the call need not succeed: one that waits in vain may fail to start; an executed one has to succeed unless it is marked
+    /// optional.
     pub(super) fn is_optional(&self, idle: &[bool]) -> bool {
         self.is_optional || (self.is_idle() && self.may_be_left_out(idle))
     }
 
-    /// What became of it so far.
+    /// Result of the call so far.
     pub(super) fn fate(&self, situation: &Situation, names: &[String]) -> Fate {
         if let Some((time, id, message)) = self.error.clone() {
             return Fate::Failed { time, id, message };

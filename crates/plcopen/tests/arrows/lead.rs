@@ -1,4 +1,4 @@
-//! Into each state, and each block executed there.
+//! Leads an axis into each state and executes each block there.
 use crate::bench::{Bench, LIMITS};
 use servobench_fieldbus::Fault;
 use servobench_motion::pvt::Knot;
@@ -13,7 +13,7 @@ use servobench_plcopen::{
     VelocityProfileInputs,
 };
 
-/// An axis that a program has led to `state`; in motion where the state has one.
+/// An axis that a program has led to `state`, in motion if the state has one.
 pub(crate) fn led_to(state: AxisState) -> Bench {
     let mut bench = match state {
         AxisState::Disabled => Bench::disabled(Bench::params()),

@@ -179,7 +179,7 @@ fn arrow_8_is_the_done_of_a_table_of_positions() {
         let pairs = [Pair { delta_time: 0.5, value: 0.15 }, Pair { delta_time: 0.5, value: 0.3 }];
         run(&mut bench, &mut block, &along(&pairs, 0.0), DiscreteMotion);
         assert_eq!(bench.axis.state(), Standstill, "after {state}");
-        // What the acceleration of the axis makes of the first cycle.
+        // The distance of the first cycle, by the acceleration of the axis.
         assert!((bench.axis.commanded().x - start - 0.3).abs() < LIMITS.acceleration * CYCLE_TIME * CYCLE_TIME);
         assert_eq!(execute(&mut bench, BlockName::Home), Ok(()), "after {state}");
     }
@@ -207,7 +207,7 @@ fn along(pairs: &[Pair], end_velocity: f64) -> PositionProfileInputs<'_> {
     PositionProfileInputs { execute: true, time_position, end_velocity, ..PositionProfileInputs::along(pairs) }
 }
 
-/// Until Done, in `state` all the time.
+/// Runs until Done, in `state` all the time.
 fn run(
     bench: &mut Bench,
     block: &mut PositionProfile<[Knot; 3], [f64; 3]>,
@@ -251,7 +251,7 @@ fn every_absent_arrow_is_refused() {
     assert_eq!(refusals, 21 * 7 - 51);
 }
 
-/// While the drive looks for its reference nothing but MC_Stop and the power ends that.
+/// While the drive searches for its reference, only MC_Stop and power off end the search.
 #[test]
 fn arrow_16_is_taken_from_steps_of_homing_but_not_from_a_search_of_the_drive() {
     for cause in ARROWS[15].causes {

@@ -40,12 +40,12 @@ fn run(bench: &mut Bench, block: &mut AxisMove, inputs: &AxisMoveInputs) -> Vec<
     }
 }
 
-/// Ways to say jerks, of the acceleration and of the deceleration: value, part of the time, part of the axis's, time.
+/// Ways to give the jerks of acceleration and deceleration: value, part of the time, part of the axis's limit, time.
 type Said = [Option<f64>; 4];
 
-/// The printed examples and other ways to say jerk, over an absolute move, and back by an incremental one.
+/// The printed examples and other ways to give the jerk, in an absolute move, and back by an incremental one.
 ///
-/// Oracle: the generator of `servobench-motion`, whose tests hold it against the printed times and jerks.
+/// Oracle: the generator of `servobench-motion`, whose tests compare it with the printed times and jerks.
 #[test]
 fn the_axis_follows_the_move_of_the_operands() {
     let none: Said = [None; 4];
@@ -145,7 +145,7 @@ fn what_it_refuses_is_named() {
     assert!(told.contains("an axis without a limit of jerk"), "{told}");
 }
 
-/// It begins at Standstill only, and a command that takes the axis leaves neither PC nor ER.
+/// The block begins at Standstill only; a command that takes over the axis leaves neither PC nor ER.
 #[test]
 fn it_begins_at_standstill_and_can_be_aborted() {
     let (mut bench, mut block, mut other, mut halt) =

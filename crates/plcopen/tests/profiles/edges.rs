@@ -1,4 +1,4 @@
-//! Execute, aborts, waiting, and what is refused.
+//! Execute, aborts, buffered commands and refusals.
 use crate::bench::{Bench, LIMITS};
 use servobench_motion::pvt::Knot;
 use servobench_plcopen::{
@@ -48,7 +48,7 @@ fn another_command_takes_the_axis_without_a_jump() {
     bench.until(AxisState::Standstill);
 }
 
-/// It waits, and begins where the move before ends.
+/// A buffered profile begins where the previous move ends.
 #[test]
 fn a_profile_waits_for_the_move_before_it() {
     let (mut bench, mut go) = (Bench::standstill(), MoveAbsolute::default());
@@ -87,7 +87,7 @@ fn an_instance_that_has_the_axis_cannot_wait_for_itself() {
         // A second edge in cycle 50.
         let outputs = bench.cycle(|axis| block.step(axis, &VelocityProfileInputs { execute: k != 49, ..inputs }));
         assert_eq!(outputs.error, k >= 50, "{k}");
-        // What runs goes on to its end.
+        // The running profile continues to its end.
         assert_ne!(bench.axis.state(), AxisState::ErrorStop);
     }
     assert!(matches!(block.error(), Some(BlockError::BufferFull { held: 1, .. })));
@@ -106,7 +106,7 @@ fn a_profile_beyond_the_limits_is_refused_before_it_begins() {
         assert!(error.starts_with(&expected), "{error}");
         assert_eq!(bench.axis.state(), AxisState::Standstill);
     }
-    // Behind a move, where it is known when it begins: the axis stops with an error.
+    // After a move, the refusal comes when the profile begins: the axis stops with an error.
     let (mut bench, mut go, mut block) =
         (Bench::standstill(), MoveAbsolute::default(), VelocityProfile::new([Pair::default(); 4]));
     let inputs = MoveAbsoluteInputs { execute: true, position: 0.05, ..MoveAbsoluteInputs::within(&LIMITS) };
@@ -185,7 +185,7 @@ fn tables_and_scales_that_mean_nothing_are_refused_at_the_edge() {
     }
 }
 
-/// What is said to an edge, which leaves the axis where it is.
+/// Error message of an edge that leaves the axis where it is.
 fn refusal(block: impl FnOnce(&mut Axis, bool) -> Option<BlockError>) -> String {
     let mut bench = Bench::standstill();
     let error = bench.cycle(|axis| block(axis, true)).unwrap();

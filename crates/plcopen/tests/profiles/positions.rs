@@ -24,7 +24,7 @@ fn points(time_scale: f64, place: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     PAIRS.iter().map(point).collect()
 }
 
-/// Every position at its time; between two cycles no farther than the limits of the axis allow (the bench checks that).
+/// Every position is met at its time; from cycle to cycle the limits of the axis are kept (the bench checks that).
 #[test]
 fn each_position_is_met_at_its_time() {
     for follow in FOLLOWED {
@@ -71,7 +71,7 @@ fn each_position_is_met_at_its_time() {
     }
 }
 
-/// The profile takes the velocity of the axis over and ends with the one asked for: velocities never jump.
+/// The profile begins at the velocity of the axis and ends at the commanded one, without jumps of the velocity.
 #[test]
 fn it_begins_with_the_velocity_of_the_axis_and_ends_with_the_one_asked_for() {
     for follow in FOLLOWED {

@@ -8,7 +8,7 @@ use servobench_plcopen::{
     VelocityProfileInputs,
 };
 
-/// A profile keeps the limits of the axis, with jumps of the jerk, and so does what takes over from it.
+/// A profile, and a command that takes over from it, keep the limits of the axis but for jumps of the jerk.
 const STEEPEST: f64 = LIMITS.acceleration * (1.0 + 1e-9);
 const FASTEST: f64 = LIMITS.velocity * (1.0 + 1e-9);
 

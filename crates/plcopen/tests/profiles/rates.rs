@@ -82,7 +82,7 @@ fn accelerations_go_in_straight_lines_and_end_at_zero() {
     assert_eq!(bench.axis.state(), AxisState::ContinuousMotion);
 }
 
-/// A table whose first pair has no time says what the axis has to begin with.
+/// A first pair without time must match the initial velocity of the axis.
 #[test]
 fn a_first_pair_without_time_is_where_the_axis_must_be() {
     for (first, is_kept) in [(0.0, true), (0.5, false)] {

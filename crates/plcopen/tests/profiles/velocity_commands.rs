@@ -1,7 +1,7 @@
-//! Blocks on a drive in profile velocity, which the axis tells velocities.
+//! Blocks on a drive in profile velocity, to which the axis sends velocities.
 //!
-//! The oracle is the drive of the bench, which goes to each velocity in a straight line. It is a cycle behind the axis: a set-point is
-//! reached at the end of its cycle.
+//! The oracle is the drive of the bench, which goes to each velocity in a straight line. It is a cycle behind the axis: it reaches a
+//! set-point at the end of its cycle.
 use crate::bench::{Bench, CYCLE_TIME, LIMITS};
 use servobench_fieldbus::{ProfileCommand, Task};
 use servobench_motion::position_profile::{Clock, ClockedPlateaus, ClockedSpline, PlateauShare, Spline};
@@ -23,7 +23,7 @@ fn params(start: RampStart) -> AxisParams {
     AxisParams { velocity_ramps: Some(start), ..Bench::params() }
 }
 
-/// Where the profile begins, and the points.
+/// Start of the profile, and its points.
 fn knots() -> [Knot; 5] {
     let (mut t, mut knots) = (0.0, [Knot::new(0.0, 0.0); 5]);
     for (knot, pair) in knots[1..].iter_mut().zip(&PAIRS) {
@@ -33,7 +33,7 @@ fn knots() -> [Knot; 5] {
     knots
 }
 
-/// What is sent in a cycle, and where the drive is at its end.
+/// Command of a cycle, and the drive's position at its end.
 #[derive(Debug, Clone, Copy)]
 struct Sent {
     velocity: f64,
@@ -42,7 +42,7 @@ struct Sent {
     before: f64,
 }
 
-/// The profile from Execute to Done: what is sent in each cycle from the one after the edge on.
+/// Commands of a profile from Execute to Done, for each cycle from the one after the edge on.
 fn sent(follow: Follow, start: RampStart) -> (Vec<Sent>, Bench) {
     let mut bench = Bench::powered(params(start));
     let mut block = PositionProfile::new([Knot::default(); 5], [0.0; 5]);
@@ -63,7 +63,7 @@ fn sent(follow: Follow, start: RampStart) -> (Vec<Sent>, Bench) {
         };
         all.push(Sent { velocity, acceleration, position: bench.feedback.position, before });
         if outputs.done {
-            // In the cycle of the edge the axis is where it was.
+            // In the cycle of the edge the axis has not moved yet.
             assert_eq!((all[0].velocity, all[0].position), (0.0, 0.0));
             all.remove(0);
             return (all, bench);
@@ -71,7 +71,7 @@ fn sent(follow: Follow, start: RampStart) -> (Vec<Sent>, Bench) {
     }
 }
 
-/// Position of the drive `t` after the profile began, which is in the first cycle of `sent`.
+/// Position of the drive at the time `t` from the start of the profile, which is the first cycle of `sent`.
 fn place(sent: &[Sent], t: f64) -> f64 {
     let cycle = (0..sent.len()).rev().find(|cycle| *cycle as f64 * CYCLE_TIME <= t).unwrap_or(0);
     let (begin, from) = (cycle as f64 * CYCLE_TIME, if cycle == 0 { 0.0 } else { sent[cycle - 1].position });
@@ -80,7 +80,7 @@ fn place(sent: &[Sent], t: f64) -> f64 {
     from + part * (sent[cycle].before + 0.5 * part / length * (reached - sent[cycle].before))
 }
 
-/// Every position is met at its time, by one command for each ramp, at any share; a share is found within the limits of the axis.
+/// Every position is met at its time, by one command for each ramp, with any share; without one, a share within the axis limits is found.
 #[test]
 fn plateaus_meet_every_position_with_a_command_for_each_ramp() {
     let limits = PlateauShare::SmallestPartOf { velocity: LIMITS.velocity, acceleration: LIMITS.acceleration };
@@ -109,7 +109,7 @@ fn plateaus_meet_every_position_with_a_command_for_each_ramp() {
     }
 }
 
-/// The drive is off the spline by what is announced for one command in each cycle, or in every fifth.
+/// The drive is off the spline by the announced error, with a command in every cycle or in every fifth.
 #[test]
 fn along_the_spline_the_error_is_the_one_announced() {
     let rate = 1.0 / CYCLE_TIME;
@@ -138,7 +138,7 @@ fn along_the_spline_the_error_is_the_one_announced() {
     }
 }
 
-/// Any other motion is sent velocity by velocity: its own position is off by h²/12·(a(t) − a(0)) at most, and by less at its end.
+/// Any other motion is sent as a velocity per cycle: the position is off by h²/12·(a(t) − a(0)) at most, and by less at the end.
 #[test]
 fn a_move_is_sent_as_velocities_and_ends_on_its_target() {
     let mut bench = Bench::powered(params(RampStart::SetPoint));
@@ -148,7 +148,7 @@ fn a_move_is_sent_as_velocities_and_ends_on_its_target() {
     loop {
         let before = bench.axis.sent();
         let outputs = bench.cycle(|axis| block.step(axis, &inputs));
-        // At the end of a cycle the drive is at the set-point of it.
+        // At the end of a cycle the drive is at the set-point of the cycle.
         largest = largest.max((bench.feedback.position - bench.axis.sent().x).abs());
         assert!((bench.feedback.velocity - bench.axis.sent().v).abs() < 1e-12, "{before:?}");
         if outputs.done {
@@ -160,7 +160,7 @@ fn a_move_is_sent_as_velocities_and_ends_on_its_target() {
     assert!((bench.feedback.position - 0.3).abs() < 1e-9, "{}", bench.feedback.position);
 }
 
-/// What is on top of a profile, or takes over from it, is sent too: the drive has the velocity of the axis.
+/// The drive has the velocity of the axis also with a motion on top of a profile, and after one that aborts it.
 #[test]
 fn a_superimposed_motion_and_an_abort_leave_the_drive_with_the_velocity_of_the_axis() {
     let mut bench = Bench::powered(params(RampStart::SetPoint));
@@ -181,14 +181,14 @@ fn a_superimposed_motion_and_an_abort_leave_the_drive_with_the_velocity_of_the_a
             halt.step(axis, &HaltInputs { execute: k > 900, ..HaltInputs::within(&LIMITS) });
         });
         let (drive, axis) = (bench.feedback, bench.axis.sent());
-        // On a ramp that takes several cycles the drive is told its end.
+        // On a ramp of several cycles the drive gets the final velocity of the ramp.
         assert!((drive.velocity - axis.v).abs() < 1e-9, "{k}: {} {}", drive.velocity, axis.v);
         assert!((drive.position - axis.x).abs() < 1e-5, "{k}: {} {}", drive.position, axis.x);
     }
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 
-/// A drive that is behind by 10 % of a step catches up when the ramp begins at the velocity that it reports; otherwise it keeps the
+/// A drive that lags by 10 % of a step catches up when the ramp begins at the velocity that it reports; otherwise it keeps the
 /// acceleration of the set-point.
 #[test]
 fn a_ramp_from_the_actual_velocity_makes_up_for_what_the_drive_lacks() {

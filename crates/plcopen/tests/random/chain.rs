@@ -1,7 +1,7 @@
 //! The axis behind a link, a bus and a drive (CiA 402), which lags, faults, loses power and frames.
 //!
-//! A position that takes over from an effort, or from a ramp to switched off that is taken back, is not looked at for a while: the
-//! set-point begins where the axis was when the master read it, and jumps by what it has moved since.
+//! A position that takes over from an effort, or from an interrupted ramp to power off, is not checked for a while: the set-point begins
+//! at the position that the master has read, and jumps by the distance covered since.
 use super::chance::Chance;
 use super::{CYCLE_TIME, Follower, LIMITS};
 use servobench_base::{Rate, Setpoint, Tick};
@@ -21,15 +21,15 @@ const MOTION: u64 = 32;
 const BUS: u32 = 16;
 const DRIVE: u64 = 4;
 const PERIOD: f64 = DRIVE as f64 / RATE as f64;
-/// Cycles of the bus that a frame is on its way.
+/// Delay of a frame (cycles of the bus).
 const DELAY: u32 = 1;
-/// With which time constant the axis follows the demand (s).
+/// Time constant with which the axis follows the demand (s).
 const LAG: f64 = 7e-3;
-/// A count of the drive within a cycle of the bus, and as much again for the cubic between rounded targets (m/s).
+/// One count per cycle of the bus, and as much again for the cubic between rounded targets (m/s).
 const ROUNDING: f64 = 2.0 * 1e-6 * RATE as f64 / BUS as f64;
-/// How long after that the demand may jump (steps of the drive).
+/// Time after a takeover in which the demand may jump (steps of the drive).
 const TAKES_OVER: u32 = 80;
-/// Velocity that the link commands at most, and with it the drive demands.
+/// Highest velocity that the link commands, and therefore that the drive demands.
 const FASTEST: f64 = 1.1 * LIMITS.velocity;
 
 /// Link, bus, drive and axis.
@@ -42,9 +42,9 @@ pub(crate) struct Chain {
     drive: device::State,
     frame: Option<Commands>,
     axis: Setpoint,
-    /// The last demand of a position.
+    /// The last position demand.
     demand: Option<f64>,
-    /// Steps until it is looked at again.
+    /// Steps until the demand is checked again.
     taking_over: u32,
     fault: Option<u16>,
     tick: u64,
@@ -160,7 +160,7 @@ impl Chain {
                 self.taking_over = TAKES_OVER;
                 (before.v + 0.001 * effort).clamp(-1.2, 1.2) * PERIOD
             }
-            // Friction brakes what is not driven.
+            // Friction brakes an undriven axis.
             Demand::Off => 0.99 * before.v * PERIOD,
         };
         self.axis.v = (self.axis.x - before.x) / PERIOD;

@@ -1,8 +1,8 @@
-//! What happens by chance.
+//! Random events and inputs.
 use servobench_motion::Limits;
 use servobench_testkit::Random;
 
-/// Part of the limits that a block may use so that two of them may on top of each other.
+/// Fraction of the limits of each of two blocks whose motions are superimposed.
 const PART: f64 = 0.5;
 
 /// Random inputs of blocks.
@@ -25,7 +25,7 @@ impl Chance {
         self.0.one_of(choices)
     }
 
-    /// `value`, or now and then something that no program should give.
+    /// `value`, or now and then one that no program should pass.
     pub(crate) fn input(&mut self, value: f64) -> f64 {
         if self.once_in(500) {
             return self.one_of(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, f64::MIN_POSITIVE, -0.0, -value]);
@@ -33,7 +33,7 @@ impl Chance {
         value
     }
 
-    /// Limits of a block: those of the axis, or so that two of them together are within them; a snap where the axis has none.
+    /// Limits of a block: random fractions of those of the axis, every other time so small that two blocks together keep them.
     pub(crate) fn limits(&mut self, axis: Limits) -> Limits {
         let whole = if self.once_in(2) { 1.0 } else { PART };
         let mut part = || {
@@ -48,7 +48,7 @@ impl Chance {
         }
     }
 
-    /// Values of a table: `pairs` of them up to `most`, and the times between them.
+    /// Pairs of a table: times, and values of at most `most`.
     pub(crate) fn table(&mut self, most: f64) -> Vec<(f64, f64)> {
         let pairs = self.one_of(&[1, 2, 3, 5]);
         let quick = self.between(0.02, 0.6);

@@ -3,10 +3,10 @@ use super::chance::Chance;
 use super::{CYCLE_TIME, Follower};
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Fault, Homing, Power, Task};
 
-/// What the axis is behind its set-point, as a time (s).
+/// Time by which the axis lags behind its set-point (s).
 const LAG: f64 = 7e-3;
 
-/// A drive that is told its set-points directly.
+/// A drive that gets its set-points without a bus.
 #[derive(Debug, Default)]
 pub(crate) struct Drive(AxisFeedback);
 

@@ -1,8 +1,8 @@
-//! Programs gone mad: random calls with random inputs, some of them no numbers, on an axis whose drive lags, faults and fails at
+//! Random programs: random calls with random inputs, some of them NaN, on an axis whose drive lags, faults and fails at
 //! random. Nothing leaves the state diagram, no limit is exceeded, no set-point jumps, and outputs keep the rules of the standard.
 //!
 //! The sweep is small in ordinary runs. `SERVOBENCH_SWEEP=7500000 cargo test --release -p servobench-plcopen --test random` runs the
-//! large one; the number is that of cycles per order.
+//! large one, with so many cycles per order.
 mod chain;
 mod chance;
 mod drive;
@@ -42,13 +42,13 @@ fn no_program_of_order_2_leaves_the_diagram_or_the_limits() {
     sweep::<Drive>(Limits { snap: f64::INFINITY, jerk: f64::INFINITY, ..LIMITS });
 }
 
-/// Over a link and a bus, with a drive that has a state machine of its own.
+/// The same over a link and a bus, with a drive that has a state machine.
 #[test]
 fn no_program_over_a_bus_leaves_the_diagram_or_the_limits() {
     sweep::<Chain>(LIMITS);
 }
 
-/// What follows the set-points of an axis.
+/// Drive that follows the set-points of an axis.
 trait Follower: Default {
     fn feedback(&self) -> AxisFeedback;
 
@@ -76,10 +76,10 @@ fn sweep<F: Follower>(limits: Limits) {
         done += program.done;
         followed += program.followed;
     }
-    // The test is where it matters: in every state for a while, on every arrow, with moves and profiles that end.
+    // The test covers every state for a while, every arrow, and moves and profiles that end.
     let few = cycles() / 2000;
     assert!(seen.iter().all(|times| *times > few), "{seen:?}");
-    // The end of a profile that keeps a velocity leads where a command does, and is counted with it.
+    // The end of a profile that keeps a velocity takes the same arrow as a command, and is counted with it.
     let is_counted = |arrow: &Arrow| arrow.causes != [Cause::DoneMoving];
     assert!(ARROWS.iter().zip(taken).all(|(arrow, times)| times > 0 || !is_counted(arrow)), "{taken:?}");
     assert!(done > few / 10 && followed > few / 20, "{done} moves, {followed} profiles");

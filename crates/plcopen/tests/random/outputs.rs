@@ -41,7 +41,7 @@ pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B:
         }
     });
     assert_eq!(block.error().is_some(), flags.error, "{} in words", B::NAME);
-    // The generator has no other word for limits that are none.
+    // The generator has no other output for invalid limits.
     if let Some(error) = block.error().filter(|_| B::NAME != BlockName::Profile4th) {
         assert!(!matches!(error.id(), ErrorId::Plan | ErrorId::PlanLost), "{error}");
     }
@@ -49,7 +49,7 @@ pub(crate) fn call<B: FunctionBlock>(block: &mut B, axis: &mut Axis, inputs: &B:
 }
 
 impl Flags {
-    /// What holds in every cycle; `before` are those of the call before.
+    /// Checks the rules that hold in every cycle; `before` has the flags of the previous call.
     pub(crate) fn check(&self, place: &str, execute: bool, before: &Self) {
         let Self { done, busy, active, in_target, aborted, error, error_id } = *self;
         let one = [done, busy, aborted, error].into_iter().filter(|flag| *flag).count();
@@ -57,7 +57,7 @@ impl Flags {
         assert!(one == 1 || !execute, "{place}: executed, and says nothing: {self:?}");
         assert!(busy || !active && !in_target, "{place}: {self:?}");
         assert_eq!(error, error_id != f64::from(ErrorId::None as u16).to_bits(), "{place}: {self:?}");
-        // How it ended is said as long as Execute is TRUE, and once at least.
+        // The result stays as long as Execute is TRUE, and for one call at least.
         assert!(execute || busy || one == 0 || before.busy, "{place}: goes on to say how it ended: {self:?}");
     }
 }

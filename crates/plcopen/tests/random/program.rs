@@ -47,14 +47,14 @@ const NAMES: [BlockName; BLOCKS] = [
     BlockName::TouchProbe,
 ];
 
-/// Most pairs of a table.
+/// Highest number of pairs in a table.
 const PAIRS: usize = 5;
 
 pub(crate) struct Program {
     axis: Axis,
     enable: bool,
     setpoints: Setpoints,
-    /// Moves that were done, and profiles.
+    /// Completed moves and profiles.
     pub(crate) done: usize,
     pub(crate) followed: usize,
     /// Cycles between two calls of a block, on average.
@@ -154,7 +154,7 @@ impl Program {
         command
     }
 
-    /// The state has changed along an arrow, if at all; several at once only through Standstill.
+    /// Checks that a change of state follows an arrow of the diagram, or two arrows by way of Standstill.
     fn passed(&self, before: AxisState, place: &str, taken: &mut [usize]) {
         let after = self.axis.state();
         if before == after {
@@ -327,7 +327,7 @@ fn within(limits: &Limits) -> MoveAbsoluteInputs {
     MoveAbsoluteInputs::within(limits)
 }
 
-/// What gives the axis its reference.
+/// Calls a block that gives the axis its reference.
 fn call_homing(name: BlockName, blocks: &mut Blocks, axis: &mut Axis, execute: bool, buffer_mode: BufferMode) -> Flags {
     match name {
         BlockName::HomeDirect => {
@@ -338,7 +338,7 @@ fn call_homing(name: BlockName, blocks: &mut Blocks, axis: &mut Axis, execute: b
     }
 }
 
-/// What goes on beside the motion of the axis, or on top of it.
+/// Calls a block that acts beside the motion of the axis, or on top of it.
 fn call_beside(
     name: BlockName,
     blocks: &mut Blocks,
@@ -370,7 +370,7 @@ fn call_beside(
     }
 }
 
-/// A table goes through the block at the edge alone.
+/// Calls a block with a table, which it reads at the edge only.
 fn call_profile(
     name: BlockName,
     blocks: &mut Blocks,

@@ -1,22 +1,22 @@
-//! What is commanded from cycle to cycle.
+//! Checks of the commands from cycle to cycle.
 use super::CYCLE_TIME;
 use servobench_base::Setpoint;
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Power, Task};
 use servobench_plcopen::{Axis, AxisState, BlockName};
 
-/// Blocks that follow tables, whose pieces meet without regard to jerk and snap.
+/// Blocks that follow tables, whose segments meet without regard to jerk and snap.
 const TABLES: [BlockName; 3] = [BlockName::PositionProfile, BlockName::VelocityProfile, BlockName::AccelerationProfile];
 
 /// The set-points of an axis.
 #[derive(Debug, Default)]
 pub(crate) struct Setpoints {
     last: Option<Setpoint>,
-    /// Whether a table has led to the last one.
+    /// True if the last set-point came from a table.
     was_led: bool,
 }
 
 impl Setpoints {
-    /// Nothing is asked of an axis that is disabled, and nothing jumps but the jerk of tables.
+    /// Checks that a disabled axis gets no motion, and that nothing jumps but the jerk of tables.
     pub(crate) fn check(&mut self, axis: &Axis, feedback: &AxisFeedback, command: &AxisCommand, place: &str) {
         let is_led = axis.commanded_by().is_some_and(|block| TABLES.contains(&block));
         let (state, limits) = (axis.state(), axis.params().limits);
@@ -45,7 +45,7 @@ impl Setpoints {
                 let most = limit * (1.0 + 1e-6) + rounding;
                 assert!(mean <= most, "{place} in {state}: {name} {mean} {limit}\n{last:?}\n{now:?}");
             };
-            // A stop begins with the velocity that an effort, or whatever the drive did, has left.
+            // A stop begins at the velocity that an effort, or another action of the drive, has left.
             step("x", last.x, now.x, limits.velocity.max(last.v.abs()), 1e-12 / CYCLE_TIME);
             step("v", last.v, now.v, limits.acceleration, 1e-9 / CYCLE_TIME);
             if limits.jerk < f64::INFINITY && !was_led && !is_led {

@@ -1,4 +1,4 @@
-//! An axis with a drive that follows at once: what is commanded in one cycle is fed back in the next.
+//! An axis with an ideal drive: the command of one cycle is the feedback of the next.
 use servobench_fieldbus::{AxisCommand, AxisFeedback, Homing, Power, ProfileCommand, Task};
 use servobench_motion::Limits;
 use servobench_plcopen::{Axis, AxisParams, AxisState, FunctionBlock, Power as MovePower, PowerInputs};
@@ -14,7 +14,7 @@ pub(crate) struct Bench {
     pub(crate) enable: bool,
     pub(crate) permits_negative: bool,
     pub(crate) command: Option<AxisCommand>,
-    /// What the drive says of homing while it is asked to.
+    /// Homing state that the drive reports while it is commanded to home.
     pub(crate) homing: Homing,
 }
 
@@ -77,19 +77,19 @@ impl Bench {
         answer
     }
 
-    /// A drive in profile velocity goes to `velocity` in a straight line, for a cycle.
+    /// One cycle of a drive in profile velocity, which goes to `velocity` in a straight line.
     fn obey(&mut self, velocity: f64, acceleration: f64) {
         let AxisFeedback { position, velocity: before, .. } = &mut self.feedback;
         let way = velocity - *before;
         let needed = if way == 0.0 { 0.0 } else { way.abs() / acceleration };
-        // A ramp that rounding makes longer than the cycle is over with it.
+        // A ramp that is longer than the cycle by rounding ends with it.
         let time = if needed > CYCLE_TIME * (1.0 - 1e-9) { CYCLE_TIME } else { needed };
         let reached = if needed > CYCLE_TIME * (1.0 + 1e-9) { *before + way * time / needed } else { velocity };
         *position += time * f64::midpoint(*before, reached) + (CYCLE_TIME - time) * reached;
         *before = reached;
     }
 
-    /// Cycles without a call until `state`, at most 10 000.
+    /// Runs cycles without a call until `state`, at most 10 000.
     pub(crate) fn until(&mut self, state: AxisState) {
         for _ in 0..10_000 {
             if self.axis.state() == state {

@@ -1,4 +1,4 @@
-//! Aborts go on from the present state and keep what the new command asks for.
+//! Aborts: the new command continues from the present state and keeps its limits.
 use crate::bench::{Bench, CYCLE_TIME, LIMITS};
 use servobench_fieldbus::{Fault, Homing};
 use servobench_motion::Limits;
@@ -15,7 +15,7 @@ fn to(limits: &Limits, position: f64) -> MoveAbsoluteInputs {
     MoveAbsoluteInputs { execute: true, position, ..MoveAbsoluteInputs::within(limits) }
 }
 
-/// The second command turns the axis round, or not; it speeds up with 3 m/s² and slows down with 1 m/s², or the other way round.
+/// The second command reverses the axis, or not; it accelerates at 3 m/s² and decelerates at 1 m/s², or the other way round.
 #[test]
 fn acceleration_and_deceleration_are_kept_on_any_way() {
     for limits in &ORDERS {

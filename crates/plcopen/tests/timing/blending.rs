@@ -122,7 +122,7 @@ fn the_highest_velocity_is_taken_that_can_be_reached_and_braked_from() {
 
 #[test]
 fn blending_after_the_brake_is_on_releases_it() {
-    // At orders 3 and 4 a brake cannot be released at once: what is left of the way must be long enough for that.
+    // At orders 3 and 4 braking cannot end at once: the remaining distance must be long enough for that.
     for (limits, later) in [(&ORDERS[0], 700), (&ORDERS[1], 650), (&ORDERS[2], 640)] {
         let course = moves(limits, (0.5, 0.8), (1.5, 0.8), BufferMode::BlendingPrevious, later);
         assert!(course.velocities[later] < 0.8, "the brake is on");

@@ -1,4 +1,4 @@
-//! What many tests call, and what they look at.
+//! Calls and checks that many tests share.
 use crate::bench::{Bench, LIMITS};
 use servobench_plcopen::{MoveAbsoluteInputs, MoveVelocityInputs};
 
@@ -10,7 +10,7 @@ pub(crate) fn running(velocity: f64) -> MoveVelocityInputs {
     MoveVelocityInputs { execute: true, velocity, ..MoveVelocityInputs::within(&LIMITS) }
 }
 
-/// The axis is commanded to be at `x`, bit for bit.
+/// Checks that the axis is commanded to `x`, bit for bit.
 pub(crate) fn at(bench: &Bench, x: f64) {
     assert_eq!(bench.axis.commanded().x.to_bits(), x.to_bits(), "{} {x}", bench.axis.commanded().x);
 }

@@ -1,4 +1,4 @@
-//! Whatever takes the axis over, and in whatever order blocks are called: the set-point of each cycle follows from the one before.
+//! Continuity of set-points: each follows from the one before, whichever block takes over and in any order of calls.
 use crate::bench::{Bench, CYCLE_TIME, LIMITS};
 use crate::calls::{running, to};
 use servobench_base::Setpoint;
@@ -9,7 +9,7 @@ use servobench_plcopen::{
     TorqueControl, TorqueControlInputs, VelocityProfile, VelocityProfileInputs,
 };
 
-/// Watches set-points: how far they are from where the cycle before led to, and the largest of each derivative.
+/// Records of the set-points: the distance of each from the continuation of the cycle before, and the largest of each derivative.
 #[derive(Default)]
 struct Watch {
     last: Option<Setpoint>,
@@ -32,16 +32,16 @@ impl Watch {
     }
 }
 
-/// To 0.98 m/s at 5 m/s², the acceleration of the axis: what is left of the velocity is less than the 0.25 m/s that the
-/// acceleration takes to end at 50 m/s³.
+/// To 0.98 m/s at 5 m/s², the acceleration limit: the remaining velocity range is less than the 0.25 m/s that it takes to end the
+/// acceleration at 50 m/s³.
 const STEEP: [Pair; 1] = [Pair { delta_time: 0.1961, value: 0.9805 }];
 
 fn along_steep() -> VelocityProfileInputs<'static> {
     VelocityProfileInputs { execute: true, ..VelocityProfileInputs::along(&STEEP) }
 }
 
-/// A table leads to states that no way within the limits of the axis does. What takes over, before or behind its block in the
-/// program, keeps the velocity; so does the axis itself where the block is not called any more.
+/// A table leads to states that no motion within the axis limits reaches. A command that takes over, called before or after the table's
+/// block, keeps the velocity; so does the axis itself when the block is no longer called.
 #[test]
 fn what_takes_over_from_a_table_keeps_the_velocity() {
     for (snap, jerk) in
@@ -91,7 +91,7 @@ fn what_takes_over_from_a_table_keeps_the_velocity() {
     }
 }
 
-/// The move behind another one is refused when its turn comes, as MC_Power permits its direction no more.
+/// A buffered move is refused when its turn comes, as MC_Power no longer permits its direction.
 #[test]
 fn a_waiting_command_that_is_refused_repeats_no_setpoint() {
     for end_velocity in [0.45, 0.731] {
@@ -145,7 +145,7 @@ fn an_effort_that_was_never_given_leaves_the_setpoint_where_it_was() {
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 
-/// Both motions are beyond what the override leaves their commands, and are brought back at once.
+/// Both motions exceed the limits that the override leaves to their commands, and are brought back at once.
 #[test]
 fn an_override_of_two_motions_keeps_the_limits_of_the_axis() {
     let mut most = 0.0_f64;
@@ -178,7 +178,7 @@ fn an_override_of_two_motions_keeps_the_limits_of_the_axis() {
     assert!(most > 41.0, "the axis was never asked for more than both commands: {most}");
 }
 
-/// Not to be called is an error of the program; the axis brakes from where it is, in the very cycle.
+/// A block that is not called is an error of the program; the axis brakes from its present state in the same cycle.
 #[test]
 fn a_table_that_is_not_called_repeats_no_setpoint() {
     let (mut bench, mut block, mut watch) =
@@ -193,6 +193,6 @@ fn a_table_that_is_not_called_repeats_no_setpoint() {
         assert_eq!(bench.axis.state() == AxisState::ErrorStop, cycle >= 143, "{cycle}");
     }
     assert!(bench.axis.commanded().v.abs() < 1e-15);
-    // MC_Power goes on to be asked while the axis stands.
+    // MC_Power is still evaluated while the axis stands.
     assert!(bench.cycle(|axis| Power.step(axis, &PowerInputs { enable: true, ..PowerInputs::default() })).status);
 }

@@ -22,7 +22,7 @@ const fn timed(first: f64, duration: f64) -> CamSwitch {
 
 const NONE: TrackOptions = TrackOptions { track: 0, on_compensation: 0.0, off_compensation: 0.0, hysteresis: 0.0 };
 
-/// An axis whose actual position is as it is told.
+/// An axis whose actual position is given by the test.
 struct Shaft {
     bench: Bench,
     block: Block,
@@ -34,7 +34,7 @@ impl Shaft {
         Self::of(Bench::params())
     }
 
-    /// One that comes round after 1 m.
+    /// A modulo axis of 1 m per turn.
     fn round() -> Self {
         Self::of(AxisParams { modulo: Some(1.0), ..Bench::params() })
     }
@@ -44,7 +44,7 @@ impl Shaft {
         Self { bench: Bench::powered(params), block: DigitalCamSwitch::new([CamState::default(); 40]), outputs }
     }
 
-    /// A cycle at this position and velocity: the digital outputs that the drive is sent.
+    /// Runs a cycle at this position and velocity: the digital outputs sent to the drive.
     fn at(&mut self, position: f64, velocity: f64, inputs: &DigitalCamSwitchInputs<'_>) -> u32 {
         (self.bench.feedback.position, self.bench.feedback.velocity) = (position, velocity);
         self.outputs = self.bench.cycle(|axis| self.block.step(axis, inputs));
@@ -82,7 +82,7 @@ fn a_window_is_true_between_its_positions_both_included() {
     }
 }
 
-/// Of a track all switches count; another track is another output.
+/// All switches of a track are combined; each track has its output.
 #[test]
 fn switches_of_a_track_are_ored() {
     let switches = [
@@ -105,7 +105,7 @@ fn a_direction_is_that_of_the_last_motion() {
     for (switches, expected) in [(up, [0, 1, 1, 1, 1, 0, 0, 0, 0]), (down, [0, 0, 0, 0, 0, 1, 1, 1, 0])] {
         assert_eq!(Shaft::new().along(&way, &actual(&switches)), expected, "{switches:?}");
     }
-    // Before the first motion there is none.
+    // Before the first motion there is no direction.
     assert_eq!(Shaft::new().along(&[0.15, 0.15, 0.16], &actual(&up)), [0, 0, 1]);
     assert_eq!(Shaft::new().along(&[0.15, 0.15, 0.16], &actual(&of(CamDirection::Both))), [1, 1, 1]);
 }
@@ -122,7 +122,7 @@ fn a_window_between_two_cycles_is_true_for_one() {
     assert_eq!(Shaft::new().along(&[0.0, 0.1, 0.1, 0.1, 0.2], &actual(&[window(0.1, 0.1)])), [0, 1, 1, 1, 0]);
 }
 
-/// 3 ms from where 0.1 m is passed, in 10 mm steps: in the cycles at 0.1, 0.11 and 0.12 m, and wherever the axis is then.
+/// 3 ms from the passing of 0.1 m, in 10 mm steps: in the cycles at 0.1, 0.11 and 0.12 m, wherever the axis is then.
 #[test]
 fn a_switch_by_time_lasts_its_duration() {
     let switches = [timed(0.1, 3e-3)];
@@ -133,7 +133,7 @@ fn a_switch_by_time_lasts_its_duration() {
     assert_eq!(Shaft::new().along(&down, &actual(&switches)), [0, 0, 0, 0, 1, 1, 1]);
     let up_only = [CamSwitch { direction: CamDirection::Positive, ..switches[0] }];
     assert_eq!(Shaft::new().along(&down, &actual(&up_only)), [0; 7]);
-    // Turned back at once: the time runs on, and is begun anew on the way back, and upwards again.
+    // Reversed at once: the time continues, and restarts on the way back, and upwards again.
     let there_and_back = [0.095, 0.105, 0.095, 0.09, 0.08, 0.07, 0.105];
     assert_eq!(Shaft::new().along(&there_and_back, &actual(&switches)), [0, 1, 1, 1, 1, 0, 1]);
     assert_eq!(Shaft::new().along(&there_and_back, &actual(&up_only)), [0, 1, 1, 1, 0, 0, 1]);
@@ -178,7 +178,7 @@ fn compensation_moves_an_edge_by_velocity_and_time() {
     assert_eq!([0.099, 0.1, 0.11, 0.111].map(|x| Shaft::new().at(x, 0.0, &inputs)), [0, 1, 1, 0]);
 }
 
-/// By time the on edge comes 2 ms earlier, at 98 mm, and the end 1 ms later: 5 + 2 + 1 = 8 cycles.
+/// With compensation the on edge comes 2 ms earlier, at 98 mm, and the end 1 ms later: 5 + 2 + 1 = 8 cycles.
 #[test]
 fn compensation_moves_both_ends_of_a_switch_by_time() {
     let options = [TrackOptions { on_compensation: -2e-3, off_compensation: 1e-3, ..NONE }];
@@ -296,7 +296,7 @@ fn a_track_that_is_masked_out_is_false_and_nobody_elses_output_is_touched() {
     assert_eq!(shaft.at(0.5, 0.0, &actual(&switches[1..])), 0b100 | lamp);
     assert_eq!(shaft.at(0.5, 0.0, &DigitalCamSwitchInputs { enable: false, ..inputs }), lamp);
     assert_eq!(shaft.outputs, DigitalCamSwitchOutputs::default());
-    // What is written to an output that was of a track stays then.
+    // A value written to an output that belonged to a track stays then.
     let inputs = DigitalCamSwitchInputs { enable: false, ..inputs };
     shaft.bench.cycle(|axis| {
         let inputs = WriteDigitalOutputInputs { execute: true, output_number: 2, value: true };
@@ -305,7 +305,7 @@ fn a_track_that_is_masked_out_is_false_and_nobody_elses_output_is_touched() {
     assert_eq!(shaft.at(0.5, 0.0, &inputs), 0b100 | lamp);
 }
 
-/// What ended with Enable does not come back with it: a time begun, a direction, an edge that holds.
+/// A new Enable restores none of the old state: no running time, no direction, no held edge.
 #[test]
 fn a_new_enable_begins_anew() {
     let switches = [timed(0.1, 1.0), CamSwitch { track: 1, direction: CamDirection::Positive, ..window(0.0, 1.0) }];
@@ -435,7 +435,7 @@ fn what_cannot_be_is_an_error_and_the_outputs_are_false() {
     assert_eq!(outputs.error_id, ErrorId::Plan);
 }
 
-/// A position or velocity that is none switches nothing on, and nothing stays wrong behind it.
+/// A NaN as position or velocity switches nothing on, and has no effect afterwards.
 #[test]
 fn a_position_that_is_no_number_is_in_no_window() {
     let options = [TrackOptions { on_compensation: -1e-3, hysteresis: 1e-3, ..NONE }];

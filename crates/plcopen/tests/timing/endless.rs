@@ -39,7 +39,7 @@ fn a_continuous_move_may_end_at_rest() {
     }
 }
 
-/// A command that waits behind it takes the axis where it passes its position, at rest here, whatever the buffer mode would blend.
+/// A buffered command takes over the axis where it passes its position, at rest here, in any blending mode.
 #[test]
 fn a_continuous_move_to_rest_is_not_blended() {
     let (mut bench, mut pass, mut go) =
@@ -63,7 +63,7 @@ fn a_continuous_move_to_rest_is_not_blended() {
     at(&bench, 0.43);
 }
 
-/// The outputs of a block are its own, however many commands others have given since.
+/// The outputs of a block do not depend on later commands of other blocks.
 #[test]
 fn a_block_that_runs_says_so_however_many_others_are_called() {
     let (mut bench, mut run) = (Bench::standstill(), MoveVelocity::default());
@@ -125,7 +125,7 @@ fn a_continuous_relative_move_counts_from_where_it_begins() {
     }
 }
 
-/// Behind another move it counts from the end of that, and a longer distance while it runs still counts from there.
+/// A distance after another move counts from the end of that move; so does a longer distance given while it runs.
 #[test]
 fn a_continuous_relative_move_may_wait_and_change() {
     let (mut bench, mut go, mut by) = (Bench::standstill(), MoveAbsolute::default(), MoveContinuousRelative::default());
@@ -155,7 +155,7 @@ fn a_continuous_relative_move_may_wait_and_change() {
     assert!((0.0..=0.1 * 1e-3 + 1e-12).contains(&(passed_at - 0.6)), "{passed_at}");
 }
 
-/// InVelocity is whether the set-point has the commanded velocity (section 2.4.1): a new one counts from the call that takes it.
+/// InVelocity is TRUE while the set-point has the commanded velocity (section 2.4.1), a new one from the call that takes it.
 #[test]
 fn a_changed_velocity_is_not_reached_in_the_cycle_of_its_change() {
     let (mut bench, mut run) = (Bench::standstill(), MoveVelocity::default());

@@ -16,7 +16,7 @@ fn exclusive(outputs: MotionOutputs) {
     assert_eq!(error, error_id != ErrorId::None, "{outputs:?}");
 }
 
-/// Calls `block` with what `execute` says of the cycle, for `cycles`.
+/// Outputs of a new block over `cycles`, called with the `execute` of each cycle.
 fn outputs(bench: &mut Bench, cycles: usize, position: f64, execute: impl Fn(usize) -> bool) -> Vec<MotionOutputs> {
     let mut block = MoveAbsolute::default();
     (0..cycles)
@@ -93,7 +93,7 @@ fn a_refusal_says_what_is_wrong_until_execute_falls() {
     assert_eq!(bench.axis.state(), AxisState::Standstill, "errors of blocks are not errors of the axis");
 }
 
-/// The new command is refused; the one before goes on, though no block tells of it any more.
+/// The new command is refused; the one before continues, though no block reports it any more.
 #[test]
 fn an_edge_that_is_refused_leaves_the_motion_before_alone() {
     let (mut bench, mut block) = (Bench::standstill(), MoveAbsolute::default());
@@ -178,7 +178,7 @@ fn stop_holds_the_axis_until_execute_falls() {
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 
-/// Execute falls while the axis brakes, and rises again before it stands: a second edge of the same instance.
+/// Execute falls while the axis brakes, and rises again before standstill: a second edge of the same instance.
 #[test]
 fn a_stop_that_is_executed_again_while_it_brakes_holds_the_axis_again() {
     let mut bench = Bench::standstill();

@@ -6,7 +6,7 @@ use servobench_plcopen::{AxisState, FunctionBlock, MotionOutputs, MoveAbsolute, 
 const FIRST: f64 = 0.6;
 const SECOND: f64 = 1.0;
 
-/// The outputs of both blocks in each cycle, and the position at the end; the second is executed when `start` says so.
+/// Outputs of both blocks and the velocity in each cycle, and the final position; `start` decides when the second is executed.
 fn run(start: impl Fn(usize, &MotionOutputs) -> bool) -> (Vec<[MotionOutputs; 2]>, Vec<f64>, f64) {
     let mut bench = Bench::standstill();
     let (mut first, mut second) = (MoveAbsolute::default(), MoveAbsolute::default());

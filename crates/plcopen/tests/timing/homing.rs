@@ -153,7 +153,7 @@ fn a_stop_takes_homing_away_that_waits() {
     assert_eq!(bench.axis.state(), AxisState::Standstill);
 }
 
-/// Without a motion and without the drive: the axis stands where it stood, and counts from there.
+/// Without motion and without the drive: the axis stays at its place, and counts from there.
 #[test]
 fn a_reference_may_be_given_where_the_axis_stands() {
     let mut bench = Bench::powered(AxisParams { needs_homing: true, ..Bench::params() });

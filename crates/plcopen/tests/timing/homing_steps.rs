@@ -8,10 +8,10 @@ use servobench_plcopen::{
     StepBlockInputs, Stop, StopInputs,
 };
 
-/// Where the obstacle is (m), and what the drive makes of a following error (N/m).
+/// Position of the obstacle (m), and force of the drive per following error (N/m).
 const OBSTACLE: f64 = 0.1;
 const GAIN: f64 = 1e3;
-/// The largest force of the search (N), and the least that counts as it.
+/// Force limit of the search (N), and the least force that counts as reaching it.
 const FORCE: f64 = 2.0;
 const ENOUGH: f64 = 0.95 * FORCE;
 
@@ -23,7 +23,7 @@ fn away(distance: f64) -> FinishHomingInputs {
     FinishHomingInputs { execute: true, distance, ..FinishHomingInputs::within(&LIMITS) }
 }
 
-/// A cycle of an axis that an obstacle holds: its drive gives what its position loop asks for, within its limit.
+/// Runs a cycle of an axis that an obstacle holds: the drive gives the force of its position loop, within its limit.
 fn cycle<T>(bench: &mut Bench, obstacle: f64, program: impl FnOnce(&mut Axis) -> T) -> T {
     let answer = bench.cycle(program);
     let command = bench.command.unwrap();
@@ -38,7 +38,7 @@ fn cycle<T>(bench: &mut Bench, obstacle: f64, program: impl FnOnce(&mut Axis) ->
     answer
 }
 
-/// Runs a search until it is done, and asks `watch` in every cycle.
+/// Runs a search until it is done, and calls `watch` in every cycle.
 fn searched(bench: &mut Bench, inputs: &StepBlockInputs, mut watch: impl FnMut(&Bench, &MotionOutputs)) -> usize {
     let mut block = StepBlock::default();
     for cycles in 1..10_000 {
@@ -52,7 +52,7 @@ fn searched(bench: &mut Bench, inputs: &StepBlockInputs, mut watch: impl FnMut(&
     panic!("never done")
 }
 
-/// Oracle: the obstacle. Its set-point stays where the force is reached, and is back at the obstacle when the step is done.
+/// Oracle: the obstacle. The set-point stays where the force is reached, and is back at the obstacle when the step is done.
 #[test]
 fn a_step_is_done_at_the_obstacle_and_leaves_the_axis_in_homing() {
     let mut bench = Bench::powered(AxisParams { needs_homing: true, ..Bench::params() });
@@ -66,7 +66,7 @@ fn a_step_is_done_at_the_obstacle_and_leaves_the_axis_in_homing() {
         }
     });
     assert_eq!(held, Some(true));
-    // The force is reached 1.9 mm behind the obstacle; a cycle later the axis knows, at 0.1 m/s.
+    // The force is reached 1.9 mm behind the obstacle; the axis detects it a cycle later, at 0.1 m/s.
     assert!((furthest - ENOUGH / GAIN).abs() < 0.1 * 2.0 * CYCLE_TIME, "{furthest}");
     assert!((bench.axis.sent().x - OBSTACLE).abs() < 1e-12);
     assert!(!bench.axis.is_homed());
@@ -82,7 +82,7 @@ fn a_step_is_done_at_the_obstacle_and_leaves_the_axis_in_homing() {
     assert!((bench.axis.commanded().x - 2.95).abs() < 1e-12);
 }
 
-/// Oracle: the cycles themselves. Held and slow for 50 ms are 51 cycles that say so; the way back is the rest.
+/// Oracle: the cycles themselves. Held and slow for 50 ms means 51 such cycles; the rest is the way back.
 #[test]
 fn an_obstacle_holds_the_axis_for_the_time_without_a_break() {
     let lasting = |time: f64, interrupted: bool| {
@@ -226,7 +226,7 @@ fn homing_ends_where_the_axis_stands() {
     assert_eq!((bench.axis.state(), bench.axis.is_homed()), (AxisState::Standstill, false));
 }
 
-/// The set-point goes on from where the axis is held, not from behind the obstacle.
+/// The set-point continues from the position at which the axis is held, not from behind the obstacle.
 #[test]
 fn a_stop_while_the_axis_is_held_leaves_nothing_that_pushes() {
     let (mut bench, mut step, mut stop) = (Bench::standstill(), StepBlock::default(), Stop::default());

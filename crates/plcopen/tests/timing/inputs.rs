@@ -1,4 +1,4 @@
-//! Inputs that are no numbers, or no numbers of use: refused at the edge, and the axis stays where it is.
+//! NaN and useless numbers as inputs: refused at the edge, and the axis stays where it is.
 use crate::bench::{Bench, LIMITS};
 use servobench_fieldbus::ProbeTrigger;
 use servobench_plcopen::{
@@ -10,14 +10,14 @@ use servobench_plcopen::{
     TorqueControl, TorqueControlInputs, TouchProbe, TouchProbeInputs, WriteParameter, WriteParameterInputs,
 };
 
-/// What a block of the type `B` says to `inputs`.
+/// Error of a new block of the type `B` with `inputs`.
 fn said<B: FunctionBlock + Default>(axis: &mut Axis, inputs: &B::Inputs<'_>) -> Option<BlockError> {
     let mut block = B::default();
     block.step(axis, inputs);
     block.error().copied()
 }
 
-/// Calls with `$value` at each of the inputs `$input` of a block, and otherwise inputs that it takes.
+/// Calls with `$value` at each input `$input` of a block in turn, and valid values at the others.
 macro_rules! calls {
     ($value:expr, $($block:ty, $inputs:expr => $($input:ident)*;)*) => {
         vec![$($(
@@ -79,7 +79,7 @@ fn what_is_no_number_is_refused() {
     }
 }
 
-/// No ramp is a step, as is documented; what is no number is no ramp.
+/// An infinite ramp is a step, as documented; NaN is not a ramp.
 #[test]
 fn a_torque_ramp_is_a_number_or_without_bound() {
     for (torque_ramp, is_taken) in [(f64::INFINITY, true), (0.3, true), (f64::NAN, false), (0.0, false), (-2.0, false)]

@@ -33,7 +33,7 @@ fn bits_are_read_and_written_one_by_one() {
     assert_eq!((read, bench.command.unwrap().digital_outputs), ([false, true], 1 << 31));
 }
 
-/// The words of an error are there as long as the error is.
+/// The error message lasts as long as the error.
 #[test]
 fn a_number_that_is_no_bit_is_an_error_in_words() {
     let (mut bench, mut input, mut output) =
@@ -58,7 +58,7 @@ fn a_number_that_is_no_bit_is_an_error_in_words() {
 const MET: TouchProbeInputs =
     TouchProbeInputs { execute: true, trigger: ProbeTrigger::HomeSwitchMet, first_position: None, last_position: None };
 
-/// A cycle in which the drive answers what it was asked for before with `position`.
+/// Runs a cycle in which the drive answers the previous request of the probe with `position`.
 fn answered(
     bench: &mut Bench,
     probe: &mut TouchProbe,
@@ -85,7 +85,7 @@ fn a_position_is_recorded_as_the_program_counts() {
     assert!(answered(&mut bench, &mut probe, &MET, None).done, "as long as Execute is TRUE");
 }
 
-/// An answer to an earlier question is none to this one.
+/// An answer to an earlier request does not count for the present one.
 #[test]
 fn an_earlier_answer_does_not_count() {
     let (mut bench, mut probe) = (Bench::standstill(), TouchProbe::default());

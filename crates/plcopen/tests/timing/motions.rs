@@ -1,4 +1,4 @@
-//! What each of the other motion blocks does.
+//! Effects of the other motion blocks.
 use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
 use servobench_fieldbus::{AxisFeedback, Fault, Homing, Task};
@@ -109,7 +109,7 @@ fn an_additive_move_that_is_updated_goes_on_counting_from_the_last_target() {
     at(&bench, 1.0);
 }
 
-/// What waits is judged again when its turn comes.
+/// A buffered command is checked again when its turn comes.
 #[test]
 fn a_command_that_is_not_permitted_any_more_when_its_turn_comes_halts_the_axis() {
     let mut bench = Bench::standstill();
@@ -129,7 +129,7 @@ fn a_command_that_is_not_permitted_any_more_when_its_turn_comes_halts_the_axis()
     assert_eq!(bench.axis.commanded().v.to_bits(), 0.0_f64.to_bits());
 }
 
-/// The same with a third command behind it, which takes its place.
+/// The same with a third command buffered, which takes its place.
 #[test]
 fn the_next_command_takes_the_place_of_one_that_is_not_permitted_any_more() {
     for buffer_mode in [BufferMode::Buffered, BufferMode::BlendingPrevious] {
@@ -258,7 +258,7 @@ fn a_position_that_is_set_leaves_the_following_error_as_it_is() {
     assert!((bench.axis.commanded().x - 7.0 - error).abs() < 1e-14);
 }
 
-/// It moves nothing, so that it needs no state but one in which the position is not about to be set by the drive.
+/// MC_SetPosition moves nothing, so it is permitted in every state in which the drive is not about to set the position.
 #[test]
 fn a_position_is_set_in_any_state_but_homing() {
     for (fault, state) in [(None, AxisState::Standstill), (Some(Fault::Drive(0x7305)), AxisState::ErrorStop)] {

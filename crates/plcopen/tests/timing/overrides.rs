@@ -64,7 +64,7 @@ fn factors_outside_their_range_are_refused() {
     assert_eq!(message, "MC_SetOverride: `AccFactor` must be from 1e-6 to 1, got 0: correct the input");
 }
 
-/// A block with Enable goes on after an error: section 2.2.3.
+/// A block with Enable continues after an error: section 2.2.3.
 #[test]
 fn an_override_that_is_refused_acts_again_once_it_is_corrected() {
     let (mut bench, mut slow) = (Bench::standstill(), SetOverride::default());

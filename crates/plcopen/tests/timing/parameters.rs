@@ -1,4 +1,4 @@
-//! The parameters that blocks read and write, and what the axis supervises by them.
+//! Parameters that blocks read and write, and the supervision of the axis by them.
 use crate::bench::{Bench, LIMITS};
 use crate::calls::{at, running, to};
 use servobench_config::Choice as _;
@@ -60,7 +60,7 @@ fn the_parameters_are_those_of_the_axis() {
     });
 }
 
-/// What is written is read, bounds the commands that follow and nothing of the system; not in motion.
+/// A written limit is read back and bounds the following commands, but not the system limit; it is refused in motion.
 #[test]
 fn limits_are_lowered_at_rest() {
     let mut bench = Bench::standstill();
@@ -115,7 +115,7 @@ fn software_limits_bound_targets() {
     assert_eq!(outputs.error_id, ErrorId::SoftwareLimit);
 }
 
-/// A motion without a target stops with an error, within the limit and less than a cycle's way and its braking before it.
+/// A motion without a target stops with an error, within the limit and less than the distance of two cycles before it.
 #[test]
 fn endless_motion_stops_before_a_software_limit() {
     for (velocity, limit, parameter, enable) in [
@@ -134,13 +134,13 @@ fn endless_motion_stops_before_a_software_limit() {
             bench.cycle(|_| ());
         }
         let left = (limit - bench.axis.commanded().x) * f64::signum(velocity);
-        // The cycle in which it was not yet too late, and the one of which it was told.
+        // The distance of two cycles at most.
         assert!((0.0..2.0 * velocity.abs() * 1e-3).contains(&left), "{left}");
         assert_eq!(bench.axis.commanded().v.to_bits() << 1, 0);
     }
 }
 
-/// On top of a move to a target there is none.
+/// The sum of a move to a target and a superimposed motion has no target.
 #[test]
 fn a_superimposed_move_stops_before_a_software_limit() {
     let (mut bench, mut go, mut on_top) = (Bench::standstill(), MoveAbsolute::default(), MoveSuperimposed::default());

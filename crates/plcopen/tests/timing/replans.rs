@@ -15,7 +15,7 @@ fn sweep_size(usual: usize) -> usize {
 /// Part of the velocity limit below which a velocity is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An axis of order 2, 3 or 4 with limits by which it passes a few tenths of a metre in about a second.
+/// An axis of order 2, 3 or 4 with limits by which it covers a few tenths of a metre in about a second.
 fn axis(random: &mut Random) -> (Bench, Limits) {
     let mut around = |value: f64| value * random.decades(-0.3, 0.3);
     let mut limits = Limits {
@@ -35,7 +35,7 @@ fn axis(random: &mut Random) -> (Bench, Limits) {
     (Bench::powered(params), limits)
 }
 
-/// To a position that is passed at a velocity to which the axis has the room to come from rest.
+/// Move to a position that is passed at a velocity that the axis can reach from rest on the way.
 fn passing(random: &mut Random, limits: &Limits) -> MoveContinuousAbsoluteInputs {
     let sign = random.signed().signum();
     let mut inputs = MoveContinuousAbsoluteInputs::within(limits);
@@ -148,7 +148,7 @@ fn an_override_before_a_target_is_passed_never_turns_the_axis_round() {
     }
 }
 
-/// One that has passed its target on the way to its velocity is not led back to it by another override.
+/// A move that has passed its target on the way to its velocity is not led back to it by another override.
 #[test]
 fn an_override_behind_the_target_changes_the_velocity_alone() {
     let mut bench = Bench::standstill();

@@ -38,7 +38,7 @@ fn a_move_speeds_up_cruises_and_slows_down() {
     }
 }
 
-/// At a reversal it slows down to the turning point and speeds up behind it.
+/// At a reversal it slows down to the turning point and speeds up after it.
 #[test]
 fn a_reversal_slows_down_first() {
     let (mut bench, mut run, mut back, mut read) =
@@ -61,7 +61,7 @@ fn a_reversal_slows_down_first() {
     assert!(seen.len() > 50);
 }
 
-/// By a torque the axis follows no set-point: its own velocity counts.
+/// Under torque control there is no set-point to follow: the actual velocity counts.
 #[test]
 fn by_a_torque_the_actual_velocity_counts() {
     let (mut bench, mut torque, mut read) = (Bench::standstill(), TorqueControl::default(), ReadMotionState::default());

@@ -68,7 +68,7 @@ fn superimposed_moves_add_up_and_each_counts_for_itself() {
         snap: Some(500.0),
         ..MoveSuperimposedInputs::within(&LIMITS)
     };
-    // The third replaces the second on its way: it counts from where that one has come to.
+    // The third replaces the second on its way: it counts from the distance that the second has reached.
     let (mut go, mut alone) = (MoveVelocity::default(), Bench::standstill());
     let (mut reference, mut blocks) = (MoveVelocity::default(), [MoveSuperimposed::default(); 3]);
     let mut replaced = 0.0;
@@ -89,7 +89,7 @@ fn superimposed_moves_add_up_and_each_counts_for_itself() {
         }
     }
     let added = bench.axis.commanded().x - alone.axis.commanded().x;
-    // The one that was replaced is asked at its call, a cycle after the set-point from which the third goes on.
+    // The replaced block reports at its call, a cycle after the set-point from which the third continues.
     assert!((added - (0.25 + replaced)).abs() < 1e-12, "{added} {replaced}");
     assert!((bench.axis.commanded().v - 0.5).abs() < 1e-12);
 }
@@ -143,7 +143,7 @@ fn two_motions_together_may_not_exceed_the_axis() {
     );
 }
 
-/// The motion on top brakes with what it is given and stays where it stops; the one below is what it is without it.
+/// The motion on top brakes with the given limits and stays where it stops; the motion below is the same as without it.
 #[test]
 fn a_superimposed_move_is_halted_and_the_one_below_goes_on() {
     let (mut bench, mut alone) = (Bench::standstill(), Bench::standstill());

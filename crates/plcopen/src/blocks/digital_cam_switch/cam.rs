@@ -1,29 +1,29 @@
-//! One cam: whether a switch is on where the axis is, and what it remembers.
+//! State of one cam: true if its switch is on at the position of the axis.
 use super::{CamDirection, CamEnd, CamSwitch, TrackOptions, ValueSource};
 use crate::axis::Axis;
 use crate::state::AxisState;
 use servobench_base::Stateful;
 
-/// What the block remembers of a switch.
+/// State of a switch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct CamState {
     is_on: bool,
-    /// The edge that the axis has not left by the hysteresis since it switched there.
+    /// Edge at which the switch has switched, until the axis has left it by the hysteresis.
     held: Option<Edge>,
     /// Direction of the last motion, 1 or −1; 0 before it.
     direction: f64,
-    /// How far the axis has come back since.
+    /// Distance that the axis has come back since.
     back: f64,
     /// Cycles since FirstOnPosition was passed.
     cycles: Option<u64>,
 }
 
-/// Where the axis is in a cycle.
+/// Position of the axis in a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Place {
     x: f64,
     v: f64,
-    /// Where its positions count from: what it is told by the program, and whether the drive is about to set it.
+    /// Origin of the positions: the program's offset, and true if the drive is about to set it.
     offset: f64,
     is_homing: bool,
 }
@@ -37,19 +37,19 @@ impl Place {
         Self { x, v, offset: axis.offset(), is_homing: axis.state() == AxisState::Homing }
     }
 
-    /// Whether the way from `before` to here is one that the axis has gone.
+    /// True if the axis has moved from `before` to here, without a jump.
     pub(super) fn continues(&self, before: &Self) -> bool {
         let is_known = (self.x - before.x).is_finite() && self.v.is_finite() && before.v.is_finite();
         is_known && self.offset.to_bits() == before.offset.to_bits() && !self.is_homing && !before.is_homing
     }
 
-    /// What rounding may make of a distance to `edge`.
+    /// Tolerance for rounding in a distance to `edge`.
     fn rounding(&self, edge: f64, modulo: Option<f64>) -> f64 {
         1e-12 * (self.x.abs() + edge.abs() + modulo.unwrap_or(0.0))
     }
 }
 
-/// `distance` on an axis that comes round: the shorter way.
+/// Shortest equivalent of `distance` on a modulo axis.
 fn nearest(distance: f64, modulo: Option<f64>) -> f64 {
     modulo.map_or(distance, |period| distance - period * libm::round(distance / period))
 }
@@ -73,12 +73,12 @@ struct Cam<'a> {
 }
 
 impl Cam<'_> {
-    /// The edge at which it is switched on, which that of time is in either direction.
+    /// Edge at which the cam switches on; with a duration it is the same in both directions.
     fn on_edge(&self) -> Edge {
         if self.direction < 0.0 && matches!(self.switch.end, CamEnd::Position(_)) { Edge::Last } else { Edge::First }
     }
 
-    /// Where `edge` is for an axis at `place`, moved by the compensation.
+    /// Position of `edge` for an axis at `place`, shifted by the compensation.
     fn position(&self, edge: Edge, place: &Place) -> f64 {
         let position = match (edge, self.switch.end) {
             (Edge::Last, CamEnd::Position(last)) => last,
@@ -88,21 +88,21 @@ impl Cam<'_> {
         position + place.v * if is_on { self.options.on_compensation } else { self.options.off_compensation }
     }
 
-    /// How far the axis has gone beyond `edge` in its direction.
+    /// Distance of the axis beyond `edge` in its direction.
     fn beyond(&self, edge: Edge, place: &Place) -> f64 {
         self.direction * nearest(place.x - self.position(edge, place), self.modulo)
     }
 
-    /// Whether the axis has passed `edge` on its way from `before`.
+    /// True if the axis has passed `edge` since `before`.
     fn passes(&self, edge: Edge, before: &Place, place: &Place) -> bool {
         let rounding = place.rounding(self.position(edge, place), self.modulo);
         let (from, to) = (self.beyond(edge, before), self.beyond(edge, place));
-        // What is far from the edge on either side of it is the other side of the circle.
+        // A distance of half a period or more lies on the other side of the circle.
         let is_near = self.modulo.is_none_or(|period| to - from < 0.5 * period);
         from < -rounding && to >= -rounding && is_near
     }
 
-    /// Whether the axis is in the window, or has passed it.
+    /// True if the axis is in the window, or has passed it.
     fn contains(&self, before: Option<&Place>, place: &Place) -> bool {
         let CamEnd::Position(last) = self.switch.end else { return false };
         let [on_edge, off_edge] =
@@ -122,7 +122,7 @@ impl Cam<'_> {
         }
         let beyond = self.beyond(on_edge, place);
         match self.modulo {
-            // The place on the circle, counted from the edge.
+            // Position on the circle, counted from the edge.
             Some(period) => {
                 let beyond = if beyond < -rounding { beyond + period } else { beyond };
                 beyond <= length + rounding
@@ -133,12 +133,12 @@ impl Cam<'_> {
 }
 
 impl CamState {
-    /// Of an axis in this direction, 1 or −1, or 0 where it has none yet.
+    /// State for an axis in this direction, 1 or −1, or 0 before the first motion.
     pub(super) const fn going(direction: f64) -> Self {
         Self { is_on: false, held: None, direction, back: 0.0, cycles: None }
     }
 
-    /// Follows the direction of an axis that has `moved`.
+    /// Tracks the direction of an axis that has `moved`.
     fn turn(&mut self, moved: f64, hysteresis: f64) {
         if self.direction == 0.0 {
             self.back += moved;
@@ -153,7 +153,7 @@ impl CamState {
         }
     }
 
-    /// One cycle: whether the switch is TRUE.
+    /// Advances by one cycle: returns true if the switch is TRUE.
     pub(super) fn step(
         &mut self,
         switch: &CamSwitch,
@@ -181,7 +181,7 @@ impl CamState {
                 (self.cycles, self.held) = (Some(0), Some(Edge::First).filter(|edge| is_near(*edge)));
             }
             let length = duration + options.off_compensation - options.on_compensation;
-            // Of a whole number of cycles the last is not one more by rounding.
+            // Rounding does not add a cycle to a whole number of them.
             self.cycles = self.cycles.filter(|cycles| *cycles as f64 * cycle_time < length - 1e-9 * cycle_time);
             self.is_on = self.cycles.is_some();
         } else {
