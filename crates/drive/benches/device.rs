@@ -1,7 +1,6 @@
 //! Cost of a step of the drive as the fieldbus sees it: `cargo bench -p servobench-drive --bench device`.
 //!
-//! An axis that does what it is asked, a position loop of four steps per frame; a thousand steps per sample. What the master reads
-//! is made once per frame.
+//! An ideal axis, a position loop of four steps per frame; a thousand steps per sample. The master's readings are made once per frame.
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_cia402::{Command, Commands, ControlBit, Controlword, Mode};

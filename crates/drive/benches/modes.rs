@@ -34,7 +34,7 @@ fn params(ms: u8) -> interpolated::Params {
     interpolated::Params { sub_mode: SubMode::Cubic, period, count: 1e-6, stop: STEEPNESS, velocity: f64::INFINITY }
 }
 
-/// Points `ms` apart, always as many as there is room for.
+/// Points `ms` apart, always as many as the buffer has room for.
 #[divan::bench(args = [255, 10, 1])]
 fn interpolated(bencher: Bencher, ms: u8) {
     let params = params(ms);

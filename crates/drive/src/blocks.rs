@@ -1,8 +1,8 @@
-//! Blocks of the firmware that answer real hardware; by default none of them is there.
+//! Blocks of the firmware for real hardware; all of them are absent by default.
 //!
-//! A block is a file in the folder `blocks` and its lines here: parameters, state, check, what is linear in it, and its call. The loops
-//! call places of the cascade, each of which goes through its blocks: position error, gains, measured velocity, effort fed forward, effort
-//! between velocity loop and limit, limits of current and voltage, supervision.
+//! A block is a file in the folder `blocks` and its lines here: parameters, state, check, linearisation, and its call. The loops call
+//! places of the cascade, each of which runs its blocks: position error, gains, measured velocity, feedforward effort, effort between
+//! velocity loop and limit, limits of current and voltage, supervision.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::current;
 use servobench_base::{Dq, Stateful};
@@ -20,7 +20,7 @@ pub mod schedule;
 pub mod supervision;
 
 servobench_config::parameters! {
-    /// A parameter of a block that is one number.
+    /// A numeric parameter of a block.
     pub enum BlockParameter {
         /// Largest speed of the motor that the velocity loop is given to follow
         MAX_SPEED "largest speed" = positive(Motor(&VELOCITY), "3000 rpm");
@@ -29,7 +29,7 @@ servobench_config::parameters! {
     }
 }
 
-/// The blocks; constant during a run.
+/// Parameters of the blocks; constant during a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
     /// Filters between velocity loop and effort limit.
@@ -38,7 +38,7 @@ pub struct Blocks {
     pub cogging: Option<cogging::Params>,
     /// I²t of the motor.
     pub motor_load: Option<overload::Params>,
-    /// I²t of the drive itself.
+    /// I²t of the drive.
     pub drive_load: Option<overload::Params>,
     /// Gains over speed.
     pub schedule: Option<schedule::Params>,
@@ -46,11 +46,11 @@ pub struct Blocks {
     pub max_speed: f64,
     /// Weight of the velocity reference in the proportional part of the velocity loop.
     pub reference_weight: f64,
-    /// What is watched of motor and power stage.
+    /// Supervision of motor and power stage.
     pub supervision: Option<supervision::Params>,
-    /// Whether the voltage limit is that of the measured DC link.
+    /// True if the voltage limit follows the measured DC link.
     pub measures_dc_link: bool,
-    /// How the velocity is measured; `None`: by an encoder that gives it, by differences of any other.
+    /// Velocity measurement; `None`: from the encoder if it provides a velocity, otherwise by differences.
     pub measurement: Option<measurement::Params>,
     /// Derivative part of the velocity loop, of the measured velocity.
     pub acceleration: Option<derivative::Params>,
@@ -90,12 +90,12 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Without power the motor still moves and cools; everything else begins anew.
+    /// Resets all but the measurement and the thermal loads: without power the motor still moves and cools.
     pub(crate) fn power_off(&mut self) {
         *self = Self { measurement: self.measurement, loads: self.loads, ..Self::default() };
     }
 
-    /// A position loop that is closed begins anew.
+    /// Resets the position loop when it is closed.
     pub(crate) fn close_position_loop(&mut self) {
         self.position = position::State::default();
     }
@@ -118,8 +118,8 @@ impl Blocks {
         servobench_base::limit(BlockParameter::MAX_SPEED, self.max_speed).map(|_| ())
     }
 
-    /// The blocks without what is not linear in what they see: limits, and what depends on speed or position. A block that is not named
-    /// here does not compile.
+    /// The blocks without their nonlinear parts: limits, and whatever depends on speed or position. A block that is not listed here does
+    /// not compile.
     #[must_use]
     pub fn linearised(&self) -> Self {
         Self {
@@ -138,12 +138,12 @@ impl Blocks {
         }
     }
 
-    /// By how much the blocks delay an effort that changes slowly (s).
+    /// Delay by the blocks of a slowly changing effort (s).
     pub(crate) fn effort_delay(&self) -> f64 {
         self.filters.delay()
     }
 
-    /// The position error that the position loop multiplies, at a cycle of it. `cut` has the sign in which a limit below cuts, 0 where none
+    /// Position error that the position loop multiplies, in one of its cycles. `cut` has the sign in which a limit below cuts, 0 if none
     /// does.
     #[inline(always)]
     pub(crate) fn position_error(&self, x: &mut State, error: f64, cut: f64, h: f64) -> f64 {
@@ -153,7 +153,7 @@ impl Blocks {
         }
     }
 
-    /// Gains of position and velocity loop at the motor's `velocity`, as multiples of those at a standstill.
+    /// Gain factors of position and velocity loop at the motor's `velocity`, as multiples of those at standstill.
     #[inline(always)]
     pub(crate) fn gain_factors(&self, velocity: f64) -> (f64, f64) {
         match &self.schedule {
@@ -162,7 +162,7 @@ impl Blocks {
         }
     }
 
-    /// The motor's velocity as it is measured at a cycle of the velocity loop.
+    /// Measured velocity of the motor in a cycle of the velocity loop.
     #[inline(always)]
     pub(crate) fn measured_velocity(&self, x: &mut State, u: measurement::Input, h: f64) -> f64 {
         match &self.measurement {
@@ -171,7 +171,7 @@ impl Blocks {
         }
     }
 
-    /// Age of that velocity (s), with the velocity `of_encoder` if the encoder gives one.
+    /// Age of the measured velocity (s), with the velocity `of_encoder` if the encoder provides one.
     #[inline(always)]
     pub(crate) fn velocity_age(&self, of_encoder: Option<f64>, h: f64) -> f64 {
         match &self.measurement {
@@ -181,7 +181,7 @@ impl Blocks {
         }
     }
 
-    /// The effort that is fed forward, with what the blocks add to `effort` at the motor's `position` and `velocity`.
+    /// Feedforward effort: `effort` plus the contributions of the blocks at the motor's `position` and `velocity`.
     #[inline(always)]
     pub(crate) fn feedforward(&self, x: &State, mut effort: f64, position: f64, velocity: f64) -> f64 {
         if let Some(cogging) = &self.cogging {
@@ -193,7 +193,7 @@ impl Blocks {
         effort
     }
 
-    /// Derivative part that the velocity loop subtracts from its velocity error, at a cycle with the measured `velocity`.
+    /// Derivative part that the velocity loop subtracts from its velocity error, in a cycle with the measured `velocity`.
     #[inline(always)]
     pub(crate) fn acceleration(&self, x: &mut State, velocity: f64, h: f64) -> f64 {
         match &self.acceleration {
@@ -202,19 +202,19 @@ impl Blocks {
         }
     }
 
-    /// The effort between velocity loop and limit. Blocks here are made for the rate of the velocity loop.
+    /// Effort between velocity loop and limit. The blocks here are designed for the rate of the velocity loop.
     #[inline(always)]
     pub(crate) fn effort(&self, x: &mut State, effort: f64) -> f64 {
         filter::step(&self.filters, &mut x.filters, effort)
     }
 
-    /// Largest current (A, peak) of `most` at a cycle of the velocity loop, under the measured `current`.
+    /// Largest current (A, peak), at most `most`, in a cycle of the velocity loop with the measured `current`.
     #[inline(always)]
     pub(crate) fn max_current(&self, x: &mut State, current: Dq, most: f64, h: f64) -> f64 {
         overload::limit([self.motor_load.as_ref(), self.drive_load.as_ref()], &mut x.loads, current, most, h)
     }
 
-    /// True where a thermal load is reached that is a fault.
+    /// True if a thermal load whose limit is a fault is reached.
     pub(crate) fn is_overloaded(&self, x: &State) -> bool {
         let is_fault = |load: &overload::Params| load.reaction == overload::Reaction::Fault;
         let loads = [&self.motor_load, &self.drive_load].into_iter().zip(&x.loads);
@@ -227,7 +227,7 @@ impl Blocks {
         if self.measures_dc_link { current::voltage_limit(dc_link) } else { p.max_voltage }
     }
 
-    /// Watches a cycle of the velocity loop that has power.
+    /// Supervises a cycle of the velocity loop with power.
     #[inline(always)]
     pub(crate) fn watch_motion(&self, x: &mut State, u: supervision::Motion, h: f64) {
         if let Some(supervision) = &self.supervision {
@@ -235,7 +235,7 @@ impl Blocks {
         }
     }
 
-    /// Watches a cycle of the current loop `p`, in which it measured the torque-producing current `q` at the motor's `velocity`.
+    /// Supervises a cycle of the current loop `p`, with the torque-producing current `q` measured at the motor's `velocity`.
     #[inline(always)]
     pub(crate) fn watch_currents(
         &self,

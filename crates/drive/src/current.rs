@@ -5,12 +5,12 @@
 //! decoupling_d = −ω·L_q·i_q      decoupling_q = ω·(L_d·i_d + ψ)
 //! dI/dt = k_i·(e + (u − v)/k_p)                           (forward Euler, step h)
 //! ```
-//! With k_p = α·L and k_i = k_p·R/L = α·R the loop closes like 1/(1 + s/α) (Harnefors & Nee, IEEE TIA 34(1), 1998); a
-//! ramp is followed 1/α late, whatever the dead time in the loop. The voltage limit gives the d axis first call.
+//! With k_p = α·L and k_i = k_p·R/L = α·R the loop closes like 1/(1 + s/α) (Harnefors & Nee, IEEE TIA 34(1), 1998); a ramp is followed with
+//! a delay of 1/α, whatever the dead time in the loop. The voltage limit gives the d axis priority.
 //!
-//! What its references are for an effort is in [`operating_point`]; the dead time of the inverter is compensated by [`dead_time`].
+//! [`operating_point`] computes the current references of an effort; [`dead_time`] compensates the dead time of the inverter.
 //!
-//! The voltage computed at tick k is applied from k+1 to k+2: it is turned ahead by 1.5·h·ω to meet the rotor there.
+//! The voltage computed at tick k is applied from k+1 to k+2: it is rotated ahead by 1.5·h·ω to match the rotor then.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 pub mod dead_time;
 pub mod operating_point;
@@ -52,7 +52,7 @@ servobench_config::parameters! {
     }
 }
 
-/// The motor as the firmware knows it.
+/// Motor parameters as estimated by the firmware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorEstimate {
     /// Electrical angle per motor coordinate: pole pairs p (rad/rad), or π/τ_p of a linear motor (rad/m).
@@ -65,12 +65,12 @@ pub struct MotorEstimate {
     pub flux_linkage: f64,
 }
 
-/// What the proportional gains follow from.
+/// Origin of the proportional gains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tuning {
-    /// The closed-loop bandwidth (rad/s) and the estimated motor.
+    /// From the closed-loop bandwidth (rad/s) and the estimated motor.
     Bandwidth(f64),
-    /// They are given (V/A).
+    /// Given values (V/A).
     Gains(Dq),
 }
 
@@ -86,7 +86,7 @@ pub struct Gains {
 /// Gains and limits; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
-    /// The motor.
+    /// Estimated motor.
     pub motor: MotorEstimate,
     /// Gains.
     pub gains: Gains,
@@ -96,9 +96,9 @@ pub struct Params {
     pub max_current: f64,
     /// Largest voltage amplitude (V); may be infinite.
     pub max_voltage: f64,
-    /// How the currents of an effort are chosen.
+    /// Choice of the currents for an effort.
     pub operation: operating_point::Params,
-    /// Compensation of the inverter's dead time, where there is one.
+    /// Compensation of the inverter's dead time, if any.
     pub dead_time: Option<dead_time::Params>,
 }
 
@@ -107,7 +107,7 @@ pub struct Params {
 pub struct State {
     /// Integrators (V).
     pub integral: Dq,
-    /// Voltage that goes out at the next tick (V, stator frame).
+    /// Voltage to be applied at the next tick (V, stator frame).
     pub pending: AlphaBeta,
 }
 
@@ -118,13 +118,13 @@ pub struct Input {
     pub reference: Dq,
     /// Measured stator current (A, peak).
     pub current: AlphaBeta,
-    /// Measured rotor.
+    /// Measured rotor angle.
     pub rotor: Rotation,
     /// Measured electrical speed (rad/s).
     pub omega_e: f64,
 }
 
-/// What tick k gives.
+/// Output of tick k.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Output {
     /// Voltage to apply from now on (V): the one computed a tick ago.
@@ -133,7 +133,7 @@ pub struct Output {
     pub current: Dq,
     /// Voltage computed at this tick (V).
     pub computed: Dq,
-    /// Whether the limit cut it.
+    /// True if the voltage was limited.
     pub saturated: bool,
 }
 
@@ -153,7 +153,7 @@ impl Gains {
         Self::cancelling(motor, Dq { d: alpha * d, q: alpha * q })
     }
 
-    /// Those of `tuning`, with these integral times (s), or L/R of each axis.
+    /// Gains of `tuning`, with these integral times (s), or L/R of each axis.
     #[must_use]
     pub fn tuned(motor: &MotorEstimate, tuning: Tuning, integral_times: Option<Dq>) -> Self {
         let derived = match tuning {
@@ -163,15 +163,14 @@ impl Gains {
         integral_times.map_or(derived, |t_i| Self::with_integral_times(derived.k_p, t_i))
     }
 
-    /// The proportional gains `k_p` (V/A) with the integral time L/R of each axis: the controller's zero cancels the
-    /// motor's pole.
+    /// Gains with the proportional part `k_p` (V/A) and the integral time L/R of each axis: the controller's zero cancels the motor's pole.
     #[must_use]
     pub fn cancelling(motor: &MotorEstimate, k_p: Dq) -> Self {
         let Dq { d, q } = motor.inductance;
         Self::with_integral_times(k_p, Dq { d: d / motor.resistance, q: q / motor.resistance })
     }
 
-    /// The proportional gains `k_p` (V/A) with the integral times `t_i` (s).
+    /// Gains with the proportional part `k_p` (V/A) and the integral times `t_i` (s).
     #[must_use]
     pub fn with_integral_times(k_p: Dq, t_i: Dq) -> Self {
         Self { k_p, k_i: Dq { d: k_p.d / t_i.d, q: k_p.q / t_i.q } }
@@ -213,20 +212,20 @@ impl Params {
         limit(Parameter::DC_LINK, self.max_voltage).map(|_| ())
     }
 
-    /// Effort per q-axis current (N·m/A or N/A, peak), as the drive believes; 0 where only maximum torque per ampere gives the d axis its
-    /// current.
+    /// Effort per q-axis current (N·m/A or N/A, peak), as estimated by the drive; 0 if the d axis has a current only by maximum torque per
+    /// ampere.
     #[must_use]
     pub fn effort_constant(&self) -> f64 {
         self.motor.effort_constant(self.d_reference)
     }
 
-    /// Largest q-axis current that the d axis leaves (A, peak): the limit is on the vector.
+    /// Largest q-axis current beside that of the d axis (A, peak): the limit applies to the vector.
     #[must_use]
     pub fn max_q_current(&self) -> f64 {
         q_current(self.max_current, self.d_reference)
     }
 
-    /// Largest effort that the current limit leaves at standstill (N·m or N).
+    /// Largest effort within the current limit at standstill (N·m or N).
     #[must_use]
     pub fn max_effort(&self) -> f64 {
         match self.operation.strategy {
@@ -239,7 +238,7 @@ impl Params {
     }
 }
 
-/// What a current of the length `max` leaves for the q axis beside `d` (A, peak).
+/// Largest q-axis current beside `d` for a vector of the length `max` (A, peak).
 #[must_use]
 pub fn q_current(max: f64, d: f64) -> f64 {
     if d == 0.0 { max } else { libm::sqrt(((max - d) * (max + d)).max(0.0)) }
@@ -281,7 +280,7 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     Output { voltage, current: i, computed, saturated }
 }
 
-/// Cuts `v` to the circle of radius `max`; d keeps what it asks for as long as the circle allows.
+/// Cuts `v` to the circle of radius `max`, with priority for d.
 #[inline(always)]
 fn limit_d_first(v: Dq, max: f64) -> Dq {
     if v.d * v.d + v.q * v.q <= max * max {
@@ -289,7 +288,7 @@ fn limit_d_first(v: Dq, max: f64) -> Dq {
     }
     let d = v.d.clamp(-max, max);
     let q_max = libm::sqrt(max * max - d * d);
-    // Where d is not a number there is no bound: the voltage goes on as it is, and ends the run.
+    // A NaN in d gives no bound: the voltage passes unchanged, and ends the run.
     Dq { d, q: if v.q.abs() > q_max { q_max.copysign(v.q) } else { v.q } }
 }
 

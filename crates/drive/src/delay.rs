@@ -1,8 +1,8 @@
-//! Delay of the set-point by any time up to [`CAPACITY`] task periods, fractions included.
+//! Delay of the set-point by up to [`CAPACITY`] task periods, fractions included.
 //!
-//! The feedforward effort takes a while to reach the motor; the reference of the loops waits as long, or the position
-//! controller works against the feedforward. Between two samples the set-point is the polynomial of the earlier one
-//! ([`Setpoint::after`]): exact as long as snap switches at sample instants, as a sampled plan does.
+//! The feedforward effort reaches the motor with a delay; the reference of the loops is delayed equally, lest the position controller
+//! counteract the feedforward. Between two samples the set-point is the polynomial of the earlier one ([`Setpoint::after`]): exact as long
+//! as snap switches at sample instants, as in a sampled plan.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::{Setpoint, Stateful};
 use servobench_config::Kind::Plain;
@@ -20,12 +20,12 @@ servobench_config::parameters! {
 /// Longest delay in task periods.
 pub const CAPACITY: usize = 30;
 
-/// How long; constant during a run.
+/// Delay; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Params {
     /// Whole task periods, rounded up.
     whole: usize,
-    /// What the rounding added (s), and as a share of a task period.
+    /// Excess of the rounding (s), and as a share of a task period.
     rest: f64,
     share: f64,
 }
@@ -34,12 +34,12 @@ pub struct Params {
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct State {
     kept: [Setpoint; CAPACITY + 2],
-    /// Index of the newest.
+    /// Index of the newest set-point.
     newest: usize,
 }
 
 impl Params {
-    /// A delay by `delay` (s) in a task of the period `period` (s).
+    /// Parameters for a delay by `delay` (s) in a task of the period `period` (s).
     ///
     /// # Errors
     /// [`ParameterError`] when the delay is negative or longer than [`CAPACITY`] periods.
@@ -56,7 +56,7 @@ impl Params {
         Ok(Self { whole, rest, share: rest / period })
     }
 
-    /// How long, in a task of the period `period` (s).
+    /// Delay (s) in a task of the period `period` (s).
     #[must_use]
     pub fn length(&self, period: f64) -> f64 {
         self.whole as f64 * period - self.rest
@@ -64,30 +64,30 @@ impl Params {
 }
 
 impl State {
-    /// Filled with `start`.
+    /// State filled with `start`.
     #[must_use]
     pub const fn new(start: Setpoint) -> Self {
         Self { kept: [start; CAPACITY + 2], newest: 0 }
     }
 }
 
-/// The last values of something that is no set-point and between two samples a line.
+/// Last values of a quantity other than a set-point, interpolated linearly between samples.
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct Values {
     kept: [f64; CAPACITY + 2],
-    /// Index of the newest.
+    /// Index of the newest value.
     newest: usize,
 }
 
 impl Values {
-    /// Filled with `start`.
+    /// State filled with `start`.
     #[must_use]
     pub const fn new(start: f64) -> Self {
         Self { kept: [start; CAPACITY + 2], newest: 0 }
     }
 }
 
-/// Takes the value of this task tick and returns the one that is as old as `p` says.
+/// Stores the value of this task tick and returns the value delayed by `p`.
 #[inline(always)]
 pub fn step_value(p: &Params, x: &mut Values, now: f64) -> f64 {
     let size = x.kept.len();
@@ -98,7 +98,7 @@ pub fn step_value(p: &Params, x: &mut Values, now: f64) -> f64 {
     if p.share == 0.0 { earlier } else { earlier + p.share * (ago(p.whole - 1) - earlier) }
 }
 
-/// Takes the set-point of this task tick and returns the one that is as old as `p` says.
+/// Stores the set-point of this task tick and returns the set-point delayed by `p`.
 #[inline(always)]
 pub fn step(p: &Params, x: &mut State, now: Setpoint) -> Setpoint {
     let size = x.kept.len();
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    /// Oracle: a line is its own interpolation.
+    /// Oracle: a straight line equals its linear interpolation.
     #[test]
     fn a_value_is_as_late_as_a_set_point() {
         let period = 1e-3;

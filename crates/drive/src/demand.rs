@@ -1,34 +1,33 @@
-//! What the mode of operation asks of the loops, and how much effort they may make of it.
+//! Demand of the mode of operation on the loops, and limits of its effort.
 use servobench_base::{Setpoint, Stateful};
 
-/// What the loops are to do at a tick. Positions and velocities are in the axis coordinate (m or rad), efforts in the
-/// motor's (N·m or N).
+/// Demand on the loops at a tick. Positions and velocities are in the axis coordinate (m or rad), efforts in the motor's (N·m or N).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub enum Demand {
     /// The motor carries no current.
     Off,
     /// The position loop follows the set-point.
     Position {
-        /// What is followed.
+        /// Set-point to follow.
         setpoint: Setpoint,
-        /// Added to the velocity that the position loop asks for.
+        /// Offset of the velocity from the position loop.
         velocity_offset: f64,
-        /// Added to the effort that the velocity loop asks for.
+        /// Offset of the effort from the velocity loop.
         effort_offset: f64,
     },
-    /// The velocity loop follows the velocity; there is no position loop.
+    /// The velocity loop follows the velocity, without a position loop.
     Velocity {
-        /// What is followed: velocity, and acceleration for the feedforward. Its position is not used.
+        /// Velocity to follow, and acceleration for the feedforward. The position is not used.
         setpoint: Setpoint,
-        /// Added to the effort that the velocity loop asks for.
+        /// Offset of the effort from the velocity loop.
         effort_offset: f64,
     },
-    /// The effort itself, within the drive's limits.
+    /// An effort, within the drive's limits.
     Effort(f64),
 }
 
-/// The largest efforts that the loops may ask for beside the drive's own limits, magnitudes in the motor's coordinate (N·m or N);
-/// may be infinite.
+/// Largest efforts that the loops may demand in addition to the drive's own limits, magnitudes in the motor's coordinate (N·m or N); may be
+/// infinite.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct EffortLimits {
     /// In positive direction.
@@ -47,32 +46,32 @@ impl EffortLimits {
         Self { forward: limit, backward: limit }
     }
 
-    /// These, and at most `limit` in either direction.
+    /// Lower of these limits and `limit`, in each direction.
     #[must_use]
     pub const fn at_most(self, limit: f64) -> Self {
         Self { forward: self.forward.min(limit), backward: self.backward.min(limit) }
     }
 
-    /// These, and at most `others` in each direction.
+    /// Lower of these limits and `others`, in each direction.
     #[must_use]
     pub const fn within(self, others: Self) -> Self {
         Self { forward: self.forward.min(others.forward), backward: self.backward.min(others.backward) }
     }
 
-    /// The same limits of an axis that counts the other way round.
+    /// Limits of an axis that counts in the opposite direction.
     #[must_use]
     pub const fn turned(self) -> Self {
         Self { forward: self.backward, backward: self.forward }
     }
 
-    /// The larger one.
+    /// Larger of the two limits.
     #[must_use]
     pub const fn largest(self) -> f64 {
         self.forward.max(self.backward)
     }
 }
 
-/// What is fed forward beside a set-point.
+/// Feedforward in addition to a set-point.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Offsets {
     /// To the velocity loop (m/s or rad/s).
@@ -94,7 +93,7 @@ impl Demand {
         Self::Position { setpoint, velocity_offset: 0.0, effort_offset: 0.0 }
     }
 
-    /// What it feeds forward; an effort that is demanded itself is none.
+    /// Feedforward of the demand; a demanded effort is not one.
     pub(crate) const fn offsets(&self) -> Offsets {
         match *self {
             Self::Position { velocity_offset: velocity, effort_offset: effort, .. } => Offsets { velocity, effort },
@@ -103,7 +102,7 @@ impl Demand {
         }
     }
 
-    /// Cuts the efforts to the limits of both directions; whether there was anything to cut.
+    /// Cuts the efforts to the limits of both directions; returns true if any was cut.
     #[inline]
     pub(crate) fn keep_within(&mut self, EffortLimits { forward, backward }: EffortLimits) -> bool {
         let (Self::Position { effort_offset: effort, .. }
@@ -117,7 +116,7 @@ impl Demand {
         is_beyond
     }
 
-    /// Makes it the same demand on an axis that counts from elsewhere.
+    /// Shifts the demand to an axis whose zero differs by `distance`.
     #[inline]
     pub(crate) fn move_by(&mut self, distance: f64) {
         if let Self::Position { setpoint, .. } = self {

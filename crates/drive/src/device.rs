@@ -2,39 +2,37 @@
 //!
 //! Order of events in a [`step`]:
 //!
-//! 1. the frame that came is converted: drive units end here,
-//! 2. faults are looked for: from outside, of the power, of the encoders, of motor and power stage, missing frames, following error
-//!    (603Fh),
-//! 3. the power state machine takes the transition that is due,
-//! 4. the mode of operation, or the stop that is asked for, says what the loops are to do,
+//! 1. the received frame is converted from drive units,
+//! 2. faults are detected: external, of the power, of the encoders, of motor and power stage, missing frames, following error (603Fh),
+//! 3. the power state machine takes the pending transition,
+//! 4. the mode of operation, or a requested stop, determines the demand on the loops,
 //! 5. limits cut it: ends of the axis, effort.
 //!
-//! So a frame, a fault or a switch acts at the step at which it is seen. What the master reads, [`State::actuals`], is of the
-//! last step.
+//! So a frame, a fault or a switch acts at the step at which it is seen. The process data for the master, [`State::actuals`], are those of
+//! the last step.
 //!
 //! # Positions
 //!
-//! The encoder gives increments, unwrapped, in its own direction. The axis counts from another zero once it is homed; modes see
-//! that position (m or rad), the loops the encoder's. The bus has a counter of user-defined units that wraps: an absolute target of
-//! a cyclic mode is the one of all that show the same value which is nearest to the axis, one of a profile lies in the same turn
-//! of the counter as the axis.
+//! The encoder gives increments, unwrapped, in its own direction. The axis counts from another zero once it is homed; modes use that
+//! position (m or rad), the loops the encoder's. The bus has a wrapping counter of user-defined units: of all positions that show the same
+//! value, an absolute target of a cyclic mode is the nearest to the axis, and one of a profile lies in the same turn of the counter as the
+//! axis.
 //!
 //! # A lost encoder
 //!
-//! An encoder of the motor that says that it has failed, a velocity or an effort that is no number leaves nothing to close a loop by.
-//! Whatever the fault reaction option code (605Eh) says, the power stage is then switched off at once and the axis coasts; so it is when
-//! the encoder fails while another fault is being braked, and where the current does not brake any more
-//! ([`Finding::leaves_no_brake`](crate::supervision::Finding::leaves_no_brake)). Without the encoder of the load the axis is braked by its
+//! A motor encoder that reports a failure, or a NaN velocity or effort, leaves nothing to close a loop with. Whatever the fault reaction
+//! option code (605Eh), the power stage is then switched off at once and the axis coasts; the same holds if the encoder fails during the
+//! braking of another fault, and if the current no longer brakes
+//! ([`Finding::leaves_no_brake`](crate::supervision::Finding::leaves_no_brake)). Without the load encoder the axis is braked by its
 //! velocity, which is the motor's.
 //!
 //! # Take-over
 //!
-//! When the drive function is enabled, the demand begins where the axis is, at its velocity. When a mode follows another or a
-//! stop, it begins with the position and the velocity that the loops follow. A mode that the drive does not have is not switched
-//! to: the display (6061h) says what runs. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode;
-//! pp goes on with its set-point afterwards. Bits 12 and 13 of the statusword keep their meaning during a halt: what a cyclic
-//! mode does then is not to follow the master, nor does it while an end of the axis keeps it from that, and a reference is
-//! attained in homing once its search is over.
+//! When the drive function is enabled, the demand begins at the position and velocity of the axis. When a mode follows another or a stop,
+//! it begins with the position and the velocity that the loops follow. The drive does not switch to an unsupported mode: the display
+//! (6061h) shows the active one. While the axis is braked, the mode stays. A halt (bit 8) stops the axis in every mode; pp continues with
+//! its set-point afterwards. Bits 12 and 13 of the statusword keep their meaning during a halt: a cyclic mode does not follow the master
+//! then, nor while an end of the axis prevents it, and homing attains its reference once the search is over.
 mod cycle;
 mod fault;
 mod guard;
@@ -68,20 +66,20 @@ use servobench_cia402::{
     StatusBit, Statusword, Transition,
 };
 
-/// What the drive sees at a step.
+/// Inputs of the drive at a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inputs<'a> {
-    /// The newest frame of the master, when one came since the last step.
+    /// The newest frame of the master, if one came since the last step.
     pub frame: Option<&'a Commands>,
-    /// What is measured.
+    /// Measured values.
     pub measured: Measured,
-    /// Fault from outside, while it is present: its code (603Fh).
+    /// External fault, while it is present: its code (603Fh).
     pub fault: Option<u16>,
-    /// Whether the high-level power is applied.
+    /// True if the high-level power is applied.
     pub main_voltage: bool,
 }
 
-/// What the drive measures.
+/// Values measured by the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own")]
 pub struct Measured {
@@ -91,38 +89,38 @@ pub struct Measured {
     pub velocity: f64,
     /// Effort of the motor (N·m or N).
     pub effort: f64,
-    /// What the position loop saw at its last turn: its own reference, delays included, less the position (m or rad).
+    /// Following error of the position loop in its last cycle: its own reference, delays included, less the position (m or rad).
     pub following_error: f64,
-    /// Whether the loops cut the effort at their last turn.
+    /// True if the loops cut the effort in their last cycle.
     pub effort_is_cut: bool,
-    /// Whether the input for the switch of the negative end is closed.
+    /// True if the input for the switch of the negative end is closed.
     pub negative_limit: bool,
-    /// Whether the input for the switch of the positive end is closed.
+    /// True if the input for the switch of the positive end is closed.
     pub positive_limit: bool,
-    /// Whether the input for the home switch is closed.
+    /// True if the input for the home switch is closed.
     pub home: bool,
-    /// Increments at which the last index pulse came, when one came since the last step.
+    /// Increments at the last index pulse, if one came since the last step.
     pub index: Option<i64>,
-    /// Whether an I²t load is reached that is a fault.
+    /// True if an I²t load whose limit is a fault is reached.
     pub is_overloaded: bool,
-    /// Whether the encoder of the motor says that it has failed.
+    /// True if the encoder of the motor reports a failure.
     pub motor_encoder_error: bool,
-    /// Whether that of the load does.
+    /// True if the encoder of the load reports a failure.
     pub load_encoder_error: bool,
     /// Finding of the supervision of motor and power stage.
     pub finding: Option<Finding>,
 }
 
-/// What a step gives.
+/// Outputs of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outputs {
-    /// For the loops, in the encoder's coordinate.
+    /// Demand on the loops, in the encoder's coordinate.
     pub demand: Demand,
-    /// What the loops may make of it at most.
+    /// Largest efforts that the loops may demand.
     pub effort_limits: EffortLimits,
     /// Transition of the power state machine that was taken.
     pub transition: Option<&'static Transition>,
-    /// Fault that sent the drive into its fault reaction at this step.
+    /// Fault that caused the fault reaction at this step.
     pub fault: Option<Fault>,
 }
 
@@ -131,7 +129,7 @@ pub struct Outputs {
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {
     power: PowerMemory,
-    /// The mode that the master asks for and the one that is active.
+    /// Mode requested by the master, and the active one.
     wanted: Option<Mode>,
     mode: Option<Mode>,
     running: Option<Running>,
@@ -140,27 +138,27 @@ pub struct State {
     cycle: cycle::State,
     buffer: Buffer,
     data_record: DataRecord,
-    /// Whether the last point of the master could not be read.
+    /// True if the last point of the master could not be read.
     has_refused_point: bool,
     probe: touch_probe::State,
-    /// What the master asks of the probe (60B8h), and of the digital outputs (60FEh).
+    /// Command of the master to the probe (60B8h), and to the digital outputs (60FEh).
     probe_function: u16,
     digital_outputs: u32,
     now: Moment,
-    /// What the loops were asked at the last step, in the axis' coordinate.
+    /// Demand of the last step, in the axis' coordinate.
     last: Demand,
-    /// Whether the last frame asked for more than the limits.
+    /// True if the last frame exceeded the limits.
     is_cut: bool,
-    /// Efforts as the settings limit them, and the last frame.
+    /// Effort limits of the settings and the last frame.
     effort_limits: EffortLimits,
-    /// Where the axis has its zero (increments).
+    /// Zero of the axis (increments).
     origin: i64,
-    /// What homing adds to every position from the next step on.
+    /// Shift by homing of every position from the next step on.
     shift: Option<f64>,
     fault: Option<Fault>,
-    /// Whether what leaves no loop to brake by came before or during the fault that the drive is in.
+    /// True if a failure that leaves no loop to brake with came before or during the present fault.
     cannot_brake: bool,
-    /// Whether the encoder of the load failed.
+    /// True if the encoder of the load failed.
     has_lost_load: bool,
     beyond_following_error: Dwell,
     at_standstill: Dwell,
@@ -170,7 +168,7 @@ pub struct State {
 }
 
 impl State {
-    /// After power-on, with the zero of the axis at that of the encoder.
+    /// State after power-on, with the zero of the axis at that of the encoder.
     ///
     /// # Errors
     /// [`ParamError`] names the first setting of `p` that is out of its bound.
@@ -218,19 +216,19 @@ impl State {
         self.power.state()
     }
 
-    /// True where a limit of the drive is active (bit 11 of the statusword).
+    /// True if a limit of the drive is active (bit 11 of the statusword).
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.statusword.has(StatusBit::InternalLimitActive)
     }
 
-    /// Mode that is active; `None` before the first one.
+    /// Active mode; `None` before the first one.
     #[must_use]
     pub const fn mode(&self) -> Option<Mode> {
         self.mode
     }
 
-    /// True where the highest velocity (6080h) cut the target of csv.
+    /// True if the highest velocity (6080h) cut the target of csv.
     #[must_use]
     pub const fn cuts_velocity(&self) -> bool {
         match &self.running {
@@ -239,19 +237,19 @@ impl State {
         }
     }
 
-    /// Where the axis has its zero (increments of the encoder).
+    /// Zero of the axis (increments of the encoder).
     #[must_use]
     pub const fn origin(&self) -> i64 {
         self.origin
     }
 
-    /// The fault that the drive is in, until it is reset.
+    /// Present fault, until it is reset.
     #[must_use]
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// Bits of the digital outputs (60FEh:1), which nothing is connected to.
+    /// Bits of the digital outputs (60FEh:1), which are not connected.
     #[must_use]
     pub const fn digital_outputs(&self) -> u32 {
         self.digital_outputs
@@ -269,14 +267,13 @@ impl State {
         self.buffer.status()
     }
 
-    /// The trajectory buffer, for points that come without a frame: through the serial interface, or a data record (60C1h) that is
-    /// not mapped.
+    /// Trajectory buffer, for points that come without a frame: through the serial interface, or in an unmapped data record (60C1h).
     pub const fn trajectory_buffer(&mut self) -> &mut Buffer {
         &mut self.buffer
     }
 }
 
-/// One period of the position loop.
+/// Executes one period of the position loop.
 pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
     x.measure(p, &u.measured);
     if let Some(frame) = u.frame {
@@ -305,7 +302,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
         DriveFunction::Brake(how) => x.brake(p, how, standstill),
     };
     if !u.main_voltage {
-        // Without power nothing can be driven, whatever the state says; when it is back, all begins where the axis is then.
+        // Without power nothing can be driven, whatever the state; afterwards everything begins at the position of the axis.
         answer.demand = Demand::Off;
         (x.running, x.stop) = (None, None);
     }
@@ -329,7 +326,7 @@ pub fn step(p: &Params, x: &mut State, u: &Inputs) -> Outputs {
 }
 
 impl State {
-    /// Reads the sensors: where the axis is, and where the loops go on from.
+    /// Evaluates the sensors: the actual values, and the set-point from which the loops continue.
     fn measure(&mut self, p: &Params, measured: &Measured) {
         (self.increments, self.following_error) = (measured.increments, measured.following_error);
         let position = |increments: i64| p.units.metres_or_radians(increments.wrapping_sub(self.origin));
@@ -350,7 +347,7 @@ impl State {
         self.now.actual = actual;
     }
 
-    /// Looks at what the touch probe is asked for.
+    /// Updates the touch probe by its command.
     fn probe(&mut self, p: &Params, measured: &Measured) {
         let position = |increments: i64| p.units.position(increments.wrapping_sub(self.origin));
         let input = touch_probe::Input {
@@ -362,7 +359,7 @@ impl State {
         self.probe.step(&input);
     }
 
-    /// Adds to every position, as far as whole increments go.
+    /// Shifts every position, by whole increments.
     fn move_zero(&mut self, p: &Params, shift: f64) {
         let increments = p.units.increments(shift);
         self.origin = self.origin.wrapping_sub(increments);
@@ -385,12 +382,12 @@ impl State {
     fn follow(&mut self, p: &Params, event: CycleEvent) -> Answer {
         self.switch_mode();
         let Some(mode) = self.mode else {
-            // None yet: the axis is held where it is.
+            // No mode yet: the axis is held in place.
             return self.brake(p, Deceleration::SlowDownRamp, false);
         };
         let (begins, was_stopped) = (self.running.is_none(), self.stop.take().is_some());
         if begins || was_stopped || self.guard.is_active() {
-            // The acceleration of others may be beyond the limits of this mode.
+            // The acceleration of other demands may exceed the limits of this mode.
             let Setpoint { x, v, .. } = self.now.demanded;
             self.now.demanded = Setpoint { v, ..Setpoint::at_rest(x) };
         }
@@ -413,7 +410,7 @@ impl State {
         answer
     }
 
-    /// Brakes and holds. Only a halt leaves the mode what it was doing.
+    /// Brakes and holds. Only a halt preserves the state of the mode.
     fn brake(&mut self, p: &Params, how: Deceleration, standstill: bool) -> Answer {
         let is_halt = self.power.state() == PowerState::OperationEnabled
             && self.now.targets.controlword.gives(Command::EnableOperation);
@@ -433,7 +430,7 @@ impl State {
             self.stop = Some((how, ramp));
         }
         let mut demand = self.stop.as_mut().map_or(Demand::Off, |(_, ramp)| ramp.step(p.period));
-        // At an end of the axis no ramp is gentler than the one that keeps it from going on.
+        // At an end of the axis the guard's ramp overrides a gentler one.
         self.guard.step(p, &self.now, &mut demand);
         let [bit_12, bit_13] = self.running.as_mut().map_or([false; 2], |running| running.halted(p, &self.now));
         Answer { demand, target_reached: standstill, bit_12, bit_13 }

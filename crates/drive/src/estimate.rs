@@ -1,8 +1,8 @@
-//! What the firmware believes of the axis.
+//! Axis model of the firmware.
 use crate::feedforward::Model;
 
 servobench_config::choices! {
-    /// Model behind an effort feedforward, the drive's own or that of a master on the bus.
+    /// Model behind an effort feedforward, of the drive or of a master on the bus.
     pub enum EffortFeedforward default Off {
         /// none
         Off = "off",
@@ -13,7 +13,7 @@ servobench_config::choices! {
     }
 }
 
-/// What the firmware believes of the axis, in the axis coordinate unless said otherwise.
+/// Axis model as estimated by the firmware, in the axis coordinate unless stated otherwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// Axis coordinate per motor coordinate (m/rad, or 1).
@@ -35,13 +35,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Inertia as the motor feels it (motor coordinate).
+    /// Total inertia at the motor (motor coordinate).
     #[must_use]
     pub fn inertia_at_the_motor(&self) -> f64 {
         self.transmission * self.transmission * (self.motor_inertia + self.load_inertia)
     }
 
-    /// The model of the axis for a feedforward by `effort`.
+    /// Model of the axis for a feedforward by `effort`.
     #[must_use]
     pub fn model(&self, effort: EffortFeedforward) -> Model {
         match effort {

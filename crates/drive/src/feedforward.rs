@@ -1,12 +1,12 @@
-//! Feedforward: what the loops are to follow, and the effort that makes them need not.
+//! Feedforward: the reference of the loops, and the effort that makes the axis follow it without their action.
 //!
 //! ```text
 //! rigid:     F = m·a + k·v
 //! two-mass:  F = (m1·m2/c)·s + ((m1·k2 + m2·k1)/c)·j + (m1 + m2 + k1·k2/c)·a + (k1 + k2)·v
 //!            x_m = x + (m2·a + k2·v)/c        v_m = v + (m2·j + k2·a)/c
 //! ```
-//! The set-point `x` is the load's. Loops that measure on the motor must follow the motor's own reference `x_m`: fed
-//! with `x` itself they fight the feedforward. Axis coordinate throughout.
+//! The set-point `x` is that of the load. Loops that measure on the motor must follow the motor's own reference `x_m`: with `x` itself they
+//! counteract the feedforward. Axis coordinate throughout.
 //! Source: Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005.
 use servobench_base::{Setpoint, Stateful, finite};
 use servobench_config::Kind::{Axis, Plain};
@@ -67,8 +67,8 @@ pub enum Model {
 pub struct Params {
     /// Share of the reference velocity added to the velocity command, 0 to 1.
     pub velocity: f64,
-    /// Whether that share follows the reference's own polynomial from one velocity-loop cycle to the next, instead of waiting
-    /// for the next cycle of the position loop.
+    /// True if that share follows the reference's own polynomial from one velocity-loop cycle to the next, instead of being held until the
+    /// next cycle of the position loop.
     pub interpolate: bool,
     /// Model of the effort.
     pub model: Model,
@@ -78,12 +78,12 @@ pub struct Params {
     pub bias: f64,
 }
 
-/// What the motor-side loops follow.
+/// Reference of the motor-side loops.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct MotorReference {
     /// Position of the motor, in the axis coordinate (m or rad).
     pub position: f64,
-    /// Its velocity (m/s or rad/s).
+    /// Velocity of the motor (m/s or rad/s).
     pub velocity: f64,
 }
 
@@ -112,7 +112,7 @@ impl Params {
         }
     }
 
-    /// Effort that moves the load as `r` says (axis coordinate, N or N·m).
+    /// Effort for the motion `r` of the load (axis coordinate, N or N·m).
     #[must_use]
     pub fn effort(&self, r: Setpoint) -> f64 {
         let friction = self.bias + if r.v == 0.0 { 0.0 } else { self.coulomb.copysign(r.v) };
@@ -132,7 +132,7 @@ impl Params {
             }
     }
 
-    /// Motion of the motor while the load moves as `r` says.
+    /// Motion of the motor while the load follows `r`.
     #[inline]
     #[must_use]
     pub fn motor_reference(&self, r: Setpoint) -> MotorReference {

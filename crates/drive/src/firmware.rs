@@ -1,9 +1,9 @@
 //! The firmware: position, velocity and current loops in a cascade, each at its own rate.
 //!
-//! Order of events at a tick: position loop → velocity loop → current loop. A slower loop's output reaches the faster
-//! one **in the same tick**; in between it is held, but for the velocity that is fed forward: at each cycle of the velocity
-//! loop it is that of the reference's own polynomial, at the instant of which the measured velocity is. Only the current loop's voltage waits one period of that loop (the
-//! time its computation takes). It knows the axis by its sensors and its own estimates, nothing else.
+//! Order of events at a tick: position loop → velocity loop → current loop. A slower loop's output reaches the faster one **in the same
+//! tick** and is held in between, except for the velocity feedforward: in each cycle of the velocity loop it follows the reference's own
+//! polynomial, at the instant to which the measured velocity belongs. Only the current loop's voltage waits one period of that loop (its
+//! computation time). The firmware knows the axis only by its sensors and its own estimates.
 //!
 //! Position and its reference are in the axis coordinate, velocity and effort in the motor's; `transmission` converts.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
@@ -17,28 +17,28 @@ use crate::{Demand, EffortLimits, current, delay, velocity};
 use servobench_base::{AlphaBeta, Countdown, Dq, ElectricalAngle, KnownRotation, PowerCommand, Setpoint, Stateful};
 use servobench_config::ParameterError;
 
-/// Which encoder closes the position loop.
+/// Encoder that closes the position loop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Feedback {
-    /// The motor's; the loop follows the motor's own reference.
+    /// The motor's encoder; the loop follows the motor's own reference.
     #[default]
     Motor,
-    /// The load's, which reads this position (axis coordinate); the loop follows the load's reference.
+    /// The load's encoder, with this reading (axis coordinate); the loop follows the load's reference.
     Load(f64),
 }
 
-/// What the sensors say at tick k.
+/// Sensor values at tick k.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensors {
     /// Motor position (motor coordinate).
     pub motor_position: f64,
-    /// Where the rotor is taken to be for the commutation (motor coordinate), if not at the motor position.
+    /// Rotor position for the commutation (motor coordinate), if it differs from the motor position.
     pub rotor_position: Option<f64>,
-    /// Motor velocity, where the encoder gives one; otherwise the firmware forms differences.
+    /// Motor velocity, if the encoder provides one; otherwise the firmware forms differences.
     pub motor_velocity: Option<f64>,
-    /// Last edge of the motor's encoder, where it is timed.
+    /// Last edge of the motor's encoder, if edges are timed.
     pub motor_edge: Option<Edge>,
-    /// What closes the position loop.
+    /// Feedback of the position loop.
     pub feedback: Feedback,
     /// Stator current (A, peak).
     pub current: AlphaBeta,
@@ -46,7 +46,7 @@ pub struct Sensors {
     pub dc_link: f64,
     /// Temperature of the winding (°C).
     pub winding: f64,
-    /// A rotation that somebody has worked out: where it is that of the angle that the firmware reads, it is taken from here.
+    /// A precomputed rotation: used if it belongs to the angle that the firmware reads.
     pub known_rotation: KnownRotation,
 }
 
@@ -61,7 +61,7 @@ impl Sensors {
     }
 }
 
-/// Which of the loops are closed.
+/// Closed loops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 enum Closed {
     #[default]
@@ -72,7 +72,7 @@ enum Closed {
     None,
 }
 
-/// Outputs of each loop at its last turn: faster loops and recordings see them until the next.
+/// Outputs of each loop in its last cycle, held for faster loops and recordings until the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Held {
     /// Load-side reference, delay-matched (axis coordinate).
@@ -81,15 +81,15 @@ pub struct Held {
     pub motor_reference: MotorReference,
     /// Velocity reference of the velocity loop at its last cycle (axis coordinate).
     pub velocity_reference: f64,
-    /// True where the speed limit cut it.
+    /// True if the speed limit cut the reference.
     pub speed_is_cut: bool,
-    /// Effort fed forward (motor coordinate).
+    /// Feedforward effort (motor coordinate).
     pub feedforward: f64,
-    /// Effort reference (motor coordinate) and what cut it: the effort limit, or the current limit below it.
+    /// Effort reference (motor coordinate) and its limit in action: the effort limit, or the current limit below it.
     pub effort: velocity::Output,
     /// q-axis current reference (A, peak).
     pub current_reference: f64,
-    /// References of both axes (A, peak), where the d axis has no constant one.
+    /// References of both axes (A, peak), unless the d axis has a constant one.
     pub references: Dq,
     /// Output of the current loop.
     pub current: current::Output,
@@ -99,7 +99,7 @@ pub struct Held {
 #[derive(Debug, Clone, PartialEq, Default, Stateful)]
 pub struct State {
     delay: delay::State,
-    /// Velocity offsets wait with the set-points that they belong to.
+    /// Velocity offsets, delayed with their set-points.
     offset_delay: delay::Values,
     blocks: blocks::State,
     velocity: velocity::State,
@@ -112,13 +112,13 @@ pub struct State {
     position_turn: Countdown,
     velocity_turn: Countdown,
     current_turn: Countdown,
-    /// What the position loop asked for at its last cycle (axis coordinate).
+    /// Velocity command of the position loop in its last cycle (axis coordinate).
     velocity_command: f64,
     held: Held,
 }
 
 impl State {
-    /// At rest on the set-point `start`.
+    /// State at rest on the set-point `start`.
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter of `p` that is out of its bound.
@@ -127,13 +127,13 @@ impl State {
         Ok(Self { delay: delay::State::new(start), ..Self::default() })
     }
 
-    /// Velocity as the velocity loop sees it (axis coordinate).
+    /// Velocity as used by the velocity loop (axis coordinate).
     #[must_use]
     pub fn velocity(&self, p: &Params) -> f64 {
         p.transmission * self.filtered_velocity
     }
 
-    /// What the position loop would correct now: its reference less the position (axis coordinate).
+    /// Present following error of the position loop: its reference less the position (axis coordinate).
     #[must_use]
     pub fn following_error(&self, p: &Params, sensors: &Sensors) -> f64 {
         let (reference, motor_reference) = self.references(p);
@@ -143,33 +143,32 @@ impl State {
         }
     }
 
-    /// Thermal loads of the motor and of the drive: 1 is what the continuous current makes.
+    /// Thermal loads of the motor and of the drive: 1 is the steady state of the continuous current.
     #[must_use]
     pub fn loads(&self) -> [f64; 2] {
         self.blocks.loads.map(|load| load.load)
     }
 
-    /// Whether a thermal load is reached that is a fault.
+    /// True if a thermal load whose limit is a fault is reached.
     #[must_use]
     pub fn is_overloaded(&self, p: &Params) -> bool {
         p.blocks.is_overloaded(&self.blocks)
     }
 
-    /// Finding of the supervision of motor and power stage since the power is on.
+    /// Finding of the supervision of motor and power stage since power-on.
     #[must_use]
     pub const fn finding(&self) -> Option<Finding> {
         self.blocks.supervision.found
     }
 
-    /// What the loops said at their last turn.
+    /// Outputs of the loops in their last cycles.
     #[must_use]
     pub const fn held(&self) -> &Held {
         &self.held
     }
 
-    /// The references at the present tick: between two cycles of the position loop the held set-point goes on along its
-    /// own polynomial. This is what following errors are measured against; a reference that stands still while the
-    /// axis moves on would add an error of velocity × period.
+    /// References at the present tick: between two cycles of the position loop the held set-point continues along its own polynomial.
+    /// Following errors are measured against these; a constant reference while the axis moves on would add an error of velocity × period.
     #[inline(always)]
     #[must_use]
     pub fn references(&self, p: &Params) -> (Setpoint, MotorReference) {
@@ -182,8 +181,8 @@ impl State {
     }
 }
 
-/// One base tick: runs the loops that are due and returns what goes to the power stage from now on. The demand is taken
-/// at the cycles of the position loop, the limits at those of the velocity loop.
+/// Executes one base tick: runs the loops that are due and returns the command to the power stage from now on. The demand is sampled in the
+/// cycles of the position loop, the limits in those of the velocity loop.
 #[inline(always)]
 pub fn step(p: &Params, x: &mut State, demand: &Demand, limits: EffortLimits, sensors: &Sensors) -> PowerCommand {
     if x.position_turn.is_due(p.position_every) {
@@ -242,7 +241,7 @@ fn take(p: &Params, x: &mut State, demand: &Demand, sensors: &Sensors) {
 }
 
 impl State {
-    /// Goes over to other loops: what the loops below had gathered stays, unless the power goes off.
+    /// Switches to other loops: the states of the lower loops stay, unless the power goes off.
     fn close(&mut self, closed: Closed) {
         if closed == Closed::None && self.closed != Closed::None {
             (self.velocity, self.current) = (velocity::State::default(), current::State::default());
@@ -254,7 +253,7 @@ impl State {
         self.closed = closed;
     }
 
-    /// Sign in which the speed limit or the effort limit cut what the loops asked for at their last turn; 0 where none did.
+    /// Sign in which the speed limit or the effort limit cut the demand of the loops in their last cycle; 0 if none did.
     #[inline(always)]
     fn cut(&self, p: &Params) -> f64 {
         if self.velocity_command.abs() > p.blocks.max_speed * p.transmission.abs() {
@@ -263,7 +262,7 @@ impl State {
         self.held.effort.cut.map_or(0.0, |_| self.held.effort.effort.signum())
     }
 
-    /// Without a position loop the reference is where the axis is.
+    /// Sets the reference to the present position, for operation without a position loop.
     fn rest_on(&mut self, p: &Params, sensors: &Sensors) {
         let position = match sensors.feedback {
             Feedback::Load(position) => position,
@@ -304,7 +303,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
             x.velocity_command + p.feedforward.velocity * (velocity - x.held.motor_reference.velocity)
         };
         let since = f64::from(x.position_turn.since(p.position_every)) * p.base_rate.period();
-        // What is measured is as old as a difference and the filter make it: it is compared with what is as old.
+        // The measured velocity is delayed by the difference and the filter: it is compared with a reference of the same age.
         let age = p.velocity_filter_time + p.blocks.velocity_age(sensors.motor_velocity, h);
         followed = fed_forward(since - age);
         x.held.velocity_reference = fed_forward(since);
@@ -321,7 +320,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
     let (position, edge, effort) = (sensors.motor_position, sensors.motor_edge, x.held.effort.effort);
     let input = measurement::Input { position, travelled, edge, effort, of_encoder: sensors.motor_velocity };
     let measured = p.blocks.measured_velocity(&mut x.blocks, input, h);
-    // Backward Euler of the low-pass: stable for every time constant, and no filter at zero.
+    // Backward Euler of the low-pass: stable for every time constant, and without effect at zero.
     x.filtered_velocity += h / (h + p.velocity_filter_time) * (measured - x.filtered_velocity);
     let velocity = x.filtered_velocity;
     if x.closed != Closed::None {
@@ -369,7 +368,7 @@ fn velocity_loop(p: &Params, x: &mut State, limits: EffortLimits, sensors: &Sens
 #[inline(always)]
 fn current_loop(p: &current::Params, blocks: &Blocks, x: &mut State, sensors: &Sensors, h: f64) {
     let reference = if p.operation.is_plain() {
-        // The velocity loop keeps to what the current limit leaves; what is cut here is the rounding of the quotient.
+        // The velocity loop keeps within the current limit; only the rounding of the quotient is cut here.
         let (wanted, most) = (x.held.effort.effort / p.effort_constant(), p.max_q_current());
         Dq { d: p.d_reference, q: wanted.clamp(-most, most) }
     } else {

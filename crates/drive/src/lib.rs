@@ -1,7 +1,6 @@
 //! A servo drive's firmware: position, velocity and current loops, feedforward, limits.
 //!
-//! Knows the plant only through [`Sensors`] and its own estimated parameters. `no_std`, no heap: the same code would
-//! run on the drive.
+//! Accesses the plant only through [`Sensors`] and its own estimated parameters. `no_std`, no heap: the same code would run on the drive.
 #![cfg_attr(not(test), no_std)]
 
 mod blocks;

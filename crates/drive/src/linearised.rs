@@ -1,12 +1,12 @@
-//! The firmware as a linear loop around a standstill: each block says what is linear in it.
+//! The firmware as a linear loop around standstill: the linear part of each block.
 //!
-//! Every field is named here, so that a new one does not compile before somebody has said whether it stays ([`Params::linearised`]).
+//! Every field is listed here, so that a new one does not compile without a decision on its linear part ([`Params::linearised`]).
 use crate::current::operating_point;
 use crate::{Params, Stage, current, feedforward, velocity};
 
 impl Params {
-    /// The same firmware without what is not linear: limits are infinite, what differs from one direction to the other and what depends on
-    /// the speed or the position is off. Gains are those of a standstill; those at a speed of the gain schedule are so many times as large
+    /// Same firmware without its nonlinear parts: limits are infinite, and everything that depends on direction, speed or position is off.
+    /// Gains are those at standstill; the gain schedule multiplies them at speed
     /// ([`schedule::Params::factors`](crate::schedule::Params::factors)).
     #[must_use]
     pub fn linearised(&self) -> Self {
@@ -31,7 +31,7 @@ impl Params {
 }
 
 impl feedforward::Params {
-    /// Without what differs from one direction to the other, and without a constant.
+    /// Without direction-dependent and constant efforts.
     #[must_use]
     pub const fn linearised(&self) -> Self {
         let Self { velocity, interpolate, model, coulomb: _, bias: _ } = *self;
@@ -40,7 +40,7 @@ impl feedforward::Params {
 }
 
 impl current::Params {
-    /// Without limits and dead time, and with the d-axis current of a standstill: maximum torque per ampere has no slope there, and the
+    /// Without limits and dead time, and with the d-axis current at standstill: maximum torque per ampere has no slope there, and the
     /// voltage suffices.
     #[must_use]
     pub fn linearised(&self) -> Self {

@@ -1,7 +1,7 @@
-//! Modes of operation (CiA 402): from what the master sends to what the loops are to do.
+//! Modes of operation (CiA 402): from the commands of the master to the demand on the loops.
 //!
-//! A mode sees a [`Moment`] and gives an [`Answer`], once per period of the position loop. Positions and velocities are in
-//! the axis unit (m or rad), efforts in the motor's (N·m or N): drive units end at the bus interface.
+//! A mode gets a [`Moment`] and returns an [`Answer`], once per period of the position loop. Positions and velocities are in the axis unit
+//! (m or rad), efforts in the motor's (N·m or N): drive units are converted at the bus interface.
 pub mod cyclic;
 pub mod homing;
 pub mod interpolated;
@@ -16,36 +16,36 @@ use servobench_cia402::Controlword;
 
 pub use ramp::Steepness;
 
-/// What a mode sees at a step of the drive.
+/// Input of a mode at a step of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Moment {
-    /// What the master sends.
+    /// Targets from the master.
     pub targets: Targets,
-    /// What the drive measures.
+    /// Measured values.
     pub actual: Actual,
-    /// What the loops follow now if they go on as at the last step: where a mode that takes over begins. Where no demand
-    /// says so, it is where the axis is.
+    /// Present set-point of the loops if they continue as at the last step: the start of a mode that takes over. Without such a demand it
+    /// is the position of the axis.
     pub demanded: Setpoint,
     /// Time since the last step (s).
     pub period: f64,
 }
 
-/// What the master sends.
+/// Targets from the master.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Targets {
-    /// With the bits that a mode gives a meaning of its own.
+    /// Controlword, with the mode-specific bits.
     pub controlword: Controlword,
     /// Target position (607Ah), in csp with the position offset (60B0h).
     pub position: f64,
-    /// Target position (607Ah) as a distance, for set-points that are relative.
+    /// Target position (607Ah) as a distance, for relative set-points.
     pub distance: f64,
     /// Target velocity (60FFh).
     pub velocity: f64,
     /// Target effort (6071h).
     pub effort: f64,
-    /// Added to what the position loop asks for (60B1h).
+    /// Offset of the velocity from the position loop (60B1h).
     pub velocity_offset: f64,
-    /// Added to what the velocity loop asks for (60B2h).
+    /// Offset of the effort from the velocity loop (60B2h).
     pub effort_offset: f64,
     /// Highest velocity of a profile (6081h), a magnitude.
     pub profile_velocity: f64,
@@ -53,13 +53,13 @@ pub struct Targets {
     pub profile_acceleration: f64,
     /// Deceleration of a profile (6084h), a magnitude.
     pub profile_deceleration: f64,
-    /// Position that the reference gets when it is found (607Ch).
+    /// Position of the reference (607Ch).
     pub home_offset: f64,
-    /// Whether the frame that brought these came since the last step.
+    /// True if the frame with these targets came since the last step.
     pub is_new: bool,
 }
 
-/// What the drive measures.
+/// Values measured by the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct Actual {
     /// Position, the home offset included.
@@ -74,14 +74,14 @@ pub struct Actual {
     pub positive_limit: bool,
     /// Home switch.
     pub home: bool,
-    /// Position at which the last index pulse came, when one came since the last step.
+    /// Position of the last index pulse, if one came since the last step.
     pub index: Option<f64>,
 }
 
-/// What a mode says.
+/// Output of a mode at a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// For the loops.
+    /// Demand on the loops.
     pub demand: Demand,
     /// Bit 10 of the statusword.
     pub target_reached: bool,

@@ -1,4 +1,4 @@
-//! What the firmware knows and does not change: gains, limits, rates and its own estimates of the axis.
+//! Constant parameters of the firmware: gains, limits, rates and its own estimates of the axis.
 use crate::{Blocks, current, delay, feedforward, velocity};
 use servobench_base::{Divider, Rate};
 use servobench_config::Kind::{Motor, Plain};
@@ -6,7 +6,7 @@ use servobench_config::quantities::{FREQUENCY, POSITION_GAIN, RATIO, SOURCE_GAIN
 use servobench_config::{ParameterError, not_negative, positive};
 
 servobench_config::parameters! {
-    /// A parameter of the firmware that belongs to no loop alone.
+    /// A parameter of the firmware that is shared by its loops.
     pub enum Parameter {
         /// Axis coordinate per motor coordinate
         TRANSMISSION "transmission" = positive(Plain(&RATIO), "0.0016");
@@ -23,19 +23,19 @@ servobench_config::parameters! {
     }
 }
 
-/// What turns the effort reference into effort.
+/// Conversion of the effort reference into effort.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stage {
     /// Current loop of a synchronous motor.
     Current {
-        /// The loop.
+        /// Parameters of the loop.
         params: current::Params,
-        /// Its period in base ticks.
+        /// Period of the loop in base ticks.
         every: Divider,
     },
     /// An ideal amplifier: output = effort / gain.
     Direct {
-        /// Effort per unit of output, as the firmware knows it (N/V, or 1).
+        /// Assumed effort per unit of output (N/V, or 1).
         gain: f64,
     },
 }
@@ -45,7 +45,7 @@ pub enum Stage {
 pub struct Params {
     /// Base rate of the run.
     pub base_rate: Rate,
-    /// Axis coordinate per motor coordinate (m/rad, or 1), as the firmware knows it.
+    /// Assumed axis coordinate per motor coordinate (m/rad, or 1).
     pub transmission: f64,
     /// Position gain, K_v (1/s).
     pub position_gain: f64,
@@ -53,15 +53,15 @@ pub struct Params {
     pub position_every: Divider,
     /// Velocity loop.
     pub velocity: velocity::Params,
-    /// Its period in base ticks; a whole number of periods of the current loop.
+    /// Period of the velocity loop in base ticks; a whole number of periods of the current loop.
     pub velocity_every: Divider,
     /// Time constant of the low-pass on the measured velocity (s); 0 for none.
     pub velocity_filter_time: f64,
     /// Feedforward.
     pub feedforward: feedforward::Params,
-    /// Blocks that answer real hardware.
+    /// Blocks for real hardware.
     pub blocks: Blocks,
-    /// How long the reference waits for the feedforward effort.
+    /// Delay of the reference to match the feedforward effort.
     pub reference_delay: delay::Params,
     /// Current loop or direct output.
     pub stage: Stage,
@@ -84,8 +84,8 @@ impl Params {
         self.check_rates()
     }
 
-    /// Turns of a slower loop must coincide with turns of the faster one, or its output would wait for a while that
-    /// changes from turn to turn.
+    /// Checks the rates: cycles of a slower loop must coincide with cycles of the faster one, or its output would wait for a time that
+    /// changes from cycle to cycle.
     fn check_rates(&self) -> Result<(), ParameterError> {
         let coincides = |name, slower: Divider, faster: Divider, bound| {
             let value = f64::from(self.base_rate.hertz()) / f64::from(slower.ticks());
@@ -116,7 +116,7 @@ impl Params {
         self.base_rate.of_task(self.velocity_every)
     }
 
-    /// Largest effort reference (N·m or N): the limit of the velocity loop, or what that of the current leaves of it.
+    /// Largest effort reference (N·m or N): the lower of the velocity loop's limit and that of the current limit.
     #[must_use]
     pub fn max_effort(&self) -> f64 {
         match &self.stage {
@@ -125,7 +125,7 @@ impl Params {
         }
     }
 
-    /// The current loop and its rate, where there is one.
+    /// The current loop and its rate, if there is one.
     #[must_use]
     pub const fn current_loop(&self) -> Option<(&current::Params, Rate)> {
         match &self.stage {
@@ -134,17 +134,17 @@ impl Params {
         }
     }
 
-    /// Period of the task that turns every `every` base ticks (s).
+    /// Period of the task that runs every `every` base ticks (s).
     #[inline]
     #[must_use]
     pub fn period(&self, every: Divider) -> f64 {
         f64::from(every.ticks()) * self.base_rate.period()
     }
 
-    /// How long an effort reference takes to act, which is how long the reference should wait (s): half the position
-    /// period that the reference is held for, and the lag of what follows (see [`current`]: 1/α for a ramp, from sample
-    /// to sample, so only what the position period exceeds the current period by is held). The velocity loop holds
-    /// nothing longer, since its period is not above that of the position loop. Filters add what they delay a ramp by.
+    /// Delay until an effort reference acts, and thus of the reference (s): half the position period for which the reference is held, plus
+    /// the lag of the current loop (see [`current`]: 1/α for a ramp, from sample to sample, so that only the excess of the position period
+    /// over the current period counts as held). The velocity loop holds nothing longer, since its period is not above that of the position
+    /// loop. Filters add their delay of a ramp.
     #[must_use]
     pub fn effort_path_delay(&self) -> f64 {
         let position = self.period(self.position_every);
@@ -171,7 +171,7 @@ pub(crate) mod tests {
         rate(BASE).divider(rate(hz)).unwrap()
     }
 
-    /// The EMPS axis' controller: u = kv·(kp·e − v), 1 kHz, nothing fed forward.
+    /// The EMPS axis' controller: u = kv·(kp·e − v), 1 kHz, without feedforward.
     pub(crate) fn emps() -> Params {
         Params {
             base_rate: Rate::new(BASE).unwrap(),
@@ -212,7 +212,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Oracle: by hand. Half of 1 ms; half of what 250 µs exceed 62.5 µs by, and 1/α.
+    /// Oracle: by hand. Half of 1 ms; half of the excess of 250 µs over 62.5 µs, and 1/α.
     #[test]
     fn the_delay_of_the_effort_path_is_half_the_hold_and_the_lag_of_the_current() {
         assert!((emps().effort_path_delay() - 0.5e-3).abs() < 1e-15);

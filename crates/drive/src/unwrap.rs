@@ -1,10 +1,10 @@
-//! The position of an absolute encoder that begins again after so many turns, as the drive counts it on.
+//! Unwrapping of an absolute encoder that restarts after a number of turns.
 //!
-//! A reading is taken to be the one of its images that is nearest to the reading before: right while the axis goes less than half
-//! the range in between. The first one is taken as it is, which is all that a drive knows when it is switched on.
+//! Of all its images, a reading is taken for the one nearest to the previous reading: this is right while the axis moves less than half the
+//! range in between. The first one is taken unchanged, since a drive knows nothing more when it is switched on.
 
 use servobench_base::Stateful;
-/// Where the drive is: its state from tick to tick.
+/// State of the unwrapping from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Unwrap {
     #[state(constant)]
@@ -15,13 +15,13 @@ pub struct Unwrap {
 }
 
 impl Unwrap {
-    /// For an encoder that begins again after `range`.
+    /// State for an encoder that restarts after `range`.
     #[must_use]
     pub const fn new(range: f64) -> Self {
         Self { range, last: None, ranges: 0.0 }
     }
 
-    /// The position behind the reading `wrapped`.
+    /// Unwrapped position of the reading `wrapped`.
     pub fn position(&mut self, wrapped: f64) -> f64 {
         let step = wrapped - self.last.replace(wrapped).unwrap_or(wrapped);
         if step > self.range / 2.0 {
@@ -45,7 +45,7 @@ mod tests {
         for k in 0..400 {
             position += if k < 250 { 1.7 } else { -1.9 };
             let found = unwrap.position(position.rem_euclid(4.0));
-            // It knows nothing of the range in which it began.
+            // The unwrapping cannot know in which range it began.
             let offset = *first.get_or_insert(found - position);
             assert!((found - position - offset).abs() < 1e-11, "{k}: {found} {position}");
         }

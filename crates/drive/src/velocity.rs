@@ -5,10 +5,10 @@
 //! τ = sat(v, ±min(τ_max, τ_avail)), and within the limits of the mode
 //! dτ_i/dt = k_p/T_i·e + (τ − v)/T_i              (forward Euler, step h)
 //! ```
-//! F are the filters of the torque path ([`crate::filter`]), without them 1. The weight b of the reference is 1 in a PI, 0 in an
-//! IP controller, which follows a step without the zero of the PI. τ_avail is what the loop below can give; knowing it here, and the limits of both directions that come from the bus, keeps the
-//! integrator from winding up against them.
-//! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. The motor's coordinate.
+//! F are the filters of the torque path ([`crate::filter`]), 1 without them. The weight b of the reference is 1 in a PI, 0 in an IP
+//! controller, which follows a step without the zero of the PI. τ_avail is the capability of the loop below; since it is known here, like
+//! the limits of both directions from the bus, the integrator does not wind up against them.
+//! Source: Åström & Murray, *Feedback Systems*, 2nd ed., §11.4, tracking time T_t = T_i. All in the motor's coordinate.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use crate::EffortLimits;
 use servobench_base::{Stateful, limit};
@@ -53,29 +53,29 @@ pub struct Input {
     pub reference: f64,
     /// Measured velocity (rad/s or m/s).
     pub velocity: f64,
-    /// Effort fed forward (N·m or N).
+    /// Feedforward effort (N·m or N).
     pub feedforward: f64,
-    /// Largest efforts that the loop below can give.
+    /// Largest efforts of the loop below.
     pub available: EffortLimits,
-    /// What is asked for at most in either direction.
+    /// Largest permitted efforts in either direction.
     pub limits: EffortLimits,
 }
 
-/// Which limit cuts the effort.
+/// Limit that cuts the effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub enum Cut {
-    /// The loop's own, [`Params::max_effort`], or that of the direction, [`Input::limits`].
+    /// Limit of this loop, [`Params::max_effort`], or of the direction, [`Input::limits`].
     Effort,
-    /// That of the loop below, [`Input::available`].
+    /// Limit of the loop below, [`Input::available`].
     Available,
 }
 
-/// What tick k gives.
+/// Output of tick k.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Stateful)]
 pub struct Output {
     /// Effort reference (N·m or N).
     pub effort: f64,
-    /// What cut it.
+    /// Limit that cut the effort, if any.
     pub cut: Option<Cut>,
 }
 
@@ -97,8 +97,8 @@ pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> Output {
     step_shaped(p, x, u, h, 1.0, |effort| effort)
 }
 
-/// Like [`step`], with the share `weight` of the reference in the proportional part, and `filter` between the controller and the
-/// limits: what they cut of its output goes back into the integrator.
+/// Like [`step`], with the weight `weight` of the reference in the proportional part, and `filter` between the controller and the limits:
+/// the excess cut off its output is fed back to the integrator.
 #[inline(always)]
 pub fn step_shaped(
     p: &Params,
@@ -117,7 +117,7 @@ pub fn step_shaped(
     output
 }
 
-/// `effort` within the limits.
+/// Limits `effort`.
 #[inline(always)]
 #[must_use]
 pub fn limited(p: &Params, available: EffortLimits, limits: EffortLimits, effort: f64) -> Output {
@@ -192,8 +192,8 @@ mod tests {
         }
     }
 
-    /// Oracle: with the effort at its limit, dτ_i/dt = (τ_max − τ_ff − τ_i)/T_i: the integrator comes to rest at the limit
-    /// that binds, less the feedforward, whatever the error.
+    /// Oracle: with the effort at its limit, dτ_i/dt = (τ_max − τ_ff − τ_i)/T_i: the integrator comes to rest at the binding limit, less
+    /// the feedforward, whatever the error.
     #[test]
     fn the_integrator_knows_the_limit_that_binds() {
         let p = Params { k_p: 3.0, integral_time: Some(0.04), max_effort: 2.4 };
@@ -214,8 +214,8 @@ mod tests {
         }
     }
 
-    /// Oracle: with both poles at −ω_n and without the PI's zero (b = 0) a step of the reference gives 1 − (1 + ω_n·t)·exp(−ω_n·t),
-    /// which does not overshoot; b between adds its share of ω_n·t·exp(−ω_n·t)·2.
+    /// Oracle: with both poles at −ω_n and without the PI's zero (b = 0) a step of the reference gives 1 − (1 + ω_n·t)·exp(−ω_n·t), which
+    /// does not overshoot; b between adds its share of ω_n·t·exp(−ω_n·t)·2.
     #[test]
     fn the_weight_of_the_reference_moves_the_zero() {
         let h = 1e-6;
@@ -228,7 +228,7 @@ mod tests {
             }
             let a = OMEGA_N * 27e-3;
             let exact = 1.0 - (1.0 + a) * (-a).exp() + 2.0 * weight * a * (-a).exp();
-            // Of first order: the step is 5e-5 of the time constant.
+            // First order: the step is 5e-5 of the time constant.
             assert!((omega - exact).abs() < 1e-4, "{weight}: {omega} {exact}");
         }
     }

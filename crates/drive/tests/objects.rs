@@ -1,4 +1,4 @@
-//! Settings and objects of the drive, each made of the other.
+//! Settings and objects of the drive, each computed from the other.
 use servobench_cia402::PowerState;
 use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
 use servobench_cia402::objects::{Dictionary, HOMING_METHODS, OBJECTS, Value};
@@ -101,7 +101,7 @@ fn an_inverted_axis_has_its_limits_the_other_way_round() {
     }
 }
 
-/// 60E0h limits what the master counts as positive torque.
+/// 60E0h limits the torque that is positive for the master.
 #[test]
 fn an_inverted_torque_has_its_limits_the_other_way_round() {
     let mut objects = screw();
@@ -155,8 +155,8 @@ fn what_does_not_go_together_is_refused_in_words() {
     );
 }
 
-/// An axis in nanometres: 1 mm/s are a million units, which 16 bits do not hold; the velocities of 100 mm/s are held. What
-/// the master does not write stays as it is, bit for bit.
+/// An axis in nanometres: 1 mm/s is a million units, which 16 bits do not hold; the velocities of 100 mm/s are held. Objects that
+/// the master does not write stay as they are, bit for bit.
 #[test]
 fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() {
     let nanometre = AxisUnit::Metre(Ratio::new(1, 1_000_000_000).unwrap());
@@ -180,7 +180,7 @@ fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() 
     let mut expected = set;
     expected.position.time = 0.007;
     assert_eq!(set.with_objects(&objects, nanometre).unwrap(), expected);
-    // What the master writes counts, and be it what the object showed.
+    // A value written by the master counts, even if it equals the one that the object showed.
     write(&mut objects, 0x606D, 0, u16::MAX);
     let taken = set.with_objects(&objects, nanometre).unwrap();
     assert_near(taken.velocity.width, 65_535e-9);
@@ -189,7 +189,7 @@ fn an_object_that_cannot_hold_its_setting_shows_its_end_and_the_setting_stays() 
     assert_eq!(refused.unwrap_err().to_string(), "`Velocity window` (606Dh:00h) must be at most 65535, got 1000000");
 }
 
-/// A dictionary that a master filled at random is one that the drive follows, but for times that its clock does not count.
+/// The drive follows a dictionary that a master filled at random, but for times that its clock cannot count.
 #[test]
 fn what_the_dictionary_takes_the_drive_takes() {
     let mut random = Random::seeded(7);

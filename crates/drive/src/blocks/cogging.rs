@@ -1,18 +1,18 @@
-//! Compensation of cogging: what the motor's teeth and magnets add to its effort, by harmonics of its position, is taken off it.
+//! Compensation of cogging: subtracts the effort of the motor's teeth and magnets, given by harmonics of its position.
 //!
 //! ```text
-//! τ_c = −Σ_k A_k·sin(n_k·(θ + t_a·ω) + φ_k)          t_a: how long the effort takes to act
+//! τ_c = −Σ_k A_k·sin(n_k·(θ + t_a·ω) + φ_k)          t_a: delay until the effort acts
 //! ```
-//! with the harmonics of the cogging itself, Σ_k A_k·sin(n_k·θ + φ_k) in the direction of the motor. θ is the measured position, n_k
-//! counts periods in a revolution of the motor, of a linear motor in two pole pitches.
-//! Source: Hanselman, *Brushless Permanent Magnet Motor Design*, 2nd ed., ch. 7 (periods of cogging); the lead by hand: a sine of a
-//! position that goes on at constant speed is late by what its position is.
+//! with the harmonics of the cogging itself, Σ_k A_k·sin(n_k·θ + φ_k) in the direction of the motor. θ is the measured position, n_k counts
+//! periods in a revolution of the motor, of a linear motor in two pole pitches.
+//! Source: Hanselman, *Brushless Permanent Magnet Motor Design*, 2nd ed., ch. 7 (periods of cogging); the lead by hand: at constant speed,
+//! a sine of the position lags as much as the position.
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{EFFORT, POSITION};
 use servobench_config::{ParameterError, any, positive};
 
 servobench_config::parameters! {
-    /// A parameter of the compensation of cogging.
+    /// A parameter of the cogging compensation.
     pub enum Parameter {
         /// Amplitude of the harmonic
         AMPLITUDE "amplitude of the cogging that is compensated" = positive(Motor(&EFFORT), "0.05 Nm");
@@ -35,17 +35,17 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
-/// Harmonics; constant during a run.
+/// Harmonics of the cogging; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Params {
     harmonics: [Harmonic; MOST],
     count: usize,
-    /// How long the effort takes to act (s).
+    /// Delay until the effort acts (s).
     lead: f64,
 }
 
 impl Params {
-    /// These harmonics, for an effort that takes `lead` (s) to act.
+    /// Parameters for these harmonics and an effort that takes `lead` (s) to act.
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
@@ -63,13 +63,13 @@ impl Params {
         Ok(params)
     }
 
-    /// How long the effort is taken to need until it acts (s).
+    /// Assumed delay until the effort acts (s).
     #[must_use]
     pub const fn lead(&self) -> f64 {
         self.lead
     }
 
-    /// Effort that takes the cogging off at the measured `position` and `velocity` of the motor (N·m or N).
+    /// Effort that cancels the cogging at the measured `position` and `velocity` of the motor (N·m or N).
     #[must_use]
     pub fn effort(&self, position: f64, velocity: f64) -> f64 {
         let ahead = position + self.lead * velocity;
@@ -87,7 +87,7 @@ mod tests {
         Harmonic { ratio: 36.0, amplitude: 0.011, phase: -1.9 },
     ];
 
-    /// Oracle: the cogging itself, of where the motor is when the effort acts.
+    /// Oracle: the cogging itself, at the position of the motor when the effort acts.
     #[test]
     fn it_is_the_cogging_of_a_while_later_turned_round() {
         let (p, velocity) = (Params::new(&TEETH, 0.37e-3).unwrap(), 31.7);

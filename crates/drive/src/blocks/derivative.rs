@@ -3,7 +3,7 @@
 //! ```text
 //! D(s) = T_d·s/(1 + T_f·s)        d(k) = T_f/(T_f + h)·d(k−1) + (u(k) − u(k−1))/(T_f + h)      D = T_d·d
 //! ```
-//! Backward Euler: stable for every time constant; without a filter it is the difference of two values. Of first order in h.
+//! Backward Euler: stable for every time constant; without a filter it is the difference of two values. First order in h.
 //! Source: Åström & Hägglund, *Advanced PID Control*, 2006, §3.4 and §13.4 (T_f = T_d/N with N about 10).
 use servobench_base::Stateful;
 use servobench_config::Kind::Plain;
@@ -25,10 +25,10 @@ servobench_config::parameters! {
     }
 }
 
-/// Share of the derivative time that the filter has where nobody says otherwise.
+/// Default time constant of the filter, as a share of the derivative time.
 pub const FILTER_SHARE: f64 = 0.1;
 
-/// Constant during a run.
+/// Parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Derivative time T_d (s).
@@ -40,13 +40,13 @@ pub struct Params {
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
-    /// Value of the last cycle; none before the first one.
+    /// Value of the last cycle; `None` before the first one.
     pub last: Option<f64>,
     /// Filtered rate of change d (per second).
     pub rate: f64,
 }
 
-/// T_d·d at a cycle with the value `u`, `h` (s) after the last one.
+/// T_d·d in a cycle with the value `u`, `h` (s) after the last one.
 pub fn step(p: &Params, x: &mut State, u: f64, h: f64) -> f64 {
     let last = x.last.replace(u).unwrap_or(u);
     x.rate = (p.filter_time * x.rate + (u - last)) / (p.filter_time + h);
@@ -67,7 +67,7 @@ impl Params {
 mod tests {
     use super::*;
 
-    /// Oracle: of a step of 1 it is T_d/T_f·exp(−t/T_f), to first order in h; of a ramp at last its slope times T_d.
+    /// Oracle: for a step of 1, T_d/T_f·exp(−t/T_f), to first order in h; for a ramp, T_d times its slope in the end.
     #[test]
     fn it_converges_with_order_one() {
         let p = Params { time: 3.1e-3, filter_time: 0.7e-3 };

@@ -6,10 +6,10 @@
 //! s/ω → (z − 1)/(z + 1)/tan(ω·h/2)                                       Tustin, pre-warped
 //! y = b_0·u + s_1      s_1 ← b_1·u − a_1·y + s_2      s_2 ← b_2·u − a_2·y    transposed direct form II
 //! ```
-//! Numerator and denominator are each pre-warped at their own frequency, which both keep exactly. Between them a bi-quad deviates
-//! from H(s) as every bilinear transform does, more the nearer to half the rate.
-//! Source: Franklin, Powell, Workman, *Digital Control of Dynamic Systems*, 3rd ed., §6.1 (pre-warping); Oppenheim, Schafer,
-//! *Discrete-Time Signal Processing*, 3rd ed., §6.3 (transposed form).
+//! Numerator and denominator are each pre-warped at their own frequency, which both keep exactly. Between the two a bi-quad deviates from
+//! H(s) like every bilinear transform, increasingly towards half the rate.
+//! Source: Franklin, Powell, Workman, *Digital Control of Dynamic Systems*, 3rd ed., §6.1 (pre-warping); Oppenheim, Schafer, *Discrete-Time
+//! Signal Processing*, 3rd ed., §6.3 (transposed form).
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use core::f64::consts::PI;
 use servobench_base::{Rate, Stateful};
@@ -38,7 +38,7 @@ servobench_config::parameters! {
 /// Most filters in series.
 pub const MOST: usize = 4;
 
-/// A filter as it is described: frequencies in Hz, damping ratios ζ.
+/// Specification of a filter: frequencies in Hz, damping ratios ζ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Filter {
     /// 1/(1 + s/ω).
@@ -62,7 +62,7 @@ pub enum Filter {
         /// Damping ratio of the poles.
         pole_damping: f64,
     },
-    /// A pair of zeros and a pair of poles; the gain is 1 at standstill.
+    /// A pair of zeros and a pair of poles; the gain is 1 at frequency zero.
     BiQuad {
         /// Frequency of the zeros (Hz).
         zero_frequency: f64,
@@ -75,14 +75,14 @@ pub enum Filter {
     },
 }
 
-/// A filter at its rate: coefficients of z⁰, z⁻¹ and z⁻², the denominator's first one 1.
+/// A filter at its rate: coefficients of z⁰, z⁻¹ and z⁻², normalised to a leading denominator coefficient of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Section {
     /// Numerator.
     pub b: [f64; 3],
-    /// Denominator behind its first coefficient.
+    /// Denominator without its first coefficient.
     pub a: [f64; 2],
-    /// By how much it delays what is slow (s).
+    /// Delay of slow signals (s).
     delay: f64,
 }
 
@@ -100,11 +100,11 @@ pub struct State {
     pub memory: [[f64; 2]; MOST],
 }
 
-/// Half of a filter in falling powers of z: 1 + 2·ζ·s/ω + s²/ω² times (z + 1)², or 1 + s/ω times z + 1. A filter of the first order has no second
-/// z + 1 above and below: there it would be a state that never fades.
+/// Numerator or denominator of a filter in falling powers of z: 1 + 2·ζ·s/ω + s²/ω² times (z + 1)², or 1 + s/ω times z + 1. A filter of
+/// first order has no second z + 1 in both: it would be a state that never fades.
 struct Polynomial {
     coefficients: [f64; 3],
-    /// Its phase per angular frequency at standstill (s).
+    /// Phase per angular frequency at frequency zero (s).
     lead: f64,
 }
 
@@ -112,7 +112,7 @@ impl Polynomial {
     const ONE: Self = Self { coefficients: [1.0, 2.0, 1.0], lead: 0.0 };
     const ONE_OF_FIRST_ORDER: Self = Self { coefficients: [1.0, 1.0, 0.0], lead: 0.0 };
 
-    /// `linear` is 2·ζ.
+    /// Polynomial of second order; `linear` is 2·ζ.
     fn new(frequency: f64, linear: f64, h: f64) -> Self {
         let c = 1.0 / libm::tan(PI * frequency * h);
         let (once, twice) = (linear * c, c * c);
@@ -168,7 +168,7 @@ impl Filter {
 }
 
 impl Params {
-    /// These filters, the first one first, in a velocity loop of the rate `rate`.
+    /// Parameters for these filters, in series, in a velocity loop of the rate `rate`.
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter out of its bound.
@@ -184,21 +184,21 @@ impl Params {
         Ok(params)
     }
 
-    /// The filters at their rate.
+    /// Filters at their rate.
     #[inline]
     #[must_use]
     pub fn sections(&self) -> &[Section] {
         &self.sections[..self.count]
     }
 
-    /// By how much all of them delay what is slow (s): Σ ζ_p·h/tan(ω_p·h/2) − ζ_z·h/tan(ω_z·h/2).
+    /// Total delay of slow signals (s): Σ ζ_p·h/tan(ω_p·h/2) − ζ_z·h/tan(ω_z·h/2).
     #[must_use]
     pub fn delay(&self) -> f64 {
         self.sections().iter().map(|section| section.delay).sum()
     }
 }
 
-/// Returns what comes out of the filters for `input` at tick k, then advances `x` to tick k+1.
+/// Returns the output of the filters for `input` at tick k, then advances `x` to tick k+1.
 #[inline(always)]
 pub fn step(p: &Params, x: &mut State, input: f64) -> f64 {
     p.sections().iter().zip(&mut x.memory).fold(input, |u, (section, memory)| section.step(memory, u))
@@ -237,8 +237,8 @@ mod tests {
         ((a * c + b * d) / square, (b * c - a * d) / square)
     }
 
-    /// H at the frequency (Hz) that the bilinear transform puts at `f`: tan(πfh)/tan(πf₀h) in place of f/f₀, in the numerator and
-    /// the denominator by itself.
+    /// H at the frequency (Hz) to which the bilinear transform maps `f`: tan(πfh)/tan(πf₀h) in place of f/f₀, separately in the numerator
+    /// and the denominator.
     fn closed_form(filter: Filter, f: f64, h: f64) -> Complex {
         let warped = |of: f64| (PI * f * h).tan() / (PI * of * h).tan();
         let second = |of: f64, damping: f64| (1.0 - warped(of) * warped(of), 2.0 * damping * warped(of));
@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// The response to e^{j2πft}, real and imaginary part each through a filter of its own, once what is not steady has gone.
+    /// Response to e^{j2πft}, real and imaginary part each through a separate filter, once transients have decayed.
     fn measured(filter: Filter, f: f64, rate: Rate) -> Complex {
         let p = Params::new(&[filter], rate).unwrap();
         let (mut re, mut im) = (State::default(), State::default());
@@ -267,7 +267,7 @@ mod tests {
         over(out, (angle.cos(), angle.sin()))
     }
 
-    /// Oracle: magnitude and phase of the bilinear transform in closed form, from standstill to near half the rate.
+    /// Oracle: magnitude and phase of the bilinear transform in closed form, from frequency zero to near half the rate.
     #[test]
     fn magnitude_and_phase_are_those_of_the_bilinear_transform() {
         for hertz in RATES {
@@ -283,8 +283,8 @@ mod tests {
         }
     }
 
-    /// Oracle: the definition. At its own frequency a low-pass of first order is 1/(1 + j), one of second order 1/(2jζ), a notch
-    /// ζ_z/ζ_p, whatever the rate: that is what pre-warping is for.
+    /// Oracle: the definition. At its own frequency a low-pass of first order is 1/(1 + j), one of second order 1/(2jζ), a notch ζ_z/ζ_p,
+    /// at every rate: that is the purpose of pre-warping.
     #[test]
     fn pre_warping_keeps_the_frequency_of_the_filter() {
         for hertz in RATES {
@@ -301,7 +301,7 @@ mod tests {
         }
     }
 
-    /// Oracle: a ramp, which leaves filters of unit gain late by their delay.
+    /// Oracle: a ramp, which filters of unit gain delay by their delay.
     #[test]
     fn a_ramp_is_late_by_the_delay_of_all_filters() {
         let rate = Rate::new(8_000).unwrap();
@@ -318,7 +318,7 @@ mod tests {
         assert!((delay / (1.2 / (TAU * 11.3)) - 1.0).abs() < 1e-5, "{delay}");
     }
 
-    /// No pole of a filter is on the circle, not even one that its zeros hide: what it holds of a past fades, rounding included.
+    /// No pole of a filter is on the unit circle, not even a cancelled one: the state fades, rounding included.
     #[test]
     fn what_a_filter_holds_fades() {
         for (filter, hertz) in FILTERS.iter().flat_map(|filter| RATES.map(|hertz| (filter, hertz))) {

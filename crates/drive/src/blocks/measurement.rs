@@ -1,12 +1,12 @@
-//! How the velocity loop has the velocity of the motor: by differences, by the M/T method, or by an observer.
+//! Velocity measurement for the velocity loop: by differences, by the M/T method, or by an observer.
 //!
 //! | method | equation | age |
 //! |---|---|---|
 //! | difference | (θ(k) − θ(k−1))/T | T/2 |
 //! | M/T ([`mt`]) | travel between the last edges of two cycles over the time between them | about T/2 |
-//! | observer ([`observer`]) | a model of the motor that the measured position corrects | 0 |
+//! | observer ([`observer`]) | a model of the motor, corrected by the measured position | 0 |
 //!
-//! Without one of them the loop takes the velocity of an encoder that gives it, and differences of any other. The motor's coordinate.
+//! By default the loop takes the velocity of an encoder that provides it, and differences otherwise. All in the motor's coordinate.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::Stateful;
 use servobench_config::ParameterError;
@@ -15,7 +15,7 @@ pub mod mt;
 pub mod observer;
 
 servobench_config::choices! {
-    /// How the motor's velocity is measured.
+    /// Method of measuring the motor's velocity.
     pub enum Method {
         /// the difference of two positions over the period of the velocity loop
         Difference = "difference",
@@ -26,19 +26,19 @@ servobench_config::choices! {
     }
 }
 
-/// The last edge of an incremental encoder: where it passed from one increment to the next.
+/// Last edge of an incremental encoder: the transition from one increment to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// How long ago (s).
+    /// Age (s).
     pub age: f64,
-    /// Where, from the position that is read on (motor coordinate): half an increment in one direction or the other.
+    /// Offset of the edge from the present reading (motor coordinate): half an increment in one direction or the other.
     pub offset: f64,
 }
 
 /// A method with its parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Params {
-    /// Differences, whatever the encoder gives.
+    /// Differences, with every encoder.
     Difference,
     /// M/T method.
     Mt(mt::Params),
@@ -53,18 +53,18 @@ pub struct State {
     observer: observer::State,
 }
 
-/// What a cycle of the velocity loop knows.
+/// Input of a cycle of the velocity loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
     /// Measured position (rad or m).
     pub position: f64,
-    /// By how much that is more than a cycle ago (rad or m).
+    /// Travel since the last cycle (rad or m).
     pub travelled: f64,
-    /// The encoder's last edge, where it tells.
+    /// Last edge of the encoder, if it reports edges.
     pub edge: Option<Edge>,
-    /// Effort that was asked for in the last cycle (N·m or N).
+    /// Effort commanded in the last cycle (N·m or N).
     pub effort: f64,
-    /// Velocity that the encoder gives (rad/s or m/s), where it gives one.
+    /// Velocity from the encoder (rad/s or m/s), if it provides one.
     pub of_encoder: Option<f64>,
 }
 
@@ -79,7 +79,7 @@ impl Params {
         }
     }
 
-    /// A method that is linear in what it sees: the M/T method gives differences of positions, as finely as one likes.
+    /// Linear counterpart of the method: the M/T method becomes differences of positions, without quantisation.
     #[must_use]
     pub const fn linearised(self) -> Self {
         match self {
@@ -88,7 +88,7 @@ impl Params {
         }
     }
 
-    /// Age (s) of a velocity that is measured in cycles of `h` (s), with many edges in each.
+    /// Age (s) of a velocity measured in cycles of `h` (s), with many edges in each.
     #[must_use]
     pub fn age(&self, h: f64) -> f64 {
         match self {
@@ -99,7 +99,7 @@ impl Params {
 }
 
 impl State {
-    /// Effort that is to be added so that the disturbance is met (N·m or N): none without an observer.
+    /// Effort to be added to cancel the disturbance (N·m or N): zero without an observer.
     #[inline(always)]
     #[must_use]
     pub fn compensation(&self, p: &Params) -> f64 {
@@ -110,7 +110,7 @@ impl State {
     }
 }
 
-/// The velocity that is measured at a cycle of the velocity loop, `h` (s) after the last one.
+/// Measured velocity in a cycle of the velocity loop, `h` (s) after the last one.
 #[inline(always)]
 pub fn step(p: &Params, x: &mut State, u: Input, h: f64) -> f64 {
     match p {

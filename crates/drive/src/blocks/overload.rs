@@ -1,11 +1,11 @@
-//! I²t: the thermal load of motor or drive, of first order in the square of the current.
+//! I²t: the thermal load of motor or drive, first order in the square of the current.
 //!
 //! ```text
-//! dΘ/dt = ((i/I_n)² − Θ)/τ       Θ = 1: as warm as the continuous current I_n makes it
+//! dΘ/dt = ((i/I_n)² − Θ)/τ       Θ = 1: steady state of the continuous current I_n
 //! t(Θ = 1) = −τ·ln(1 − I_n²/I²)  from cold, at the constant current I > I_n
 //! ```
-//! Between two cycles of the velocity loop the current is taken as constant, for which the step is exact. At Θ = 1 the drive keeps to
-//! the continuous current until the load is below [`RELEASE`], or it tells a fault (CiA 402: 2350h).
+//! Between two cycles of the velocity loop the current is taken as constant, for which the step is exact. At Θ = 1 the drive limits the
+//! current to the continuous one until the load is below [`RELEASE`], or reports a fault (CiA 402: 2350h).
 //! Source: IEC 60034-1, 2022, §4.2 (thermal equilibrium of duty types) for the lag of first order; by hand for its step.
 #![expect(clippy::inline_always, reason = "what is inlined is compiled for the registers of its caller")]
 use servobench_base::{Dq, Stateful};
@@ -26,7 +26,7 @@ servobench_config::parameters! {
 }
 
 servobench_config::choices! {
-    /// What the drive does when the load is 1.
+    /// Reaction of the drive to a load of 1.
     pub enum Reaction default Derate {
         /// keeps to the continuous current
         Derate = "derate",
@@ -35,17 +35,17 @@ servobench_config::choices! {
     }
 }
 
-/// Load below which a drive that keeps to the continuous current gives more again.
+/// Load below which a drive that is limited to the continuous current is released.
 pub const RELEASE: f64 = 0.95;
 
-/// A model; constant during a run.
+/// Parameters of the model; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Continuous current I_n (A, peak).
     pub continuous_current: f64,
     /// Time constant τ (s).
     pub time_constant: f64,
-    /// What is done at Θ = 1.
+    /// Reaction at Θ = 1.
     pub reaction: Reaction,
 }
 
@@ -54,7 +54,7 @@ pub struct Params {
 pub struct State {
     /// Load Θ.
     pub load: f64,
-    /// Whether it has come to 1, and has not been below [`RELEASE`] since.
+    /// True if the load has reached 1 and has not been below [`RELEASE`] since.
     pub is_reached: bool,
 }
 
@@ -66,15 +66,15 @@ impl Params {
         Parameter::TIME_CONSTANT.check(self.time_constant).map(|_| ())
     }
 
-    /// Time from cold until the load is 1 at the current `current` (A, peak); infinite up to the continuous current (s).
+    /// Time from cold until the load is 1 at the current `current` (A, peak) (s); infinite up to the continuous current.
     #[must_use]
     pub fn time(&self, current: f64) -> f64 {
         let share = self.continuous_current / current;
         if share < 1.0 { -self.time_constant * libm::log1p(-share * share) } else { f64::INFINITY }
     }
 
-    /// Time constant with which the current `current` (A, peak) may flow for `time` (s) from cold; `None` when it is not above the
-    /// continuous current.
+    /// Time constant with which the current `current` (A, peak) may flow for `time` (s) from cold; `None` if it is not above the continuous
+    /// current.
     #[must_use]
     pub fn time_constant_of(continuous_current: f64, current: f64, time: f64) -> Option<f64> {
         let share = continuous_current / current;
@@ -82,15 +82,15 @@ impl Params {
     }
 }
 
-/// Takes the square of the current (A², peak) and advances `x` by `h` (s).
+/// Advances `x` by `h` (s) with the square of the current (A², peak).
 pub fn step(p: &Params, x: &mut State, square: f64, h: f64) {
     let nominal = p.continuous_current * p.continuous_current;
     x.load -= libm::expm1(-h / p.time_constant) * (square / nominal - x.load);
     x.is_reached = x.load >= 1.0 || x.is_reached && x.load > RELEASE;
 }
 
-/// Largest current (A, peak) that the thermal loads of motor and drive leave of `most` under the measured `current`, which they take
-/// for `h` (s).
+/// Largest current (A, peak), at most `most`, permitted by the thermal loads of motor and drive, which carry the measured `current` for `h`
+/// (s).
 #[inline(always)]
 pub(crate) fn limit(loads: [Option<&Params>; 2], states: &mut [State; 2], current: Dq, most: f64, h: f64) -> f64 {
     let Dq { d, q } = current;
@@ -111,7 +111,7 @@ mod tests {
 
     const P: Params = Params { continuous_current: 4.7, time_constant: 3.3, reaction: Reaction::Derate };
 
-    /// Cycles until the load is 1.
+    /// Number of cycles until the load is 1.
     fn cycles(p: &Params, current: f64, h: f64) -> u32 {
         let mut x = State::default();
         (1..1_000_000)
@@ -122,7 +122,7 @@ mod tests {
             .unwrap()
     }
 
-    /// Oracle: t = −τ·ln(1 − I_n²/I²), within the cycle that it falls into, whatever the rate.
+    /// Oracle: t = −τ·ln(1 − I_n²/I²), within its cycle, at every rate.
     #[test]
     fn the_limit_comes_after_the_time_of_the_closed_form() {
         for h in [125e-6, 1e-3, 7.3e-3] {
@@ -138,8 +138,8 @@ mod tests {
         assert_eq!((P.time(4.7), Params::time_constant_of(4.7, 4.7, 1.0)), (f64::INFINITY, None));
     }
 
-    /// Oracle: the exponential. At the continuous current the load comes to 1 and not above; it is released at 0.95 after
-    /// −τ·ln(0.95) without current, and not before.
+    /// Oracle: the exponential. At the continuous current the load rises to 1 and not above; it is released at 0.95 after −τ·ln(0.95)
+    /// without current, and not before.
     #[test]
     fn a_reached_limit_is_released_below() {
         let mut x = State { load: 1.0, is_reached: true };

@@ -1,11 +1,11 @@
-//! What a position loop adds to its proportional part: integral and derivative of the position error.
+//! Integral and derivative of the position error, added to the proportional part of the position loop.
 //!
 //! ```text
 //! ω_ref = K_v·(e + I + D) + g·v_ref        I += T_p/T_i·e        D: the filtered derivative of e ([`derivative`])
 //! ```
-//! Forward Euler, as in the velocity loop. Conditional integration (anti-windup): while the speed limit or the effort limit cuts what
-//! the loops below ask for, the integral does not grow in the direction of the cut.
-//! The derivative counts as a velocity loop of the gain K_v·T_d beside the reference that is fed forward.
+//! Forward Euler, as in the velocity loop. Conditional integration (anti-windup): while the speed limit or the effort limit cuts the demand
+//! of the loops, the integral does not grow in the direction of the cut. The derivative adds a velocity loop of gain K_v·T_d to the
+//! reference that is fed forward.
 //! Sources: Åström & Hägglund, *Advanced PID Control*, 2006, §3.4 and §3.5.
 use super::derivative;
 use servobench_base::Stateful;
@@ -14,19 +14,19 @@ use servobench_config::quantities::TIME;
 use servobench_config::{ParameterError, positive};
 
 servobench_config::parameters! {
-    /// A parameter of the position loop beside its gain.
+    /// A parameter of the position loop other than its gain.
     pub enum Parameter {
         /// Integral time of the position loop
         INTEGRAL_TIME "integral time of the position loop" = positive(Plain(&TIME), "50 ms");
     }
 }
 
-/// Constant during a run.
+/// Parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Params {
     /// Integral time T_i (s); `None` without an integral.
     pub integral_time: Option<f64>,
-    /// Derivative; `None` for none.
+    /// Derivative; `None` without one.
     pub derivative: Option<derivative::Params>,
 }
 
@@ -51,8 +51,8 @@ impl Params {
     }
 }
 
-/// e + I + D at a cycle with the position error `error`, then advances `x` by `h` (s). `cut` has the sign in which a limit below cuts, 0
-/// where none does.
+/// Returns e + I + D in a cycle with the position error `error`, then advances `x` by `h` (s). `cut` has the sign in which a limit below
+/// cuts, 0 if none does.
 pub fn step(p: &Params, x: &mut State, error: f64, cut: f64, h: f64) -> f64 {
     let derivative = p.derivative.map_or(0.0, |derivative| derivative::step(&derivative, &mut x.derivative, error, h));
     let sum = error + x.integral + derivative;
@@ -68,8 +68,8 @@ pub fn step(p: &Params, x: &mut State, error: f64, cut: f64, h: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A position that follows its velocity command at once, against a velocity error `v`: x' = K_v·(e + I) − v. Oracle: with
-    /// K_v·T_i = 4 both poles are at −K_v/2, and from rest e(t) = v·t·exp(−K_v·t/2). Forward Euler: order one.
+    /// A position that follows its velocity command at once, against a velocity error `v`: x' = K_v·(e + I) − v. Oracle: with K_v·T_i = 4
+    /// both poles are at −K_v/2, and from rest e(t) = v·t·exp(−K_v·t/2). Forward Euler: first order.
     #[test]
     fn an_integral_takes_a_constant_error_away() {
         let (gain, v, end) = (57.0, 0.013, 61e-3);
@@ -87,7 +87,7 @@ mod tests {
         assert!((found(64_000) / exact - 1.0).abs() < 1e-3);
     }
 
-    /// Oracle: by hand. In the direction of the cut nothing is gathered, against it it is.
+    /// Oracle: by hand. The integral grows against the direction of the cut, and not in it.
     #[test]
     fn a_limit_that_cuts_stops_the_integral_in_its_direction() {
         let p = Params { integral_time: Some(0.5), derivative: None };

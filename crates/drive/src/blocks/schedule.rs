@@ -1,16 +1,16 @@
-//! Gains over speed: those of standstill up to one speed, others from another one on, and a line between.
+//! Gains over speed: constant up to one speed and from another one on, with linear interpolation between them.
 //!
 //! ```text
 //! s = sat((|ω| − ω_1)/(ω_2 − ω_1), 0…1)      K_v(ω) = K_v·(1 + s·(f_p − 1))      k_p(ω) = k_p·(1 + s·(f_v − 1))
 //! ```
-//! ω is the velocity that the velocity loop sees. The integrator holds an effort and keeps it while the gain changes.
+//! ω is the measured velocity of the velocity loop. The integrator holds an effort and keeps it while the gain changes.
 //! Source: Åström & Wittenmark, *Adaptive Control*, 2nd ed., ch. 9 (gain scheduling).
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{RATIO, VELOCITY};
 use servobench_config::{ParameterError, not_negative, positive};
 
 servobench_config::parameters! {
-    /// A parameter of gains over speed.
+    /// A parameter of the gain schedule.
     pub enum Parameter {
         /// Speed of the motor up to which the gains are those of standstill
         FROM "speed from which gains change" = not_negative(Motor(&VELOCITY), "10 rpm");
@@ -23,7 +23,7 @@ servobench_config::parameters! {
     }
 }
 
-/// Constant during a run.
+/// Parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Speed ω_1 of the motor (rad/s or m/s).
@@ -50,7 +50,7 @@ impl Params {
         Parameter::VELOCITY_GAIN.check(self.velocity).map(|_| ())
     }
 
-    /// The factors of position and velocity gain at the motor's `velocity`.
+    /// Factors of position and velocity gain at the motor's `velocity`.
     #[must_use]
     pub fn factors(&self, velocity: f64) -> (f64, f64) {
         let share = ((velocity.abs() - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
@@ -64,7 +64,7 @@ mod tests {
 
     const P: Params = Params { from: 3.0, to: 8.0, position: 0.4, velocity: 1.7 };
 
-    /// Oracle: by hand: 4.5 rad/s are three tenths of the way.
+    /// Oracle: by hand: 4.5 rad/s are at three tenths of the range.
     #[test]
     fn between_two_speeds_is_a_line() {
         for (velocity, position, gain) in [(0.0, 1.0, 1.0), (-3.0, 1.0, 1.0), (4.5, 0.82, 1.21), (-90.0, 0.4, 1.7)] {

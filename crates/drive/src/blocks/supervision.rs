@@ -1,30 +1,31 @@
-//! What the drive watches of motor and power stage: DC link, commutation, stall, phases, speed. Each is there when its parameters are.
+//! Supervision of motor and power stage: DC link, commutation, stall, phases, speed. Each is active if its parameters are given.
 //!
-//! | finding | when | 603Fh |
+//! | finding | condition | 603Fh |
 //! |---|---|---|
 //! | over-voltage | the measured DC link is above `overvoltage` | 3210h |
-//! | under-voltage | it is below `undervoltage` | 3220h |
+//! | under-voltage | the measured DC link is below `undervoltage` | 3220h |
 //! | over-current | the measured current of a leg is above `overcurrent` | 2310h |
 //! | over-temperature | the measured winding is warmer than `winding_temperature` | 4310h |
 //! | lost phase | a leg has had less than half of `current` for `time` while it could have had `current` or more | 3321h |
-//! | stall | the loops ask for more than their limit while the motor is slower than `speed`, for `time` | 7121h |
+//! | stall | the loops demand more than their limit while the motor is slower than `speed`, for `time` | 7121h |
 //! | commutation | against a torque-producing current of `current` or more the motor has gained `speed`, at once or in swings | 7122h |
 //! | over-speed | the motor is faster than `overspeed` | 7310h |
 //!
-//! - **Commutation.** i_q·v < 0 and |i_q| ≥ `current`: the current brakes. Then |v| falls, unless what the drive takes for the q axis is
-//!   not it, or a load is stronger than the motor. The gain is counted from the lowest |v| of that time on. A motor with little friction
-//!   that is trapped swings about an angle at which its torque changes sign, and gains less each time: gains of a quarter of `speed`
-//!   and more add up, forgotten with 0.5 s, as long as they are at least half of what is lost meanwhile. A load on a spring drives a
-//!   healthy motor that brakes, too, but by less than it loses.
-//! - **Stall.** A motor whose commutation is off by 90° has no torque either; by its sensors a drive cannot tell it from a blocked one.
-//! - **Lost phase.** The time counts while the reference of the leg is there, behind a lag of first order with the bandwidth of the current
-//!   loop, and begins again as soon as half of `current` flows. What a coarse encoder makes of the reference from cycle to cycle no healthy
-//!   leg follows. At a standstill where the leg is to have no current nothing can be seen.
+//! - **Commutation.** i_q·v < 0 and |i_q| ≥ `current`: the current brakes. Then |v| falls, unless the drive's q axis is wrong, or a load is
+//!   stronger than the motor. The gain is counted from the lowest |v| since then. A trapped motor with little friction swings about an
+//!   angle at which its torque changes sign, and gains less each time: gains of at least a quarter of `speed` add up, with a forgetting
+//!   time of 0.5 s, if their sum is at least half of the losses meanwhile. A load on a spring also drives a healthy braking motor, but by
+//!   less than it loses.
+//! - **Stall.** A motor whose commutation is off by 90° has no torque either; by its sensors a drive cannot distinguish it from a blocked
+//!   one.
+//! - **Lost phase.** The time counts while the leg has a reference, behind a lag of first order with the bandwidth of the current loop, and
+//!   restarts as soon as half of `current` flows. The lag is needed because no healthy leg follows the chatter that a coarse encoder causes
+//!   in the reference from cycle to cycle. At standstill a leg whose reference is zero cannot be supervised.
 //!
-//! The rules are ours (assumed): the profile has codes for what is found and none for how. Codes: IEC 61800-7-201, error codes of the
-//! emergency message.
+//! The rules are ours (assumed): the profile has codes for the findings and no rules of detection. Codes: IEC 61800-7-201, error codes of
+//! the emergency message.
 //!
-//! A finding stays until the power goes off. Without power nothing is looked for.
+//! A finding stays until the power goes off. Without power nothing is supervised.
 use servobench_base::{AlphaBeta, Stateful};
 use servobench_config::Kind::{Motor, Plain};
 use servobench_config::quantities::{CURRENT, TEMPERATURE, TIME, VELOCITY, VOLTAGE};
@@ -58,7 +59,7 @@ servobench_config::parameters! {
     }
 }
 
-/// What is watched; constant during a run.
+/// Thresholds of the supervision; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Params {
     /// Lowest DC link (V).
@@ -79,34 +80,34 @@ pub struct Params {
     pub phases: Option<Phases>,
 }
 
-/// When the commutation is wrong.
+/// Threshold of wrong commutation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commutation {
-    /// Speed that is gained against the current (motor coordinate).
+    /// Speed gained against the current (motor coordinate).
     pub speed: f64,
-    /// Least current that counts (A, peak).
+    /// Least current for the detection (A, peak).
     pub current: f64,
 }
 
-/// When a motor is blocked.
+/// Threshold of a blocked motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stall {
-    /// Speed below which it stands (motor coordinate).
+    /// Speed below which the motor stands (motor coordinate).
     pub speed: f64,
-    /// For how long (s).
+    /// Duration (s).
     pub time: f64,
 }
 
-/// When a phase is lost.
+/// Threshold of a lost phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phases {
-    /// Least reference of a leg that counts (A, peak).
+    /// Least reference of a leg for the detection (A, peak).
     pub current: f64,
-    /// For how long it has less than half of it (s).
+    /// Duration with less than half of that (s).
     pub time: f64,
 }
 
-/// What was found.
+/// Fault found by the supervision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Finding {
     /// The DC link is too high.
@@ -128,31 +129,31 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// Whether no loop can brake the axis any more: with a current that drives instead of braking, with two phases only, or with a link
-    /// that what comes back fills further.
+    /// True if no loop can brake the axis any more: the current drives instead of braking, only two phases are left, or regenerated energy
+    /// charges the link further.
     #[must_use]
     pub const fn leaves_no_brake(self) -> bool {
         matches!(self, Self::Commutation | Self::LostPhase | Self::OverVoltage)
     }
 }
 
-/// Time with which gains and losses of speed are forgotten (s).
+/// Time constant with which gains and losses of speed are forgotten (s).
 const FORGOTTEN: f64 = 0.5;
-/// The least gain that adds up, as a part of the speed that is found.
+/// Least gain that adds up, as a part of the threshold of speed.
 const LEAST: f64 = 0.25;
-/// The least share of the speed that is lost, which is gained.
+/// Least gain of speed for a finding, as a share of the loss.
 const OF_LOST: f64 = 0.5;
 
-/// Course of the speed while the current brakes, from turn to turn.
+/// Course of the speed between turning points while the current brakes.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Braked {
-    /// Where it turned last, and the farthest that it came from there.
+    /// Last turning point, and the farthest speed from there.
     turn: f64,
     farthest: f64,
     rises: bool,
 }
 
-/// Speed that was gained and lost against the current, forgotten by and by.
+/// Speed gained and lost against the current, gradually forgotten.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Swings {
     now: Option<Braked>,
@@ -161,7 +162,8 @@ struct Swings {
 }
 
 impl Swings {
-    /// A cycle of `h` (s) at this `speed`, in which the current brakes or does not; swings count from `least` on. Gives the gain of now.
+    /// Advances by a cycle of `h` (s) at this `speed`; `brakes`: the current brakes; swings count from `least` on. Returns the present
+    /// gain.
     fn step(&mut self, speed: f64, brakes: bool, least: f64, h: f64) -> f64 {
         let kept = 1.0 - h / FORGOTTEN;
         (self.gained, self.lost) = (kept * self.gained, kept * self.lost);
@@ -189,7 +191,7 @@ impl Swings {
         }
     }
 
-    /// True where `speed` was gained in swings, with the gain of `now`.
+    /// True if `speed` was gained in swings, including the present gain `now`.
     fn has_gained(&self, speed: f64, now: f64) -> bool {
         self.gained + now >= speed && self.gained + now >= OF_LOST * self.lost
     }
@@ -198,15 +200,15 @@ impl Swings {
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
-    /// What was found first.
+    /// First finding.
     pub found: Option<Finding>,
     /// Speed against the current.
     swings: Swings,
     /// Cycles in which the motor stood at the limit.
     stalled: u32,
-    /// Current that a healthy motor has of its reference (A, peak).
+    /// Current of a healthy motor for the reference (A, peak).
     followed: AlphaBeta,
-    /// Cycles in which a leg had no current that it could have had.
+    /// Cycles in which a leg lacked the current of its reference.
     without_current: [u32; 3],
 }
 
@@ -237,7 +239,7 @@ impl Params {
     }
 }
 
-/// What the velocity loop sees at a cycle.
+/// Input of a cycle of the velocity loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// Measured speed (motor coordinate).
@@ -246,11 +248,11 @@ pub struct Motion {
     pub dc_link: f64,
     /// Measured temperature of the winding (°C).
     pub winding: f64,
-    /// Whether the effort was cut at the last cycle.
+    /// True if the effort was cut at the last cycle.
     pub is_cut: bool,
 }
 
-/// What the current loop sees at a cycle.
+/// Input of a cycle of the current loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Currents {
     /// Measured speed (motor coordinate).
@@ -265,7 +267,7 @@ pub struct Currents {
     pub measured: AlphaBeta,
 }
 
-/// A cycle of the velocity loop of `h` (s).
+/// Supervises a cycle of the velocity loop of `h` (s).
 #[cold]
 pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
     let speed = u.velocity.abs();
@@ -286,7 +288,7 @@ pub fn watch_motion(p: &Params, x: &mut State, u: &Motion, h: f64) {
     x.found = x.found.or(found);
 }
 
-/// A cycle of the current loop of `h` (s).
+/// Supervises a cycle of the current loop of `h` (s).
 #[cold]
 pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
     if let Some(commutation) = p.commutation {
@@ -318,7 +320,7 @@ pub fn watch_currents(p: &Params, x: &mut State, u: &Currents, h: f64) {
     }
 }
 
-/// Whether so many cycles of `h` (s) are `time` (s), which a rounding does not make one more.
+/// True if `cycles` cycles of `h` (s) last `time` (s); rounding does not require one more.
 fn has_lasted(cycles: u32, time: f64, h: f64) -> bool {
     f64::from(cycles) * h >= time * (1.0 - 1e-12)
 }

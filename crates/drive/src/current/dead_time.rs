@@ -1,21 +1,21 @@
-//! Compensation of the inverter's dead time: what each leg loses is added to what it is asked for.
+//! Compensation of the inverter's dead time: adds the lost voltage of each leg to its reference.
 //!
 //! ```text
 //! Δu_x = ΔU·sat(i_x/i_0)      ΔU = t_d·f·U_dc      x = a, b, c
 //! ```
-//! While both switches of a leg are open the diode that carries the current sets its voltage: over a period of the carrier the
-//! mean of the leg is off by t_d·f·U_dc against the current. The sign is that of the reference, which carries no ripple, where the
-//! rotor will be; below i_0 the leg's capacitance makes a line of it, and so does the compensation. What the three legs have in
-//! common does not reach the motor.
-//! Source: Jeong, Park, *IEEE Trans. Industrial Electronics* 38(2), 1991; Holmes & Lipo, *Pulse Width Modulation for Power
-//! Converters*, §2.5 (dead time).
+//! While both switches of a leg are open, the diode that carries the current sets its voltage: the mean of the leg over a carrier period is
+//! off by t_d·f·U_dc against the current. The sign is that of the reference, which has no ripple, at the rotor angle of application; below
+//! i_0 the leg's capacitance makes the loss linear, and so does the compensation. The common part of the three legs does not reach the
+//! motor.
+//! Source: Jeong, Park, *IEEE Trans. Industrial Electronics* 38(2), 1991; Holmes & Lipo, *Pulse Width Modulation for Power Converters*,
+//! §2.5 (dead time).
 use servobench_base::AlphaBeta;
 use servobench_config::Kind::Plain;
 use servobench_config::quantities::{CURRENT, FREQUENCY, TIME};
 use servobench_config::{ParameterError, not_negative, positive};
 
 servobench_config::parameters! {
-    /// A parameter of the compensation of dead time.
+    /// A parameter of the dead-time compensation.
     pub enum Parameter {
         /// Dead time of a leg as the drive knows it
         DEAD_TIME "dead time that is compensated" = not_negative(Plain(&TIME), "2 us");
@@ -26,16 +26,16 @@ servobench_config::parameters! {
     }
 }
 
-/// Constant during a run.
+/// Parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Dead time t_d (s).
     pub dead_time: f64,
-    /// Frequency f of the carrier (Hz).
+    /// Carrier frequency f (Hz).
     pub frequency: f64,
     /// Linear zone i_0 (A, peak); 0 for a step.
     pub linear_zone: f64,
-    /// Voltage U_dc of the DC link as the drive knows it (V).
+    /// Assumed voltage U_dc of the DC link (V).
     pub dc_link: f64,
 }
 
@@ -49,13 +49,13 @@ impl Params {
         super::Parameter::DC_LINK.check(self.dc_link).map(|_| ())
     }
 
-    /// Mean voltage that a leg loses (V): t_d·f·U_dc.
+    /// Mean voltage loss of a leg (V): t_d·f·U_dc.
     #[must_use]
     pub fn loss(&self) -> f64 {
         self.dead_time * self.frequency * self.dc_link
     }
 
-    /// What is added while `current` (A) flows (V).
+    /// Compensating voltage while `current` (A) flows (V).
     #[inline]
     #[must_use]
     pub fn voltage(&self, current: AlphaBeta) -> AlphaBeta {
@@ -82,9 +82,9 @@ mod tests {
 
     const P: Params = Params { dead_time: 2.3e-6, frequency: 8e3, linear_zone: 0.0, dc_link: 537.0 };
 
-    /// n-th harmonic of the α voltage and the β voltage while a current of `amplitude` turns: real parts of cos and of sin.
+    /// n-th harmonic of the α and the β voltage under a rotating current of `amplitude`: real parts of cos and of sin.
     fn harmonic(p: &Params, amplitude: f64, n: f64) -> (f64, f64) {
-        // No multiple of six, so that no sample is on a step.
+        // Not a multiple of six, so that no sample is on a step.
         const SAMPLES: u32 = 100_003;
         let mut sum = (0.0, 0.0);
         for k in 0..SAMPLES {
@@ -95,8 +95,8 @@ mod tests {
         (2.0 * sum.0 / f64::from(SAMPLES), 2.0 * sum.1 / f64::from(SAMPLES))
     }
 
-    /// Oracle: Fourier series of a square wave: 4/(πn)·ΔU, alternating; in the motor without the multiples of three. The β
-    /// voltage of the harmonics 6m − 1 turns backwards.
+    /// Oracle: Fourier series of a square wave: 4/(πn)·ΔU, alternating; in the motor without the multiples of three. The β voltage of the
+    /// harmonics 6m − 1 rotates backwards.
     #[test]
     fn a_turning_current_meets_the_harmonics_of_a_square_wave() {
         let loss = 2.3e-6 * 8e3 * 537.0;
@@ -121,7 +121,7 @@ mod tests {
         }
     }
 
-    /// Oracle: by hand: the current that comes out of a alone, half of it back through b and c each.
+    /// Oracle: by hand: a current out of a alone, half of it returning through b and c each.
     #[test]
     fn a_phase_gets_four_thirds() {
         let u = P.voltage(AlphaBeta { alpha: 1.7, beta: 0.0 });

@@ -1,24 +1,24 @@
-//! Which currents make an effort: maximum torque per ampere, and field weakening where the voltage ends.
+//! Currents for an effort: maximum torque per ampere, and field weakening at the voltage limit.
 //!
 //! ```text
 //! τ = K·(ψ + (L_d − L_q)·i_d)·i_q       K = 1.5·p
 //! u_d = R·i_d − ω·L_q·i_q               u_q = R·i_q + ω·(L_d·i_d + ψ)
 //! |i| ≤ I_max                           |u| ≤ U
 //! ```
-//! **Maximum torque per ampere.** Least |i| for τ where w³·(w − ψ) = (L_d − L_q)²·(τ/K)², w = ψ + (L_d − L_q)·i_d: the left side is
-//! convex beyond its root, so that Newton's method comes down to it from above. At I_max
-//! i_d = ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + I_max²/2), written without the difference that L_d = L_q makes 0/0. Without magnets
-//! (ψ = 0) both currents are as large, i_d with the sign of L_d − L_q, and none flows without torque.
+//! **Maximum torque per ampere.** Least |i| for τ where w³·(w − ψ) = (L_d − L_q)²·(τ/K)², w = ψ + (L_d − L_q)·i_d: the left side is convex
+//! beyond its root, so that Newton's method descends to it. At I_max i_d = ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + I_max²/2), written
+//! without the difference that becomes 0/0 for L_d = L_q. Without magnets (ψ = 0) both currents have equal magnitude, i_d with the sign of
+//! L_d − L_q, and none flows without torque.
 //!
-//! **Field weakening.** At i_d the largest |i_q| is that of the circle or, by a quadratic, of the voltage ellipse, resistance
-//! included. Both sets are convex, so the effort over i_d has one maximum. It is the end of maximum torque per ampere, the corner of
-//! circle and ellipse, or, where ψ/L_d < I_max at high speed, the point of maximum torque per voltage. That is below the i_d that the
-//! strategy prefers, except where this alone is more than ψ/L_d: with little or no magnets the field is weakened by less of it. A smaller
-//! effort is given at the preferred i_d, or at the nearest one towards the maximum at which the voltage suffices. The
-//! voltage must suffice for i_q = 0 too, lest an effort that ends leaves none.
+//! **Field weakening.** At i_d the largest |i_q| is that of the circle or, by a quadratic, of the voltage ellipse, resistance included.
+//! Both sets are convex, so the effort over i_d has one maximum. It is the end of maximum torque per ampere, the corner of circle and
+//! ellipse, or, where ψ/L_d < I_max at high speed, the point of maximum torque per voltage. That is below the i_d preferred by the
+//! strategy, except where this alone exceeds ψ/L_d: with little or no magnets the field is weakened by a smaller |i_d|. A smaller effort is
+//! applied at the preferred i_d, or at the nearest one towards the maximum at which the voltage suffices. The voltage must also suffice for
+//! i_q = 0, so that the current of a released effort can decay.
 //!
-//! **Voltage feedback.** What the estimates have wrong shows in the voltage that the current loop computes: U falls by
-//! dU/dt = α·(σ·U_max − |u|), to half of σ·U_max at most, and never rises above it. σ is the share of the voltage that is used.
+//! **Voltage feedback.** Errors of the estimates show in the voltage that the current loop computes: U falls by dU/dt = α·(σ·U_max − |u|),
+//! to half of σ·U_max at most, and never rises above σ·U_max. σ is the share of the voltage that is used.
 //! Source: Morimoto, Takeda, Hirasa, Taniguchi, *IEEE Trans. Ind. Appl.* 26(5), 1990 (the regions); Kim, Sul, *IEEE Trans. Ind. Appl.*
 //! 33(1), 1997 (feedback of the voltage).
 use super::{MotorEstimate, Params as Loop};
@@ -39,7 +39,7 @@ servobench_config::parameters! {
 }
 
 servobench_config::choices! {
-    /// Which d-axis current an effort is given with.
+    /// Choice of the d-axis current for an effort.
     pub enum Strategy default DReference {
         /// a constant one, `d_reference`
         DReference = "d-reference",
@@ -51,29 +51,29 @@ servobench_config::choices! {
 /// Field weakening; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weakening {
-    /// Share σ of the largest voltage that is used.
+    /// Share σ of the largest voltage in use.
     pub share: f64,
     /// Rate α of the voltage feedback (rad/s); 0 for none.
     pub feedback: f64,
 }
 
-/// How currents follow from an effort; constant during a run.
+/// Choice of the currents for an effort; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Params {
-    /// Which d-axis current.
+    /// Choice of the d-axis current.
     pub strategy: Strategy,
-    /// Field weakening, where there is some.
+    /// Field weakening, if any.
     pub weakening: Option<Weakening>,
 }
 
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
-    /// What the feedback takes from the voltage (V), not above 0.
+    /// Correction of the voltage by the feedback (V), not above 0.
     pub correction: f64,
 }
 
-/// The largest effort of a direction, and the d-axis current that it takes (A).
+/// Largest effort in a direction, and its d-axis current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
     /// Effort (N·m or N), a magnitude.
@@ -82,30 +82,30 @@ pub struct Peak {
     pub d: f64,
 }
 
-/// What motor and inverter can give at the present speed.
+/// Capability of motor and inverter at the present speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Envelope {
     /// In positive direction.
     pub forward: Peak,
     /// In negative direction.
     pub backward: Peak,
-    /// Voltage (V) that it takes.
+    /// Voltage limit (V).
     voltage: f64,
     /// Electrical speed (rad/s).
     omega_e: f64,
 }
 
-/// Turns of Newton's method: it squares its error, and begins less than a factor of 2 off.
+/// Iterations of Newton's method: it squares its error, and begins within a factor of 2.
 const NEWTON: usize = 8;
 /// Halvings: the width is 2·I_max·2⁻³⁶.
 const HALVINGS: usize = 36;
-/// Steps of the golden section: what is left of 2·I_max is 0.618⁴⁰ = 4e-9 of it.
+/// Steps of the golden section: the remaining interval is 0.618⁴⁰ = 4e-9 of 2·I_max.
 const SECTIONS: usize = 40;
 /// Golden section, (√5 − 1)/2.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 impl Params {
-    /// Whether the d-axis current is a constant.
+    /// True if the d-axis current is constant.
     #[must_use]
     pub const fn is_plain(&self) -> bool {
         matches!(self, Self { strategy: Strategy::DReference, weakening: None })
@@ -127,7 +127,7 @@ impl Params {
 }
 
 impl Strategy {
-    /// True where `motor` has torque with the d-axis currents that it chooses: a constant one of `d_reference` (A, peak), or any.
+    /// True if `motor` has torque with the d-axis currents of this strategy: a constant `d_reference` (A, peak), or any.
     #[must_use]
     pub fn has_torque(self, motor: &MotorEstimate, d_reference: f64) -> bool {
         match self {
@@ -144,21 +144,21 @@ impl MotorEstimate {
         self.inductance.d - self.inductance.q
     }
 
-    /// d-axis current of the largest torque per ampere at the current `length` (A).
+    /// d-axis current of maximum torque per ampere for a current of this `length` (A).
     #[must_use]
     pub fn mtpa_at_current(&self, length: f64) -> f64 {
         let (psi, saliency) = (self.flux_linkage, self.saliency());
         2.0 * saliency * length * length / (psi + libm::sqrt(psi * psi + 8.0 * saliency * saliency * length * length))
     }
 
-    /// d-axis current with which `effort` takes least current (A).
+    /// d-axis current with which `effort` takes the least current (A).
     #[must_use]
     pub fn mtpa(&self, effort: f64) -> f64 {
         let (psi, saliency) = (self.flux_linkage, self.saliency());
         let wanted = effort / (1.5 * self.electrical_ratio);
         let right = saliency * saliency * wanted * wanted;
         let mut w = psi + libm::sqrt(libm::sqrt(right));
-        // No magnets and no torque, or one whose square is rounded to zero.
+        // Without magnets and torque, or with a torque whose square underflows to zero.
         if w == 0.0 {
             return 0.0;
         }
@@ -178,7 +178,7 @@ impl MotorEstimate {
     }
 }
 
-/// The two limits at a speed, in the direction in which i_q has the sign `sign`.
+/// Current and voltage limit at a speed, in the direction in which i_q has the sign `sign`.
 struct Bounds<'a> {
     p: &'a Loop,
     voltage: f64,
@@ -187,7 +187,7 @@ struct Bounds<'a> {
 }
 
 impl Bounds<'_> {
-    /// Largest |i_q| at the d-axis current `d`; below 0 where the voltage does not suffice for i_q = 0.
+    /// Largest |i_q| at the d-axis current `d`; below 0 if the voltage does not suffice for i_q = 0.
     fn q_current(&self, d: f64) -> f64 {
         let motor = &self.p.motor;
         let (r, omega, l) = (motor.resistance, self.omega_e, motor.inductance);
@@ -199,25 +199,25 @@ impl Bounds<'_> {
             return -excess / square;
         }
         let half = self.sign * r * omega * (motor.saliency() * d + motor.flux_linkage);
-        // The difference of two nearly equal numbers when `half` is positive: by their product instead.
+        // For a positive `half` the difference would cancel: computed by the product of the roots instead.
         let root = libm::sqrt(half * half - square * excess);
         let ellipse = if half > 0.0 { -excess / (half + root) } else { (root - half) / square };
         circle.min(ellipse)
     }
 
-    /// Largest effort at `d`; below 0, in other units, where there is none.
+    /// Largest effort at `d`; below 0, in other units, if there is none.
     fn effort(&self, d: f64) -> f64 {
         let q = self.q_current(d);
         if q > 0.0 { self.p.motor.effort_constant(d) * q } else { q }
     }
 
-    /// Up to which d-axis current the largest effort may lie, where a strategy prefers `most`.
+    /// Largest d-axis current of the search for the largest effort, under a strategy that prefers `most`.
     fn highest(&self, most: f64) -> f64 {
         let motor = &self.p.motor;
         if motor.saliency() < 0.0 && motor.flux_linkage < -motor.inductance.d * most { 0.0 } else { most }
     }
 
-    /// The largest effort, of a strategy that prefers the d-axis current `most` for it.
+    /// Largest effort under a strategy that prefers the d-axis current `most` for it.
     fn peak(&self, most: f64) -> Peak {
         let motor = &self.p.motor;
         let ceiling =
@@ -225,7 +225,7 @@ impl Bounds<'_> {
         if self.effort(most) >= ceiling.effort {
             return ceiling;
         }
-        // The range in which the voltage suffices for i_q = 0.
+        // Range in which the voltage suffices for i_q = 0.
         let (r, omega, l) = (motor.resistance, self.omega_e, motor.inductance.d);
         let (square, psi) = (r * r + omega * omega * l * l, motor.flux_linkage);
         let middle = -omega * omega * l * psi / square;
@@ -259,7 +259,7 @@ impl Bounds<'_> {
 }
 
 impl Envelope {
-    /// At the electrical speed `omega_e` (rad/s), with what the voltage feedback says.
+    /// Envelope at the electrical speed `omega_e` (rad/s), with the correction by the voltage feedback.
     #[must_use]
     pub fn new(p: &Loop, x: &State, omega_e: f64) -> Self {
         let voltage = match p.operation.weakening {
@@ -285,7 +285,7 @@ impl Envelope {
         EffortLimits { forward: self.forward.effort, backward: self.backward.effort }
     }
 
-    /// The currents of `effort`, which is cut to what there is.
+    /// Currents of `effort`, which is cut to the envelope.
     #[must_use]
     pub fn currents(&self, p: &Loop, effort: f64) -> Dq {
         let (sign, peak) = if effort < 0.0 { (-1.0, self.backward) } else { (1.0, self.forward) };
@@ -296,7 +296,7 @@ impl Envelope {
         };
         if self.voltage.is_finite() {
             let bounds = Bounds { p, voltage: self.voltage, omega_e: self.omega_e, sign };
-            // What is asked for is not above what there is but for the rounding of the search.
+            // The demand exceeds the envelope only by the rounding of the search.
             let suffices = |d: f64| bounds.effort(d) >= wanted * (1.0 - 1e-9);
             if !suffices(d) {
                 let (mut enough, mut too_little) = (peak.d, d);
@@ -309,12 +309,12 @@ impl Envelope {
         }
         let most = super::q_current(p.max_current, d);
         let per_ampere = p.motor.effort_constant(d);
-        // Nothing is to be divided by where a motor without magnets has no current.
+        // A motor without magnets and current would lead to a division by zero.
         Dq { d, q: if per_ampere > 0.0 { sign * (wanted / per_ampere).min(most) } else { 0.0 } }
     }
 }
 
-/// Takes the voltage that the current loop computed (V) and advances `x` by `h` (s).
+/// Advances `x` by `h` (s) with the voltage that the current loop computed (V).
 pub fn step(p: &Loop, x: &mut State, computed: Dq, h: f64) {
     let Some(Weakening { share, feedback }) = p.operation.weakening else { return };
     if feedback == 0.0 || p.max_voltage.is_infinite() {

@@ -22,7 +22,7 @@ fn tuned(alpha: f64, max_voltage: f64) -> Params {
     }
 }
 
-/// Drives an R–L load at standstill, where each axis is exactly i(k+1) = a·i + (1 − a)/R·u.
+/// Lag (s) behind a ramp with an R–L load at standstill, where each axis is exactly i(k+1) = a·i + (1 − a)/R·u.
 fn ramp_lag(alpha: f64) -> f64 {
     let p = tuned(alpha, 1e6);
     let (mut x, mut i) = (State::default(), Dq::default());
@@ -39,7 +39,7 @@ fn ramp_lag(alpha: f64) -> f64 {
     (slope * 1_600.0 * H - i.q) / slope
 }
 
-/// Oracle: the final-value theorem: a loop of gain α/s follows a ramp 1/α late, one tick of dead time or not.
+/// Oracle: the final-value theorem: a loop of gain α/s follows a ramp with a delay of 1/α, with or without a tick of dead time.
 #[test]
 fn a_ramp_is_followed_one_over_alpha_late() {
     for alpha in [500.0, 2_000.0, 6_000.0] {
@@ -55,8 +55,8 @@ fn d_has_first_call_on_the_voltage() {
     assert_eq!(limit_d_first(Dq { d: 400.0, q: 1.0 }, 300.0), Dq { d: 300.0, q: 0.0 });
 }
 
-/// Oracle: with the voltage at u_max, v = k_p·e + I and dI/dt = k_i·(e + (u_max − v)/k_p) = (u_max − I)·k_i/k_p: the
-/// integrator comes to rest at u_max, whatever the error.
+/// Oracle: with the voltage at u_max, v = k_p·e + I and dI/dt = k_i·(e + (u_max − v)/k_p) = (u_max − I)·k_i/k_p: the integrator comes to
+/// rest at u_max, whatever the error.
 #[test]
 fn the_integrator_of_a_saturated_axis_rests_at_the_limit() {
     let p = tuned(2_000.0, 300.0);
@@ -70,7 +70,7 @@ fn the_integrator_of_a_saturated_axis_rests_at_the_limit() {
     for _ in 0..160_000 {
         assert!(step(&p, &mut x, input, H).saturated);
     }
-    // Each step rounds v, of 10 kV, and a difference of its size; what is rounded decays with k_i/k_p.
+    // Each step rounds v, of 10 kV, and a difference of that size; rounding errors decay with k_i/k_p.
     assert!((x.integral.q - 300.0).abs() < 1e-10, "{:?}", x.integral);
 }
 
@@ -129,7 +129,7 @@ fn the_voltage_meets_the_rotor_one_and_a_half_ticks_later() {
     assert!((met.d - computed.d).abs() < 1e-10 && (met.q - computed.q).abs() < 1e-10, "{met:?} {computed:?}");
 }
 
-/// A current that is not a number goes on as one: a clamp between bounds that are not numbers would end the program.
+/// A NaN current stays NaN: a clamp between NaN bounds would panic.
 #[test]
 fn a_current_that_is_no_number_gives_a_voltage_that_is_none() {
     for (d, q) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, 1.0)] {

@@ -1,9 +1,8 @@
-//! When the targets of the cyclic modes act.
+//! Timing of the targets of the cyclic modes.
 //!
-//! The drive keeps a clock of its own with the period of the frames, which starts with the first one. A frame acts at the
-//! beginning of the cycle after it came, however early it came. A cycle that begins without a new frame is a missed one. When
-//! its frame comes after all, the cycle begins anew with it: the clock follows the latest of the frames, and who comes no later
-//! is in time from then on.
+//! The drive keeps its own clock with the period of the frames, started by the first one. A frame acts at the beginning of the cycle after
+//! its arrival, however early it came. A cycle that begins without a new frame is a missed one. If its frame comes after all, the cycle
+//! restarts with it: the clock follows the latest of the frames, and frames no later than that are in time from then on.
 
 use servobench_base::Stateful;
 /// Rates of the clock.
@@ -11,43 +10,43 @@ use servobench_base::Stateful;
 pub struct Params {
     /// Steps of the drive per frame (60C2h), at least 1.
     pub steps: u32,
-    /// Steps that the first frame waits for its cycle: how much later than that one the others may come without being missed.
+    /// Steps that the first frame waits for its cycle: the tolerated lateness of the other frames.
     pub shift: u32,
     /// Cycles in a row that may begin without a new frame.
     pub bridged: u32,
 }
 
-/// What the clock says at a step.
+/// Event of the clock at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CycleEvent {
     /// A cycle begins and the targets of a new frame act.
     Sample,
     /// A cycle begins without a new frame.
     Missed,
-    /// The frame of a missed cycle has come: the cycle begins anew, and its targets act.
+    /// The frame of a missed cycle has come: the cycle restarts, and its targets act.
     Late,
-    /// A cycle goes on, or none has begun.
+    /// A cycle continues, or none has begun.
     Between,
 }
 
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
-    /// Steps until the next cycle begins; none before the first frame.
+    /// Steps until the next cycle begins; `None` before the first frame.
     left: Option<u32>,
     is_waiting: bool,
     missed: u32,
 }
 
 impl State {
-    /// Cycles in a row that began without a new frame.
+    /// Consecutive cycles that began without a new frame.
     pub(super) const fn missed(&self) -> u32 {
         self.missed
     }
 }
 
-/// Counts a step; `came` says whether a frame came since the last one. After more missed cycles than are bridged the clock
-/// waits for another first frame.
+/// Counts a step; `came` is true if a frame came since the last one. After more missed cycles than are bridged, the clock waits for another
+/// first frame.
 pub(super) fn step(p: &Params, x: &mut State, came: bool) -> CycleEvent {
     x.is_waiting |= came;
     if x.left.is_none() && came {

@@ -1,31 +1,31 @@
-//! What sends the drive into its fault reaction.
+//! Causes of the fault reaction.
 use crate::supervision::Finding;
 use servobench_base::Stateful;
 use servobench_cia402::ErrorCode;
 
-/// A fault, with the code that the profile gives it (603Fh; IEC 61800-7-201, error codes).
+/// A fault, with its code in the profile (603Fh; IEC 61800-7-201, error codes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Fault {
     /// The power was gone while the drive function was enabled.
     MainsMissing,
     /// The I²t load of motor or drive was reached.
     Overload,
-    /// The encoder of the motor failed, or a velocity or an effort that is no number was measured.
+    /// The encoder of the motor failed, or a NaN velocity or effort was measured.
     Encoder,
     /// The encoder of the load failed.
     LoadEncoder,
-    /// Motor or power stage are not as they should be.
+    /// The supervision of motor and power stage found a fault.
     Supervision(Finding),
     /// More cycles without a frame than the drive bridges.
     FramesMissing,
     /// The following error was outside its window (6065h) for longer than its time-out (6066h).
     FollowingError,
-    /// Something outside the axis, with the code that is told.
+    /// An external fault, with its code.
     External(u16),
 }
 
 impl Fault {
-    /// Every fault that the drive finds itself.
+    /// Every fault that the drive itself detects.
     pub const OWN: [Self; 14] = [
         Self::MainsMissing,
         Self::Overload,

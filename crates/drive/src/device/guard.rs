@@ -1,8 +1,8 @@
-//! The ends of the axis: no demand goes on towards an end that is reached.
+//! Guard of the axis ends: no demand continues towards a reached end.
 //!
-//! An end is reached when its limit switch is on, when a demanded position is beyond the software limit (607Dh), or, where no
-//! position is demanded, when the axis itself is. A demand towards it is replaced by the quick-stop ramp (6085h) and the axis is
-//! held; a demand that leads back is followed again.
+//! An end is reached when its limit switch is on, when a demanded position is beyond the software limit (607Dh), or, without a demanded
+//! position, when the axis itself is. A demand towards it is replaced by the quick-stop ramp (6085h) and the axis is held; a demand that
+//! leads back is followed again.
 use super::Params;
 use crate::Demand;
 use crate::modes::Moment;
@@ -15,7 +15,7 @@ pub(super) struct State {
     held: Option<Held>,
 }
 
-/// An axis that is kept from going on.
+/// An axis held at an end.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Held {
     /// +1 for the positive end, −1 for the negative one.
@@ -28,7 +28,7 @@ impl State {
         self.held.is_some()
     }
 
-    /// Replaces the demand where it goes on towards an end that is reached.
+    /// Replaces the demand if it continues towards a reached end.
     #[inline]
     pub(super) fn step(&mut self, p: &Params, now: &Moment, demand: &mut Demand) {
         if self.held.is_some() || may_be_reached(p, now) {
@@ -60,7 +60,7 @@ fn may_be_reached(p: &Params, now: &Moment) -> bool {
     now.actual.positive_limit || now.actual.negative_limit || p.limits.position.is_some()
 }
 
-/// Whether the demand goes on towards an end that is reached.
+/// True if the demand continues towards a reached end.
 fn goes_beyond(p: &Params, now: &Moment, demand: &Demand, end: f64) -> bool {
     let at_switch = if end > 0.0 { now.actual.positive_limit } else { now.actual.negative_limit };
     let is_beyond =
@@ -75,7 +75,7 @@ fn goes_beyond(p: &Params, now: &Moment, demand: &Demand, end: f64) -> bool {
     }
 }
 
-/// Whether the demand leads back from where the axis is held.
+/// True if the demand leads back from the position at which the axis is held.
 fn leads_back(held: &Held, now: &Moment, demand: &Demand) -> bool {
     match demand {
         Demand::Off => true,

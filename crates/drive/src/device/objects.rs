@@ -1,12 +1,12 @@
-//! The settings of a drive as its object dictionary has them, and back.
+//! Conversion between the settings of a drive and its object dictionary.
 //!
-//! A drive takes them at power-on and whenever the [generation](Dictionary::generation) has changed. Objects without a
-//! setting here: those that come with every frame, and 6073h, 6075h and 6088h.
+//! A drive reads the objects at power-on and whenever the [generation](Dictionary::generation) has changed. Objects without a setting here:
+//! those that come with every frame, and 6073h, 6075h and 6088h.
 //!
-//! An object holds whole units within its range, and that range may be too narrow for a setting: 65 535 velocity units of
-//! 1 nm/s are a velocity window (606Dh) of 66 µm/s. Then it shows the nearest that it can. A setting is as the object says only
-//! where the object does not show it so or the master has written it ([`Dictionary::is_written`]): neither the range nor the
-//! unit of an object changes what nobody wrote.
+//! An object holds whole units within its range, and that range may be too narrow for a setting: 65 535 velocity units of 1 nm/s are a
+//! velocity window (606Dh) of 66 µm/s. Then it shows the nearest possible value. An object changes a setting only if it shows another value
+//! than the setting would, or if the master has written it ([`Dictionary::is_written`]): neither the range nor the unit of an object
+//! changes a setting that was never written.
 use super::{Params, Rotary, Units, cycle};
 use crate::modes::homing;
 use crate::modes::profile::Ramp;
@@ -18,25 +18,25 @@ use servobench_cia402::objects::{Dictionary, Value, entry_of, parameter as p};
 use servobench_cia402::units::{AxisUnit, Object, UnitError};
 use thiserror::Error;
 
-/// Objects and settings that do not go together.
+/// Inconsistent objects and settings.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ObjectsError {
-    /// A factor group that is refused.
+    /// A refused factor group.
     #[error(transparent)]
     Unit(#[from] UnitError),
-    /// A setting that the drive does not take.
+    /// A setting that the drive refuses.
     #[error(transparent)]
     Setting(#[from] ParamError),
-    /// A homing method that the drive does not have.
+    /// An unsupported homing method.
     #[error(transparent)]
     Homing(#[from] homing::UnknownMethod),
-    /// A sub-mode or a time that the interpolated position does not have.
+    /// An unsupported sub-mode or time of interpolated position.
     #[error(transparent)]
     Interpolation(#[from] SettingError),
-    /// A value that its object does not take.
+    /// A value that its object refuses.
     #[error(transparent)]
     Refused(#[from] SdoError),
-    /// A time between two frames that the drive's clock does not count.
+    /// A time between two frames that is not a multiple of the drive's period.
     #[error("interpolation time period (60C2h) must be a multiple of the drive's period, {period:e} s, got {time:e} s")]
     Cycle {
         /// Time by the object (s).
@@ -46,14 +46,14 @@ pub enum ObjectsError {
     },
 }
 
-/// What one unit of an object is.
+/// Unit of an object.
 #[derive(Debug, Clone, Copy)]
 enum Scale {
     /// User-defined position unit.
     Position,
-    /// User-defined velocity unit, or that per second, or per second².
+    /// User-defined velocity unit, or its derivatives per second and per second².
     Rate,
-    /// One revolution of the motor a minute.
+    /// One revolution of the motor per minute.
     Revolution,
     /// Thousandth of the rated effort, or that per second.
     Effort,
@@ -66,11 +66,11 @@ enum Scale {
 struct Quantity {
     object: Object,
     scale: Scale,
-    /// Whether the largest value of the object stands for infinity: no limit, or no supervision (IEC 61800-7-201, 6065h).
+    /// True if the largest value of the object stands for infinity: no limit, or no supervision (IEC 61800-7-201, 6065h).
     is_open: bool,
 }
 
-/// A quantity and the setting that it is.
+/// A quantity and its setting.
 type Binding = (Quantity, fn(&mut Params) -> &mut f64);
 
 const fn value(index: u16, subindex: u8, scale: Scale) -> Quantity {
@@ -92,7 +92,7 @@ const MAX_POSITION_LIMIT: Object = Object { index: 0x607D, subindex: 2 };
 const LINEAR: i16 = 0;
 const JERK_LIMITED: i16 = 3;
 
-/// Which setting each quantity is.
+/// Settings of the quantities.
 static BINDINGS: [Binding; 23] = [
     (open(0x6065, Scale::Position), |s| &mut s.following_error.width),
     (value(0x6066, 0, Scale::Time), |s| &mut s.following_error.time),
@@ -120,18 +120,18 @@ static BINDINGS: [Binding; 23] = [
 ];
 
 impl Params {
-    /// These settings with those of the objects, `unit` being the user-defined position unit.
+    /// Replaces these settings by those of the objects; `unit` is the user-defined position unit.
     ///
     /// # Errors
-    /// [`ObjectsError`] says what the drive does not follow.
+    /// [`ObjectsError`] for objects that the drive does not support.
     pub fn with_objects(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
         self.with_units(objects, self.units_of(objects, unit)?)
     }
 
-    /// The same on the axis that these settings are of: an increment is as long as before, whatever the factor group takes it for.
+    /// Replaces the settings on the same axis: the length of an increment stays, regardless of the factor group.
     ///
     /// # Errors
-    /// [`ObjectsError`] says what the drive does not follow.
+    /// [`ObjectsError`] for objects that the drive does not support.
     pub fn with_objects_on_axis(&self, objects: &Dictionary, unit: AxisUnit) -> Result<Self, ObjectsError> {
         self.with_units(objects, self.units_of(objects, unit)?.on_axis_of(&self.units))
     }
@@ -174,11 +174,11 @@ impl Params {
         Ok(settings)
     }
 
-    /// Has the objects show these settings, each as the nearest whole unit that its object takes. The factor group of the
-    /// objects is already the one that these settings' units were made of.
+    /// Presets the objects to these settings, each to the nearest whole unit within the range of the object. The factor group of the
+    /// objects must be the one from which these settings' units were made.
     ///
     /// # Errors
-    /// [`ObjectsError`] names the first object that is not preset; those before it are.
+    /// [`ObjectsError`] for the first object that cannot be preset; those before it are.
     pub fn store_in(&self, objects: &mut Dictionary) -> Result<(), ObjectsError> {
         let (mut settings, units) = (*self, &self.units);
         settings.turn_limits(units);
@@ -220,7 +220,7 @@ impl Params {
         Ok(objects.preset(MIN_POSITION_LIMIT, min)?)
     }
 
-    /// Effort limits as the master counts efforts from as the loops do, or back.
+    /// Swaps the effort limits between the directions of the master and of the loops, if they differ.
     fn turn_limits(&mut self, units: &Units) {
         if units.turn_effort() {
             self.limits.effort = self.limits.effort.turned();
@@ -232,11 +232,11 @@ impl Params {
         1e3 * self.units.rated_effort()
     }
 
-    /// How many steps lie between two frames (60C2h).
+    /// Number of steps between two frames (60C2h).
     fn steps_per_frame(&self, objects: &Dictionary) -> Result<u32, ObjectsError> {
         let time = f64::from(segment(objects)?.microseconds()) / 1e6;
         let steps = libm::rint(time / self.period);
-        // Decimal fractions of a second are no binary ones.
+        // Decimal fractions of a second are not exact in binary.
         if steps >= 1.0 && (steps * self.period - time).abs() <= 1e-9 * time {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and at least one")]
             return Ok(steps as u32);
@@ -244,7 +244,7 @@ impl Params {
         Err(ObjectsError::Cycle { time, period: self.period })
     }
 
-    /// The software position limits (607Dh) in the direction of the axis; none where they are the whole range of positions.
+    /// Software position limits (607Dh) in the direction of the axis; `None` if they span the whole range of positions.
     fn software_limits(&self, objects: &Dictionary, units: &Units) -> Result<Option<[f64; 2]>, ObjectsError> {
         let limits = [MIN_POSITION_LIMIT, MAX_POSITION_LIMIT];
         let values = [objects.read(limits[0])?, objects.read(limits[1])?];
@@ -259,7 +259,7 @@ impl Params {
 }
 
 impl Quantity {
-    /// The quantity in SI: `setting` where the object shows that, what the object says otherwise.
+    /// Quantity in SI: `setting` if the object shows that, the value of the object otherwise.
     fn read(self, objects: &Dictionary, units: &Units, setting: f64) -> Result<f64, ObjectsError> {
         let unit = self.scale.unit(objects, units);
         if shows(objects, self.object, self.shown(setting / unit))? {
@@ -269,7 +269,7 @@ impl Quantity {
         }
     }
 
-    /// What the object says, in its units.
+    /// Value of the object, in its units.
     fn units(self, objects: &Dictionary) -> Result<f64, ObjectsError> {
         let value = objects.read(self.object)?;
         let stands_for_none = self.is_open && value.number() == value.data_type().highest();
@@ -281,7 +281,7 @@ impl Quantity {
         Ok(objects.preset(self.object, nearest(self.object, shown)?)?)
     }
 
-    /// The units that the object is asked to hold: the value that stands for infinity is for nothing else.
+    /// Units to be stored in the object: the value that stands for infinity is reserved.
     fn shown(self, units: f64) -> f64 {
         match bounds(self.object) {
             Ok([_, highest]) if self.is_open && units.is_finite() => units.min(highest - 1.0),
@@ -306,13 +306,13 @@ impl Scale {
     }
 }
 
-/// The interpolation time period (60C2h).
+/// Interpolation time period (60C2h).
 fn segment(objects: &Dictionary) -> Result<TimePeriod, ObjectsError> {
     let (units, index) = (objects.get(p::INTERPOLATION_TIME_PERIOD), objects.get(p::INTERPOLATION_TIME_INDEX));
     Ok(TimePeriod::new(units, index)?)
 }
 
-/// The software position limits as 607Dh shows them.
+/// Software position limits as shown by 607Dh.
 fn software_limits_shown(units: &Units, limits: Option<[f64; 2]>) -> Result<[Value; 2], ObjectsError> {
     let unit = units.from_position(1);
     let [min, max] = match limits {
@@ -323,12 +323,12 @@ fn software_limits_shown(units: &Units, limits: Option<[f64; 2]>) -> Result<[Val
     Ok([nearest(MIN_POSITION_LIMIT, min)?, nearest(MAX_POSITION_LIMIT, max)?])
 }
 
-/// Whether an object that the master has not written holds the nearest to so many units.
+/// True if an object that the master has not written holds the value nearest to `units`.
 fn shows(objects: &Dictionary, object: Object, units: f64) -> Result<bool, ObjectsError> {
     Ok(!objects.is_written(object) && objects.read(object)? == nearest(object, units)?)
 }
 
-/// The smallest and the largest value that an object takes.
+/// Smallest and largest value of an object.
 fn bounds(object: Object) -> Result<[f64; 2], SdoError> {
     let entry = entry_of(object).ok_or(SdoError::NoObject { index: object.index })?;
     Ok(match entry.range() {
@@ -337,7 +337,7 @@ fn bounds(object: Object) -> Result<[f64; 2], SdoError> {
     })
 }
 
-/// The nearest whole number of units that an object takes.
+/// Nearest whole number of units within the range of an object.
 fn nearest(object: Object, units: f64) -> Result<Value, SdoError> {
     let entry = entry_of(object).ok_or(SdoError::NoObject { index: object.index })?;
     let [lowest, highest] = bounds(object)?;

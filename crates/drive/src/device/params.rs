@@ -1,4 +1,4 @@
-//! What the drive is set to: the objects that do not come with every frame, in SI.
+//! Settings of the drive: the objects that do not come with every frame, in SI.
 use super::{Rotary, Units, Window, cycle};
 use crate::EffortLimits;
 use crate::modes::profile::Ramp;
@@ -16,9 +16,9 @@ use servobench_motion::interpolate;
 pub struct Params {
     /// Time between two steps (s): the period of the position loop.
     pub period: f64,
-    /// When the targets of the cyclic modes act.
+    /// Timing of the targets of the cyclic modes.
     pub cycle: cycle::Params,
-    /// How cyclic positions are interpolated.
+    /// Interpolation of cyclic positions.
     pub interpolation: interpolate::Mode,
     /// The option codes.
     pub power: PowerParams,
@@ -28,9 +28,9 @@ pub struct Params {
     pub counter: Counter,
     /// Positions within a range (607Bh, 60F2h).
     pub rotary: Rotary,
-    /// What no mode may exceed.
+    /// Limits of all modes.
     pub limits: Limits,
-    /// The profile that a frame's own values replace where they are not zero.
+    /// Default profile, whose values are replaced by nonzero values of a frame.
     pub profile: Profile,
     /// Following error window and time-out (6065h, 6066h).
     pub following_error: Window,
@@ -38,19 +38,19 @@ pub struct Params {
     pub position: Window,
     /// Velocity window and time (606Dh, 606Eh).
     pub velocity: Window,
-    /// Velocity threshold and time (606Fh, 6070h): what counts as standstill.
+    /// Velocity threshold and time of standstill (606Fh, 6070h).
     pub standstill: Window,
-    /// How the drive looks for its reference; the home offset comes with the frame.
+    /// Homing of the drive; the home offset comes with the frame.
     pub homing: homing::Params,
-    /// How points of the buffer are followed (60C0h).
+    /// Interpolation between points of the buffer (60C0h).
     pub sub_mode: SubMode,
-    /// Time of a segment between two points where they have none of their own (60C2h).
+    /// Default time of a segment between two points (60C2h).
     pub segment: TimePeriod,
-    /// Whether limit and home switches are wired normally closed: a switch is then met where its input is open.
+    /// True if limit and home switches are wired normally closed: a switch is then met when its input is open.
     pub reverse_switches: bool,
 }
 
-/// What no mode may exceed.
+/// Limits of all modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Velocity of any demand (6080h); may be infinite.
@@ -67,7 +67,7 @@ pub struct Limits {
     pub position: Option<[f64; 2]>,
 }
 
-/// How the drive itself moves.
+/// Profile of the drive's own motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
     /// 6081h.
@@ -80,7 +80,7 @@ pub struct Profile {
     pub quick_stop_deceleration: f64,
     /// Motion profile type (6086h).
     pub ramp: Ramp,
-    /// Velocity with which a target position is passed (6082h); zero for a stop there.
+    /// Velocity at which a target position is passed (6082h); zero to stop there.
     pub end_velocity: f64,
     /// Torque slope (6087h; N·m/s or N/s); infinite for steps.
     pub effort_slope: f64,

@@ -1,9 +1,9 @@
-//! The bus interface of the drive: frames to targets, measurements to frames.
+//! Bus interface of the drive: conversion of frames to targets, and of measurements to frames.
 //!
-//! What a frame asks for beyond the limits is cut, and the drive says so (bit 11): targets of csp and pp to the software limits
-//! (607Dh), profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). Efforts are limited by
-//! the loops, whatever the mode, to the lower of the settings (6072h, 60E0h, 60E1h) and of the frame (6072h). A profile velocity, acceleration or deceleration of zero, which moves nothing, stands for one that the
-//! frame does not carry: that of the settings.
+//! Values of a frame beyond the limits are cut, and the drive reports it (bit 11): targets of csp and pp to the software limits (607Dh),
+//! profile velocities to the highest one (607Fh, 6080h), accelerations to theirs (60C5h, 60C6h). Efforts are limited by the loops, in every
+//! mode, to the lower of the settings (6072h, 60E0h, 60E1h) and of the frame (6072h). A profile velocity, acceleration or deceleration of
+//! zero stands for a value that is not in the frame: that of the settings applies.
 use super::{Fault, Params, State};
 use crate::Demand;
 use crate::modes::interpolated::RecordError;
@@ -23,7 +23,7 @@ impl State {
         let shown = |position: i64| p.counter.words(p.shown(position));
         let ([position, position_high], [position_demand, position_demand_high]) =
             (shown(self.position(p)), shown(demand));
-        // The inputs as they are: the master has to know how the switches are wired.
+        // The inputs as wired: the master has to know the wiring.
         let closed = |is_met: bool, bit: u32| u32::from(is_met != p.reverse_switches) << bit;
         let follows_position = matches!(self.last, Demand::Position { .. });
         Actuals {
@@ -45,7 +45,7 @@ impl State {
         }
     }
 
-    /// Position in user-defined units, which the counter of the bus shows the end of.
+    /// Position in user-defined units, of which the counter of the bus shows the low part.
     fn position(&self, p: &Params) -> i64 {
         p.units.position(self.increments.wrapping_sub(self.origin))
     }
@@ -55,7 +55,7 @@ impl State {
         self.wanted = Mode::from_code(frame.mode);
         (self.probe_function, self.digital_outputs) = (frame.touch_probe_function, frame.digital_outputs);
         if let Some(bytes) = frame.trajectory_point {
-            // What the buffer itself refuses is latched in its status (2012h).
+            // Errors of the buffer itself are latched in its status (2012h).
             self.has_refused_point = match SegmentCommand::decode(bytes) {
                 Ok(command) => self.buffer.apply(command).is_err(),
                 Err(_) => true,
@@ -121,14 +121,14 @@ impl State {
 }
 
 impl Params {
-    /// The target position as a signed integer: of 32 bits, with a wider counter of 64.
+    /// Target position as a signed integer: of 32 bits, or of 64 with a wider counter.
     fn target(&self, frame: &Commands) -> i128 {
         let (low, high) = (frame.target_position, i128::from(frame.target_position_high));
         if self.counter.range() > 1 << i32::BITS { high << 32 | i128::from(low.cast_unsigned()) } else { low.into() }
     }
 }
 
-/// The nearest integer of 64 bits.
+/// Nearest integer of 64 bits.
 fn saturated(units: i128) -> i64 {
     i64::try_from(units).unwrap_or(if units < 0 { i64::MIN } else { i64::MAX })
 }

@@ -1,18 +1,18 @@
-//! Rotary axes: positions of the bus within a range (607Bh), and the way to a target of profile position (60F2h).
+//! Rotary axes: positions of the bus within a range (607Bh), and the direction to a target of profile position (60F2h).
 //!
-//! The axis itself counts on without end. What the master reads (6064h) is within the range, or within the counter of the bus
-//! where there is none; a target of a cyclic mode is the one of all that show the same value which is nearest to the axis. In
-//! profile position the way is that of [`modulo`](servobench_cia402::modulo), in whole units, so that nothing drifts however many
-//! turns are made. Software limits (607Dh) are positions of the axis that counts on.
+//! The axis itself counts on without end. The position for the master (6064h) is within the range, or within the counter of the bus if
+//! there is no range; of all positions that show the same value, a target of a cyclic mode is the nearest to the axis. In profile position
+//! the distance is that of [`modulo`](servobench_cia402::modulo), in whole units, so that nothing drifts over any number of turns. Software
+//! limits (607Dh) are positions of the unwrapped axis.
 use super::Params;
 use crate::modes::profile::position::Turn;
 use servobench_base::ParamError;
 use servobench_cia402::modulo::{Direction, PositionRange, RotaryAxisOption};
 
-/// How positions of the bus repeat.
+/// Wrapping of the positions on the bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rotary {
-    /// Position range limit (607Bh); `None` for all that the counter of the bus shows.
+    /// Position range limit (607Bh); `None` for the full range of the bus counter.
     pub range: Option<PositionRange>,
     /// Rotary axis direction option (60F2h, bits 7 and 6).
     pub direction: RotaryAxisOption,
@@ -36,7 +36,7 @@ impl Params {
         }
     }
 
-    /// What the bus shows of a position (user-defined units).
+    /// Value of a position on the bus (user-defined units).
     pub(super) fn shown(&self, position: i64) -> i128 {
         match self.rotary.range {
             Some(range) => range.wrap(position).into(),
@@ -44,7 +44,7 @@ impl Params {
         }
     }
 
-    /// The position nearest to `here` at which the bus shows the same as at `asked`.
+    /// Position nearest to `here` with the same value on the bus as `asked`.
     pub(super) fn nearest(&self, asked: i128, here: i64) -> i128 {
         match self.rotary.range {
             Some(range) => {
@@ -56,7 +56,7 @@ impl Params {
         }
     }
 
-    /// How profile position finds its way to an absolute target; `None` within the turn of the counter in which the axis is.
+    /// Wrapping of absolute targets of profile position; `None` to stay within the present turn of the counter.
     pub(super) fn turn(&self) -> Option<Turn> {
         let Rotary { range, direction } = self.rotary;
         (range.is_some() || direction != RotaryAxisOption::Linear).then(|| Turn {
@@ -66,7 +66,7 @@ impl Params {
         })
     }
 
-    /// The positions of the counter. Those of an unsigned one of 32 bits are as many in the range of signed ones.
+    /// Range of the counter. An unsigned one of 32 bits is represented by the signed range of the same size.
     fn counter_range(&self) -> PositionRange {
         let bounds = [self.counter.lowest(), self.counter.highest()].map(i32::try_from);
         match bounds {

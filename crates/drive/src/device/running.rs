@@ -1,4 +1,4 @@
-//! The mode that runs, with its state.
+//! The active mode, with its state.
 use super::{CycleEvent, Params};
 use crate::modes::interpolated::Buffer;
 use crate::modes::{Answer, Moment, cyclic, homing, interpolated, profile};
@@ -19,7 +19,7 @@ pub(super) enum Running {
 }
 
 impl Running {
-    /// The mode takes over.
+    /// Begins a mode.
     pub(super) fn begin(p: &Params, mode: Mode, now: &Moment) -> Self {
         match mode {
             Mode::ProfilePosition => Self::Pp(profile::position::State::begin(&p.profile_position(), now)),
@@ -33,7 +33,7 @@ impl Running {
         }
     }
 
-    /// Goes on after a halt, from where the axis stands.
+    /// Continues after a halt, from the present position of the axis.
     pub(super) fn resume(&mut self, p: &Params, now: &Moment) {
         match self {
             Self::Pp(x) => x.resume(&p.profile_position(), now),
@@ -47,8 +47,8 @@ impl Running {
         }
     }
 
-    /// Bits 12 and 13 of a step at which the axis is halted: they keep the meaning that the mode gives them. A mode that
-    /// follows the master does not do so now.
+    /// Bits 12 and 13 of a step at which the axis is halted: they keep the meaning of the mode. A mode that follows the master does not do
+    /// so during a halt.
     pub(super) fn halted(&mut self, p: &Params, now: &Moment) -> [bool; 2] {
         match self {
             Self::Pp(x) => [x.halted(now), false],
@@ -58,7 +58,7 @@ impl Running {
         }
     }
 
-    /// What the mode says; `shift` gets what homing adds to every position from the next step on.
+    /// Executes a step of the mode; `shift` receives the shift by homing of every position from the next step on.
     #[inline]
     pub(super) fn step(
         &mut self,
@@ -84,7 +84,7 @@ impl Running {
         }
     }
 
-    /// Whether it asks for less than the master does.
+    /// True if the mode demands less than the master does.
     pub(super) const fn is_limited(&self) -> bool {
         match self {
             Self::Pp(x) => x.is_limited(),
@@ -96,12 +96,12 @@ impl Running {
         }
     }
 
-    /// Whether it follows a target of the master in every cycle (bit 12): a frame has to come in each.
+    /// True if the mode follows a target of the master in every cycle (bit 12): each needs a frame.
     pub(super) const fn follows_master(&self) -> bool {
         matches!(self, Self::Csp(_) | Self::Csv(_) | Self::Cst(_))
     }
 
-    /// Whether it goes to the ends of the axis by itself.
+    /// True if the mode moves to the ends of the axis by itself.
     pub(super) const fn looks_for_ends(&self) -> bool {
         matches!(self, Self::Hm(_))
     }

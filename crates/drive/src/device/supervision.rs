@@ -1,18 +1,18 @@
-//! What the drive watches: faults and standstill.
+//! Supervision by the drive: faults and standstill.
 use super::{CycleEvent, Fault, Inputs, Measured, Params, Running, State};
 use crate::Demand;
 use crate::supervision::Finding;
 use servobench_cia402::{FaultReactionOption, Mode, PowerParams, PowerState, Transition};
 
 impl Measured {
-    /// Whether there is something to close a loop by.
+    /// True if the measurements suffice to close a loop.
     const fn is_valid(&self) -> bool {
         self.velocity.is_finite() && self.effort.is_finite() && !self.motor_encoder_error
     }
 }
 
 impl State {
-    /// The fault that is present, the gravest first.
+    /// Present fault, the gravest first.
     pub(super) fn find_fault(&mut self, p: &Params, u: &Inputs, event: CycleEvent) -> Option<Fault> {
         let is_enabled = self.power.state().is_drive_function_enabled();
         let follows_position = matches!(self.last, Demand::Position { .. });
@@ -40,7 +40,7 @@ impl State {
         }
     }
 
-    /// How the axis stops: by the option codes, but for what leaves no loop to brake by.
+    /// Power parameters for the stop: by the option codes, unless a failure leaves no loop to brake with.
     pub(super) fn reactions(&mut self, p: &Params, measured: &Measured) -> PowerParams {
         let finding = measured.finding.filter(|_| self.power.state().is_drive_function_enabled());
         self.cannot_brake |= !measured.is_valid() || finding.is_some_and(Finding::leaves_no_brake);
@@ -67,14 +67,14 @@ impl State {
         }
     }
 
-    /// Whether bit 13 says that the following error has been out of its window (6065h) for the time-out (6066h), in the modes
-    /// in which it has that meaning: the fault that this is (8611h), until it is reset.
+    /// True if bit 13 reports that the following error has been out of its window (6065h) for the time-out (6066h), in the modes that
+    /// define it so: during the resulting fault (8611h), until it is reset.
     pub(super) const fn tells_following_error(&self) -> bool {
         matches!(self.fault, Some(Fault::FollowingError))
             && matches!(self.mode, Some(Mode::ProfilePosition | Mode::CyclicSynchronousPosition))
     }
 
-    /// Whether the axis stands, and is asked to stand, for long enough.
+    /// True if the axis has been standing, by its measured and demanded velocity, for long enough.
     pub(super) fn stands_still(&mut self, p: &Params) -> bool {
         let stands = p.standstill.holds(self.now.actual.velocity) && p.standstill.holds(self.now.demanded.v);
         self.at_standstill.step(stands, p.standstill.time, p.period)

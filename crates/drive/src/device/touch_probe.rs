@@ -1,6 +1,6 @@
-//! The touch probe: the position at the edge of an input, or at the index pulse.
+//! Touch probe: latches the position at the edge of an input, or at the index pulse.
 //!
-//! The input is the home switch, met or left, and seen once per step: a position is late by a step at most. An index pulse has its own.
+//! The input is the home switch, sampled once per step: a position is late by at most a step. The index pulse has an exact position.
 use super::Params;
 use servobench_base::Stateful;
 use servobench_cia402::touch_probe::{ENABLED, Edge, Function};
@@ -9,18 +9,18 @@ use servobench_cia402::touch_probe::{ENABLED, Edge, Function};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct State {
     function: u16,
-    /// Whether the input was active at the last step; `None` before the first one.
+    /// True if the input was active at the last step; `None` before the first one.
     was_active: Option<bool>,
-    /// Positions of the edges (position units), as they were counted then.
+    /// Positions of the edges (position units), in the count of that time.
     stored: [Option<i64>; Edge::ALL.len()],
 }
 
-/// What comes in.
+/// Input of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Input {
-    /// What the master asks for (60B8h).
+    /// Command of the master (60B8h).
     pub(super) function: u16,
-    /// Whether the input is active.
+    /// True if the input is active.
     pub(super) is_active: bool,
     /// Position (position units).
     pub(super) position: i64,
@@ -56,14 +56,14 @@ impl State {
         }
     }
 
-    /// What the master reads (60B9h).
+    /// Status for the master (60B9h).
     pub(super) fn status(&self) -> u16 {
         let stored = |edge: &Edge| self.stored[*edge as usize].map_or(0, |_| edge.stored());
         let on = if Function(self.function).is_on() { ENABLED } else { 0 };
         Edge::ALL.iter().map(stored).fold(on, |status, bit| status | bit)
     }
 
-    /// What the master reads (60BAh, 60BBh), of a wider counter the lower 32 bits; 0 where nothing is stored.
+    /// Positions for the master (60BAh, 60BBh), the lower 32 bits of a wider counter; 0 if nothing is stored.
     pub(super) fn positions(&self, p: &Params) -> [i32; 2] {
         self.stored.map(|position| position.map_or(0, |position| p.counter.words(p.shown(position))[0]))
     }
@@ -73,7 +73,7 @@ impl State {
 mod tests {
     use super::*;
 
-    /// What is stored after each step of (function, active, position, index).
+    /// Stored values after each step of (function, active, position, index).
     fn run(steps: &[(u16, bool, i64, Option<i64>)]) -> Vec<(u16, [Option<i64>; 2])> {
         let mut probe = State::default();
         let mut seen = Vec::new();
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(seen[2], (0b11, [Some(-40), None]));
     }
 
-    /// A source that the drive does not have (bits 2 and 3) latches nothing.
+    /// An unsupported source (bits 2 and 3) latches nothing.
     #[test]
     fn another_source_latches_nothing() {
         let other = Function::first(Edge::Positive, false).0 | 0b10 << 2;

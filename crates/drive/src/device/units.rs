@@ -1,16 +1,16 @@
-//! Where drive units end: the factor group as the drive uses it.
+//! Conversion of drive units by the factor group.
 //!
-//! The loops count from the encoder's zero in the encoder's direction; polarity (607Eh) and user-defined units are only in what
-//! goes over the bus. An axis that is turned round has all three bits of the polarity: with those of position and velocity alone,
-//! the two that the standard has, a torque offset (60B2h) would act against the motion. Velocities are in the user-defined velocity unit, accelerations in that unit per second, efforts in
-//! thousandths of the rated one (6076h).
+//! The loops count from the encoder's zero in the encoder's direction; polarity (607Eh) and user-defined units apply to bus values only. A
+//! reversed axis has all three bits of the polarity: with those of position and velocity alone, the two in the standard, a torque offset
+//! (60B2h) would act against the motion. Velocities are in the user-defined velocity unit, accelerations in that unit per second, efforts
+//! in thousandths of the rated one (6076h).
 use core::f64::consts::TAU;
 use servobench_base::{ParamError, positive};
 use servobench_cia402::units::{
     AxisUnit, FactorGroup, POLARITY_POSITION, POLARITY_TORQUE, POLARITY_VELOCITY, Ratio, Scaling, UnitError,
 };
 
-/// The conversions between the bus and the loops.
+/// Conversions between the bus and the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
     scaling: Scaling,
@@ -25,10 +25,10 @@ pub struct Units {
 }
 
 impl Units {
-    /// The conversions by a factor group, `unit` being the user-defined position unit, and the motor's rated effort (N·m or N).
+    /// Conversions by a factor group, with the user-defined position unit `unit` and the motor's rated effort (N·m or N).
     ///
     /// # Errors
-    /// [`UnitError`] when the factor group is refused.
+    /// [`UnitError`] if the factor group is refused.
     pub fn new(factors: &FactorGroup, unit: AxisUnit, rated_effort: f64) -> Result<Self, UnitError> {
         let scaling = factors.scaling(unit)?;
         let length = match unit {
@@ -46,8 +46,8 @@ impl Units {
         })
     }
 
-    /// The same factor group on an axis whose increment has the length of that of `axis`, whatever the group takes it for: a unit is so
-    /// many increments, so that a wrong gear ratio scales where the axis goes (607Ah) as it scales what is read of it (6064h).
+    /// Same factor group on an axis whose increment is as long as that of `axis`, regardless of the group: a unit stays the same number
+    /// of increments, so that a wrong gear ratio scales target (607Ah) and actual positions (6064h) alike.
     pub(super) fn on_axis_of(self, axis: &Self) -> Self {
         let scale = axis.increment / self.increment;
         Self { increment: axis.increment, position: scale * self.position, velocity: scale * self.velocity, ..self }
@@ -65,19 +65,19 @@ impl Units {
         1000.0 * self.effort.abs()
     }
 
-    /// Whether the master counts efforts the other way round than the loops.
+    /// True if the master counts efforts in the opposite direction to the loops.
     pub(super) fn turn_effort(&self) -> bool {
         self.effort < 0.0
     }
 
-    /// Metres or radians at so many increments.
+    /// Metres or radians at a number of increments.
     #[inline]
     #[must_use]
     pub fn metres_or_radians(&self, increments: i64) -> f64 {
         increments as f64 * self.increment
     }
 
-    /// Increments nearest to a position (m or rad).
+    /// Nearest number of increments to a position (m or rad).
     #[must_use]
     pub fn increments(&self, metres_or_radians: f64) -> i64 {
         nearest(metres_or_radians / self.increment)
@@ -87,8 +87,8 @@ impl Units {
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "wraps, which is meant")]
     pub fn position(&self, increments: i64) -> i64 {
-        // 64 bits of increments times a ratio of 63 bits cannot leave the 127 bits that are computed with; what leaves 64 bits
-        // wraps like the counters of the bus.
+        // 64 bits of increments times a ratio of 63 bits fit the 127 bits of the computation; beyond 64 bits the result wraps like the
+        // counters of the bus.
         self.scaling.position(increments.into()).unwrap_or_default() as i64
     }
 
@@ -106,7 +106,7 @@ impl Units {
         units as f64 * self.position
     }
 
-    /// A difference of positions (m or rad) in user-defined units, nearest, at the end of the object's range beyond it.
+    /// Difference of positions (m or rad) in user-defined units, rounded to nearest, saturated at the range of the object.
     #[inline]
     #[must_use]
     pub fn distance(&self, metres_or_radians: f64) -> i32 {
@@ -120,34 +120,34 @@ impl Units {
         f64::from(units) * self.velocity
     }
 
-    /// Velocity in user-defined units, nearest, at the end of the object's range beyond it.
+    /// Velocity in user-defined units, rounded to nearest, saturated at the range of the object.
     #[inline]
     #[must_use]
     pub fn velocity(&self, velocity: f64) -> i32 {
         saturated(nearest(velocity / self.velocity))
     }
 
-    /// The magnitude of a velocity (m/s or rad/s) or an acceleration (m/s² or rad/s²) of a profile.
+    /// Magnitude of a velocity (m/s or rad/s) or an acceleration (m/s² or rad/s²) of a profile.
     #[inline]
     #[must_use]
     pub fn from_rate(&self, units: u32) -> f64 {
         f64::from(units) * self.velocity.abs()
     }
 
-    /// Effort (N·m or N) at so many thousandths of the rated one.
+    /// Effort (N·m or N) at a number of thousandths of the rated one.
     #[inline]
     #[must_use]
     pub fn from_effort(&self, thousandths: i16) -> f64 {
         f64::from(thousandths) * self.effort
     }
 
-    /// A magnitude of effort (N·m or N).
+    /// Magnitude of an effort (N·m or N).
     #[must_use]
     pub const fn effort_magnitude(&self, thousandths: u16) -> f64 {
         thousandths as f64 * self.effort.abs()
     }
 
-    /// Effort in thousandths of the rated one, nearest, at the end of the object's range beyond it.
+    /// Effort in thousandths of the rated one, rounded to nearest, saturated at the range of the object.
     #[inline]
     #[must_use]
     pub fn effort(&self, effort: f64) -> i16 {
@@ -160,7 +160,7 @@ fn as_f64(ratio: Ratio) -> f64 {
     ratio.numerator() as f64 / ratio.denominator() as f64
 }
 
-/// The nearest whole number, a half away from zero; at the ends of the range beyond it.
+/// Nearest whole number, halves away from zero, saturated at the range.
 #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
 fn nearest(value: f64) -> i64 {
     (value + 0.5_f64.copysign(value)) as i64

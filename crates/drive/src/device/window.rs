@@ -1,17 +1,17 @@
 //! Conditions that have to last: windows with a time.
 use servobench_base::{ParamError, Stateful, limit, non_negative};
 
-/// How near a value must be, or how far it may be, and for how long.
+/// Window of a value, and the time for which it has to be inside or may be outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Magnitude (the unit of the value); infinite where everything is inside.
+    /// Magnitude (in the unit of the value); infinite if every value is inside.
     pub width: f64,
     /// Time (s).
     pub time: f64,
 }
 
 impl Window {
-    /// Whether a value is inside.
+    /// True if a value is inside.
     #[inline]
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
@@ -26,19 +26,19 @@ impl Window {
     }
 }
 
-/// For how many steps a condition has held.
+/// Number of steps for which a condition has held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Dwell {
     steps: u32,
 }
 
 impl Dwell {
-    /// Counts a step; whether the condition has held since `time` (s) ago or before.
+    /// Counts a step; returns true if the condition has held for `time` (s).
     #[inline]
     pub fn step(&mut self, holds: bool, time: f64, period: f64) -> bool {
         let lasted = f64::from(self.steps) * period;
         self.steps = if holds { self.steps.saturating_add(1) } else { 0 };
-        // A time of whole periods is not missed by a rounding of the product.
+        // Rounding of the product does not miss a time of whole periods.
         holds && lasted >= time * (1.0 - 1e-12)
     }
 }

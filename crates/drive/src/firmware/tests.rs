@@ -10,7 +10,7 @@ fn at_rest(p: &Params) -> State {
     State::new(p, Setpoint::default()).unwrap()
 }
 
-/// Oracle: the published control law, u = kv·(kp·e − v) in volts, held between its 1 kHz turns.
+/// Oracle: the published control law, u = kv·(kp·e − v) in volts, held between its 1 kHz cycles.
 #[test]
 fn a_p_p_cascade_is_the_published_control_law() {
     let (p, mut x) = (emps(), at_rest(&emps()));
@@ -52,9 +52,9 @@ fn references_go_on_between_two_turns_of_the_position_loop() {
     }
 }
 
-/// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity of
-/// constant jerk is a parabola. It is as old as what is measured: half a period of the velocity loop of a difference, and
-/// the time of the filter. Switched off it is the staircase of the position loop.
+/// Oracle: the set-point itself, under a position loop of 1 kHz and a velocity loop of 8 kHz: the velocity at constant jerk is a parabola.
+/// Its age is that of the measurement: half a period of the velocity loop for a difference, plus the time of the filter. Without
+/// interpolation it is the staircase of the position loop.
 #[test]
 fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop() {
     let start = Setpoint { x: 0.0, v: 0.1, a: 3.0, j: -400.0, s: 0.0 };
@@ -90,8 +90,8 @@ fn the_velocity_that_is_fed_forward_goes_on_between_cycles_of_the_position_loop(
     }
 }
 
-/// Oracle: by hand. On the motor the loop sees r·(motor position) against the motor's reference, on the load the
-/// load's own position against the load's.
+/// Oracle: by hand. On the motor the loop compares r·(motor position) with the motor's reference, on the load the load's own position with
+/// the load's reference.
 #[test]
 fn the_encoder_that_closes_the_loop_is_the_one_that_is_compared() {
     let p = Params { transmission: 0.5, ..emps() };
@@ -109,7 +109,7 @@ fn the_encoder_that_closes_the_loop_is_the_one_that_is_compared() {
     }
 }
 
-/// Oracle: by hand: 9 A, and 1.5·p·ψ·9 A of the motor as the firmware knows it.
+/// Oracle: by hand: 9 A, and 1.5·p·ψ·9 A of the motor as estimated by the firmware.
 #[test]
 fn a_demand_beyond_the_current_limit_is_cut_and_said() {
     let p = synchronous();
@@ -129,8 +129,8 @@ fn a_demand_beyond_the_current_limit_is_cut_and_said() {
     assert_eq!(held_at(-1.0).effort, velocity::Output { effort: 3.0, cut: None });
 }
 
-/// Oracle: by hand. Without a position loop the velocity demand goes to the velocity loop as it is; an effort goes past
-/// both, within the limit; without power nothing goes out. The reference is where the axis is.
+/// Oracle: by hand. Without a position loop the velocity demand passes to the velocity loop unchanged; an effort bypasses both, within the
+/// limit; without power there is no output. The reference is the position of the axis.
 #[test]
 fn a_demand_closes_the_loops_that_it_names() {
     let p = Params { transmission: 0.5, ..emps() };
@@ -150,7 +150,7 @@ fn a_demand_closes_the_loops_that_it_names() {
     assert_eq!(answer(Demand::Off).0, PowerCommand::Off);
 }
 
-/// Oracle: a drive that was never off. What the loops had gathered before is gone, and so is the old reference.
+/// Oracle: a drive that was never off. The former states of the loops are gone, and so is the old reference.
 #[test]
 fn a_drive_that_was_off_begins_anew() {
     let p = synchronous();
@@ -168,8 +168,7 @@ fn a_drive_that_was_off_begins_anew() {
     assert_eq!(x.held.effort, fresh.held.effort);
 }
 
-/// Oracle: by hand: 4.1 N·m of feedforward through a notch, as the filter alone gives it, then the limit; and in a mode without
-/// velocity loop the same.
+/// Oracle: by hand: a sine of effort through a notch, as the filter alone gives it, then the limit, in a mode without velocity loop.
 #[test]
 fn an_effort_goes_through_the_filters_before_its_limit() {
     let rate = servobench_base::Rate::new(1_000).unwrap();
@@ -187,7 +186,7 @@ fn an_effort_goes_through_the_filters_before_its_limit() {
     }
 }
 
-/// Oracle: by hand. Above ω_2 both gains are their factors, and the velocity reference ends at the largest speed.
+/// Oracle: by hand. Above ω_2 both gains have their factors, and the velocity reference ends at the largest speed.
 #[test]
 fn gains_and_speed_limit_are_those_of_the_speed() {
     let schedule = Some(crate::schedule::Params { from: 0.01, to: 0.05, position: 0.3, velocity: 0.6 });
@@ -196,7 +195,7 @@ fn gains_and_speed_limit_are_those_of_the_speed() {
     for (velocity, factors) in [(0.005, (1.0, 1.0)), (0.02, (0.825, 0.9)), (-0.2, (0.3, 0.6))] {
         let mut x = at_rest(&p);
         let sensors = Sensors { motor_velocity: Some(velocity), ..Sensors::default() };
-        // The first cycle brings the velocity, which the position loop knows at the second.
+        // The first cycle measures the velocity, which the position loop uses in the second.
         for _ in 0..17 {
             let demand = Demand::position(Setpoint::at_rest(2e-5));
             step(&p, &mut x, &demand, EffortLimits::NONE, &sensors);
@@ -211,7 +210,7 @@ fn gains_and_speed_limit_are_those_of_the_speed() {
     assert!((x.held.velocity_reference + 0.5 * 0.031).abs() < 1e-15, "{:?}", x.held);
 }
 
-/// Oracle: the closed form of I²t with 8.1 A out of a limit of 9 A; then the continuous current of the drive's model.
+/// Oracle: the closed form of I²t with 8.1 A, under a limit of 9 A; then the continuous current of the drive's model.
 #[test]
 fn a_thermal_load_ends_the_peak_current() {
     use crate::overload::{Params as Load, Reaction};
@@ -234,13 +233,13 @@ fn a_thermal_load_ends_the_peak_current() {
                 reached = Some(f64::from(k) / 16e3);
             }
         }
-        // Within a cycle of the velocity loop, which takes the current that the current loop measured before.
+        // Within a cycle of the velocity loop, which uses the last measured current of the current loop.
         assert!((reached.unwrap() - time).abs() < 2.0 / 8e3, "{reached:?} {time}");
     }
 }
 
-/// Oracle: the drive's own envelope. Where the speed leaves less than the current limit does, the velocity loop knows it: its
-/// integrator rests at what is left.
+/// Oracle: the drive's own envelope. Where the speed reduces the effort below the current limit, the velocity loop uses that bound: its
+/// integrator rests there.
 #[test]
 fn the_velocity_loop_knows_what_the_speed_leaves() {
     use crate::current::operating_point::{Params as Operation, Strategy, Weakening};
@@ -266,7 +265,7 @@ fn the_velocity_loop_knows_what_the_speed_leaves() {
     }
 }
 
-/// Oracle: U/√3 of the link that is measured, at each cycle; without the block it is that of the estimate.
+/// Oracle: U/√3 of the measured link, in each cycle; without the block that of the estimate.
 #[test]
 fn the_voltage_limit_may_be_that_of_the_measured_link() {
     for (measures_dc_link, dc_link, limit) in
@@ -284,7 +283,7 @@ fn the_voltage_limit_may_be_that_of_the_measured_link() {
     }
 }
 
-/// A finding stays until the power goes off, and changes nothing of what the loops do.
+/// A finding stays until the power goes off, and does not affect the loops.
 #[test]
 fn a_finding_is_told_until_the_power_goes_off() {
     use crate::supervision::{Finding, Params as Supervision, Stall};
@@ -295,7 +294,7 @@ fn a_finding_is_told_until_the_power_goes_off() {
     let (mut x, mut y) = (at_rest(&watched), at_rest(&plain));
     let demand = Demand::position(Setpoint::at_rest(1e3));
     for k in 0..16_000_u32 {
-        // It stands although it is asked for all; the link sags for a moment in between.
+        // The axis stands although the full effort is demanded; the link sags for a moment in between.
         let dc_link = if k == 12_000 { 150.0 } else { 540.0 };
         let sensors = Sensors { motor_velocity: Some(0.0), dc_link, ..Sensors::default() };
         let commands = [
@@ -312,8 +311,8 @@ fn a_finding_is_told_until_the_power_goes_off() {
     assert_eq!(x.finding(), None, "and without power nothing is looked for");
 }
 
-/// Oracle: by hand. By its own choice the drive takes differences of an encoder that gives a velocity; an observer has its state, driven by
-/// the effort of the cycle before.
+/// Oracle: by hand. A selected difference method ignores the encoder's velocity; an observer has its own state, driven by the effort of the
+/// previous cycle.
 #[test]
 fn the_velocity_is_measured_by_the_method_that_is_chosen() {
     use crate::measurement::{Params as Method, observer};
@@ -341,8 +340,8 @@ fn the_velocity_is_measured_by_the_method_that_is_chosen() {
     }
 }
 
-/// Oracle: the blocks by themselves: K_v·(e + I + D) is asked for, and the derivative of the velocity taken off. Without power nothing of
-/// them stays.
+/// Oracle: the blocks by themselves: K_v·(e + I + D) is the velocity reference, and the derivative of the velocity is subtracted. Without
+/// power their states are cleared.
 #[test]
 fn integral_and_derivative_are_parts_of_their_loops() {
     let derivative = derivative::Params { time: 3e-3, filter_time: 0.7e-3 };
@@ -370,7 +369,7 @@ fn integral_and_derivative_are_parts_of_their_loops() {
     assert_eq!((x.blocks.position.integral.to_bits(), x.blocks.acceleration.rate.to_bits()), (0, 0), "{x:?}");
 }
 
-/// Oracle: by hand. At the speed limit, and at the effort limit, the integral does not grow in the direction of the limit.
+/// Oracle: by hand. At the speed limit and at the effort limit the integral does not grow in the direction of the limit.
 #[test]
 fn the_integral_of_the_position_waits_at_limits() {
     let shaping = Some(position::Params { integral_time: Some(40e-3), derivative: None });

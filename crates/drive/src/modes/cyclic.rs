@@ -1,8 +1,8 @@
-//! The cyclic synchronous modes: the master gives a target every cycle, the drive interpolates in between.
+//! Cyclic synchronous modes: the master gives a target every cycle, the drive interpolates in between.
 //!
-//! A target that comes with a frame is reached at the end of the cycle that begins with it. What goes with it, the offsets,
-//! goes linearly to its value in the same time. A cycle that begins without a new frame goes on with the velocity of the one
-//! before it, or with the same velocity or effort target.
+//! A target that comes with a frame is reached at the end of the cycle that begins with it. The offsets of the frame are approached
+//! linearly in the same time. A cycle that begins without a new frame continues with the velocity of the one before it, or with the same
+//! velocity or effort target.
 use servobench_base::Stateful;
 pub mod effort;
 pub mod position;
@@ -10,7 +10,7 @@ pub mod velocity;
 
 use crate::device::CycleEvent;
 
-/// A value that goes linearly to each of its targets within a cycle.
+/// A value that approaches each target linearly within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 struct Linear {
     from: f64,
@@ -22,7 +22,7 @@ impl Linear {
         Self { from: value, to: value }
     }
 
-    /// From where the cycle ended, or from where it was broken off.
+    /// Starts from the end of the last cycle, or from the fraction `broken_off` at which it was aborted.
     const fn go_to(&mut self, target: f64, broken_off: Option<f64>) {
         let from = match broken_off {
             Some(passed) => self.at(passed),
@@ -31,26 +31,25 @@ impl Linear {
         *self = Self { from, to: target };
     }
 
-    /// After a fraction of the cycle.
+    /// Value after a fraction of the cycle.
     const fn at(&self, fraction: f64) -> f64 {
         self.from + fraction * (self.to - self.from)
     }
 }
 
-/// How far a cycle has gone.
+/// Progress within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 struct Progress {
     steps: u32,
 }
 
 impl Progress {
-    /// The fraction at which a late frame breaks the cycle off.
+    /// Fraction of the cycle at which a late frame aborts it.
     fn broken_off(self, event: CycleEvent, steps: u32) -> Option<f64> {
         (event == CycleEvent::Late).then(|| f64::from(self.steps) / f64::from(steps))
     }
 
-    /// The fraction that has passed at a step of a cycle of `steps`; counts the step. A cycle that lasts longer than it should
-    /// has passed.
+    /// Elapsed fraction at a step of a cycle of `steps`; counts the step. It stays at 1 in a cycle that lasts too long.
     fn next(&mut self, steps: u32) -> f64 {
         let passed = f64::from(self.steps) / f64::from(steps);
         self.steps = (self.steps + 1).min(steps);

@@ -1,11 +1,11 @@
-//! Homing (hm, mode 6): the drive looks for its reference (IEC 61800-7-201, homing mode).
+//! Homing (hm, mode 6): the drive searches for its reference (IEC 61800-7-201, homing mode).
 //!
-//! The controlword's bit 4 starts the search with its rising edge and interrupts it when it is taken back; halt (bit 8)
-//! stops the axis on its leg. Either stops within the homing acceleration, unless the drive itself stops the axis for a halt.
+//! The controlword's bit 4 starts the search with its rising edge and interrupts it when it is cleared; halt (bit 8) stops the axis on its
+//! leg. Both stop within the homing acceleration, unless the drive itself stops the axis for a halt.
 //!
 //! | bit 13, homing error | bit 12, homing attained | bit 10, target reached | |
 //! |---|---|---|---|
-//! | 0 | 0 | 0 | search under way, or being interrupted |
+//! | 0 | 0 | 0 | searching, or being interrupted |
 //! | 0 | 0 | 1 | not started, interrupted, or halted: the axis is at rest |
 //! | 0 | 1 | 0 | the reference is found, the axis is being stopped |
 //! | 0 | 1 | 1 | homed |
@@ -15,17 +15,17 @@
 //! A search fails when the axis meets a limit switch that its method does not expect in that direction, and stays failed until
 //! bit 4 rises again.
 //!
-//! An edge of a switch or a pulse counts while the axis is asked to move in the direction of the leg and is not seen to move back, so
-//! that the far edge of a narrow home switch, which the axis passes before it has reversed, is not mistaken for the near one. An edge
-//! is where the axis was at the first step that saw it, late by one period at the speed for zero; an index pulse is where it came,
-//! and one in the step in which the edge before it was seen does not count.
+//! An edge of a switch or a pulse counts only while the demand moves in the direction of the leg and the axis is not measured moving back,
+//! so that the far edge of a narrow home switch, which the axis passes before it has reversed, is not mistaken for the near one. The
+//! position of an edge is that of the first step that saw it, late by one period at the speed for zero; that of an index pulse is exact,
+//! and a pulse in the same step as the edge before it does not count.
 //!
-//! The reference gets the home offset as its position. The profile may be read the other way, zero being the offset away from the
-//! reference: for such a drive the sign is the other one.
+//! The reference gets the home offset as its position. The profile may also be read the other way, with zero at the offset from the
+//! reference: for such a drive the sign is the opposite.
 //!
-//! Which legs a method has is a [table](Method), printed in `docs/homing.md`. Sources: the drawings of DSP 402 v2, homing mode,
-//! as manuals print them (Control Techniques, *SM-EtherCAT User Guide*, issue 2, section 7.7; Brooks, *Homing methods 7 to 14*;
-//! Bonfiglioli, *Active Cube, application manual Positioning*, 04/08, table 5.2, which the tests hold the methods against).
+//! The legs of a method are a [table](Method), printed in `docs/homing.md`. Sources: the drawings of DSP 402 v2, homing mode, as manuals
+//! print them (Control Techniques, *SM-EtherCAT User Guide*, issue 2, section 7.7; Brooks, *Homing methods 7 to 14*; Bonfiglioli, *Active
+//! Cube, application manual Positioning*, 04/08, table 5.2, against which the tests check the methods).
 mod leg;
 mod method;
 mod search;
@@ -40,7 +40,7 @@ use servobench_cia402::ControlBit;
 pub use leg::{Direction, Event, Leg, Speed, Switch};
 pub use method::{Method, Start, UnknownMethod};
 
-/// How the drive looks for its reference.
+/// Settings of the search for the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Homing method (6098h).
@@ -49,19 +49,19 @@ pub struct Params {
     pub switch_speed: f64,
     /// Speed during search for zero (6099h.2).
     pub zero_speed: f64,
-    /// Homing acceleration (609Ah), for stops too.
+    /// Homing acceleration (609Ah), also for stops.
     pub acceleration: f64,
-    /// Jerk; without it velocity is a trapezoid.
+    /// Jerk; without it the velocity is a trapezoid.
     pub jerk: Option<f64>,
-    /// Position that the reference gets (607Ch).
+    /// Position of the reference (607Ch).
     pub home_offset: f64,
 }
 
 impl Params {
-    /// Whether a search can be made with them.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// [`ParamError`] names the first value that is not positive, or an offset that is no number.
+    /// [`ParamError`] names the first value that is not positive, or an offset that is not finite.
     pub fn check(&self) -> Result<(), ParamError> {
         positive("switch_speed", self.switch_speed)?;
         positive("zero_speed", self.zero_speed)?;
@@ -84,12 +84,12 @@ pub struct State {
     ramp: Ramp,
 }
 
-/// Why a search failed.
+/// Cause of a failed search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Failure {
-    /// This limit switch came.
+    /// This limit switch was met.
     Limit(Switch),
-    /// What the loops were asked to follow before, or the parameters, allow no motion.
+    /// The previous demand on the loops, or the parameters, allow no motion.
     Motion,
 }
 
@@ -107,27 +107,27 @@ enum Phase {
 }
 
 impl State {
-    /// The mode takes over: a bit 4 that is set already starts nothing.
+    /// Begins the mode: a bit 4 that is already set starts nothing.
     #[must_use]
     pub fn begin(now: &Moment) -> Self {
         Self { phase: Phase::Idle, asked: asks(now), ramp: Ramp::default() }
     }
 
-    /// Goes on after the drive has stopped the axis without asking the mode, as for a halt: what switches said meanwhile is not
-    /// known, so that the search begins anew from here.
+    /// Continues after the drive has stopped the axis without calling the mode, as for a halt: switch events meanwhile were missed, so that
+    /// the search restarts from the present position.
     pub fn resume(&mut self, now: &Moment) {
         if let Phase::Searching(search) = &mut self.phase {
             search.restart(&now.actual);
         }
     }
 
-    /// Whether the last search that was started has found the reference, and the axis has stopped.
+    /// True if the last search has found the reference, and the axis has stopped.
     #[must_use]
     pub const fn is_homed(&self) -> bool {
         matches!(self.phase, Phase::Homed)
     }
 
-    /// Why the last search failed, if it did.
+    /// Cause of the last search's failure, if it failed.
     #[must_use]
     pub const fn failure(&self) -> Option<Failure> {
         match self.phase {
@@ -137,20 +137,20 @@ impl State {
     }
 }
 
-/// What a step says.
+/// Output of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Output {
-    /// For the loops and the statusword, in the positions as they are at this step.
+    /// Answer for the loops and the statusword, in the positions of this step.
     pub answer: Answer,
-    /// When the axis has just been homed: what is added to every position from the next step on, so that the reference is at
-    /// the home offset. The caller adds it to what it measures and to what it demanded.
+    /// Once the axis has been homed: shift of every position from the next step on, so that the reference is at the home offset. The caller
+    /// adds it to its measurements and demands.
     pub shift: Option<f64>,
 }
 
-/// Goes on with the search.
+/// Continues the search.
 ///
-/// The parameters must have passed [`Params::check`]; the method is taken from them as the search starts. Nothing else may keep
-/// the axis from a limit switch, which some methods look for.
+/// The parameters must have passed [`Params::check`]; the method is taken from them when the search starts. No guard may keep the axis from
+/// a limit switch, which some methods search for.
 pub fn step(params: &Params, state: &mut State, moment: &Moment) -> Output {
     let asked = asks(moment);
     let was_asked = core::mem::replace(&mut state.asked, asked);

@@ -1,12 +1,12 @@
 //! Interpolated position (ip, mode 7): the drive follows points that the master keeps sending to a [`Buffer`].
 //!
-//! How points are written there is [`interpolated`](servobench_cia402::interpolated) of the drive profile; this mode reads them
-//! from the frame (2010h), from the [`DataRecord`] and from the serial interface ([`serial::Port`]).
+//! The formats of points are defined by [`interpolated`](servobench_cia402::interpolated) of the drive profile; this mode reads them from
+//! the frame (2010h), from the [`DataRecord`] and from the serial interface ([`serial::Port`]).
 //!
 //! # A move
 //!
-//! The rising edge of the controlword's bit 4 starts it, or the start move command of the serial interface; bit 12 of the
-//! statusword is set as long as it lasts. What the first point means depends on the sub-mode:
+//! The rising edge of the controlword's bit 4 starts it, or the start move command of the serial interface; bit 12 of the statusword is set
+//! while it lasts. The meaning of the first point depends on the sub-mode:
 //!
 //! | sub-mode | |
 //! |---|---|
@@ -14,23 +14,22 @@
 //! | −1 | the axis goes to the first point in the time of a segment |
 //! | −2, −3, serial | the axis is at the first point, to a count, or the move is not started |
 //!
-//! In sub-mode 0 a segment is a period of the drive longer when fewer than three points wait as it begins, and one shorter when
-//! more do: clocks may differ by one such period per segment.
+//! In sub-mode 0 a segment is longer by a period of the drive if fewer than three points wait at its beginning, and shorter by one if more
+//! do: clocks may differ by one such period per segment.
 //!
-//! A move ends where its last point says, by a time of 0. It is broken off when bit 4 is taken back (unless it was started by the
-//! serial interface), by a halt, when the buffer is cleared, and when the next point is not there, which is an underflow, moving or
-//! not. Then, and at a last point that has a velocity, the axis is stopped within [`Params::stop`] from the state that it has:
-//! position and velocity do not jump, with a jerk nor does the acceleration.
+//! A move ends at its last point, which has a time of 0. It is aborted when bit 4 is cleared (unless the serial interface started it), by a
+//! halt, when the buffer is cleared, and when the next point is missing, which is an underflow, moving or not. Then, and at a last point
+//! that has a velocity, the axis is stopped within [`Params::stop`] from its present state: position and velocity do not jump, nor does the
+//! acceleration if there is a jerk.
 //!
-//! The points may ask for no more than the highest velocity (6080h): what is beyond is cut, and the drive says so (bit 11). What is
-//! missing of the way is made up for behind it, as far as the highest velocity allows, and a move whose last point is not reached in
-//! time goes on until it is there.
+//! The highest velocity (6080h) limits the points: an excess is cut, and the drive reports it (bit 11). The missing distance is caught up
+//! afterwards, as far as the highest velocity allows, and a move whose last point is not reached in time continues to it.
 //!
 //! # Errors
 //!
 //! Underflow, overflow and a break in the sequence of 2010h are latched in the status of the buffer (2012h) until they are cleared:
-//! bit by bit with 2010h, all by clearing the buffer through the serial interface, which has no other way. As long as one is
-//! latched, no move is started; behind a point that was lost, none is added.
+//! individually with 2010h, or all by clearing the buffer through the serial interface, which has no other command for it. While an error
+//! is latched, no move is started; behind a lost point, none is added.
 //!
 //! Sources: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020); *CANopen Programmer's Manual*, 95-00271-000 rev. 7
 //! (2012), pp. 209–218, 2010h to 2013h; IEC 61800-7-201, interpolated position mode.
@@ -51,16 +50,16 @@ use thiserror::Error;
 pub use buffer::{Buffer, Refusal};
 pub use data_record::{DataRecord, RecordError};
 
-/// How the drive follows the points; constant while the mode runs.
+/// Settings for following the points; constant while the mode is active.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// 60C0h.
     pub sub_mode: SubMode,
     /// 60C2h.
     pub period: TimePeriod,
-    /// Metres or radians per count, negative where the counter runs the other way.
+    /// Metres or radians per count, negative if the counter runs in the opposite direction.
     pub count: f64,
-    /// How a move that is broken off is stopped: quick stop deceleration (6085h) and its jerk.
+    /// Stop of an aborted move: quick stop deceleration (6085h) and its jerk.
     pub stop: Steepness,
     /// Highest velocity (6080h), a magnitude; may be infinite.
     pub velocity: f64,
@@ -78,7 +77,7 @@ impl Params {
     }
 }
 
-/// State from tick to tick, beside the buffer.
+/// State from tick to tick, apart from the buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     phase: Phase,
@@ -92,9 +91,9 @@ pub struct State {
 enum Phase {
     /// Before the first step.
     TakingOver,
-    /// At rest, or on the way there.
+    /// At rest, or braking to it.
     Resting,
-    /// For the points of sub-mode 0.
+    /// Waits for the points of sub-mode 0.
     Waiting,
     Following {
         course: Course,
@@ -103,16 +102,16 @@ enum Phase {
     },
 }
 
-/// Why a move was not started.
+/// Cause of a refused start.
 #[derive(Debug, Clone, Copy, PartialEq, Error, Stateful)]
 pub enum StartRefused {
     /// Errors of the buffer are latched.
     #[error("errors {errors:#04x} of the trajectory buffer are latched (2012h): clear them first")]
     Latched {
-        /// As in the highest byte of 2012h.
+        /// Errors as in the highest byte of 2012h.
         errors: u8,
     },
-    /// A move runs.
+    /// A move is active.
     #[error("a move runs: wait for its end, or break it off")]
     Running,
     /// The axis would jump to the first point.
@@ -128,32 +127,31 @@ pub enum StartRefused {
 }
 
 impl State {
-    /// The mode takes over, or goes on after a halt: a bit 4 that is set already starts nothing, nor does a start move command
-    /// that came before.
+    /// Begins the mode, or continues after a halt: neither a bit 4 that is already set nor an earlier start move command starts a move.
     #[must_use]
     pub fn begin(now: &Moment) -> Self {
         Self { phase: Phase::TakingOver, asked: asks(now), refused: None, ramp: Ramp::default() }
     }
 
-    /// Why the last start was refused, if it was.
+    /// Cause of the last refused start, if any.
     #[must_use]
     pub const fn refused(&self) -> Option<StartRefused> {
         self.refused
     }
 
-    /// Whether a move runs (bit 12 of the statusword).
+    /// True while a move is active (bit 12 of the statusword).
     #[must_use]
     pub const fn is_following(&self) -> bool {
         matches!(self.phase, Phase::Following { .. })
     }
 
-    /// Whether the move is slower than its points ask for.
+    /// True if the move is slower than its points request.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         matches!(&self.phase, Phase::Following { course, .. } if course.is_limited())
     }
 
-    /// A start by the bus or the serial interface.
+    /// Starts a move by the bus or the serial interface.
     fn start(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, by_bus: bool) {
         self.refused = None;
         if buffer.errors() != 0 {
@@ -168,7 +166,7 @@ impl State {
         }
     }
 
-    /// To the first point in the time of a segment.
+    /// Moves to the first point in the time of a segment.
     fn approach(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, pace: Pace) {
         let at = now.demanded.x;
         let duration = f64::from(p.period.microseconds()) / 1e6;
@@ -176,7 +174,7 @@ impl State {
         self.follow(course, pace, true, buffer);
     }
 
-    /// From the first point, at which the axis is.
+    /// Moves from the first point, at which the axis is.
     fn set_out(&mut self, p: &Params, buffer: &mut Buffer, now: &Moment, by_bus: bool) {
         let at = now.demanded.x;
         let here = nearest(at / p.count);
@@ -199,7 +197,7 @@ impl State {
         }
     }
 
-    /// Whether bit 4 keeps the move up.
+    /// True if the move ends when bit 4 is cleared.
     const fn needs_bit(&self) -> bool {
         matches!(self.phase, Phase::Waiting | Phase::Following { by_bus: true, .. })
     }
@@ -246,7 +244,7 @@ pub fn step(p: &Params, x: &mut State, buffer: &mut Buffer, now: &Moment) -> Ans
         return answer(course.start(), true);
     }
     let rest = x.ramp.step(&p.stop, 0.0, now);
-    // What the loops follow is a state of motion; otherwise they hold the axis.
+    // The ramp fails if the demand is not a valid state of motion: then the axis is held.
     answer(rest.unwrap_or(Setpoint::at_rest(now.demanded.x)), false)
 }
 
@@ -263,7 +261,7 @@ const fn asks(now: &Moment) -> bool {
     now.targets.controlword.has(ControlBit::ModeSpecific4)
 }
 
-/// The nearest count, at the ends of the range beyond it.
+/// Nearest count, saturated at the range.
 #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
 fn nearest(counts: f64) -> i64 {
     libm::round(counts) as i64

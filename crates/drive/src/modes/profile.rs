@@ -1,4 +1,4 @@
-//! The profile modes: the master gives a target now and then, the drive makes the way to it.
+//! Profile modes: the master gives a target now and then, the drive generates the profile to it.
 pub mod effort;
 pub mod position;
 mod slopes;
@@ -8,7 +8,7 @@ mod way;
 use servobench_base::{ParamError, positive};
 use servobench_motion::Order;
 
-/// How the velocity changes (6086h).
+/// Shape of velocity changes (6086h).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ramp {
     /// Linearly: the velocity is a trapezoid (0).

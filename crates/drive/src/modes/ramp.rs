@@ -1,15 +1,15 @@
-//! From one velocity to another within an acceleration and a jerk: legs of a search, and stops.
+//! Ramp from one velocity to another within an acceleration and a jerk: for legs of a search, and stops.
 use super::Moment;
 use servobench_base::{ParamError, Setpoint, Stateful, positive};
 use servobench_motion::online::{DirectionalLimits, Effort, Sides, Target, Transition};
 use servobench_motion::{Order, PlanError};
 
-/// How steep a ramp is, in both directions.
+/// Steepness of a ramp, in both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steepness {
     /// Acceleration and deceleration (m/s² or rad/s²).
     pub acceleration: f64,
-    /// Jerk (m/s³ or rad/s³); without it velocity is a trapezoid.
+    /// Jerk (m/s³ or rad/s³); without it the velocity is a trapezoid.
     pub jerk: Option<f64>,
 }
 
@@ -22,24 +22,24 @@ impl Steepness {
     }
 }
 
-/// The ramp under way, and how far it is.
+/// The present ramp and its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(super) struct Ramp {
     way: Option<Transition>,
-    /// Velocity that it leads to.
+    /// Target velocity.
     velocity: f64,
-    /// Time since it began (s).
+    /// Time since the beginning (s).
     since: f64,
-    /// The last set-point.
+    /// Last set-point.
     last: Setpoint,
 }
 
 impl Ramp {
-    /// The set-point of now on the way to `velocity`. When the loops follow something else than the last one, the ramp begins
-    /// anew from there.
+    /// Present set-point on the ramp to `velocity`. If the demand on the loops differs from the last set-point, the ramp restarts from
+    /// there.
     ///
     /// # Errors
-    /// [`PlanError`] when what the loops follow is no state of motion.
+    /// [`PlanError`] if the demand is not a valid state of motion.
     #[inline]
     pub(super) fn step(
         &mut self,
@@ -64,7 +64,7 @@ impl Ramp {
         Ok(self.last)
     }
 
-    /// Apart from the ordinary step, which has no room for a plan.
+    /// Plans a new ramp; separate from the ordinary step, whose frame has no room for a plan.
     #[inline(never)]
     fn begin(&mut self, steepness: &Steepness, velocity: f64, now: &Setpoint) -> Result<(), PlanError> {
         let way = plan(steepness, velocity, now)?;
@@ -73,7 +73,7 @@ impl Ramp {
     }
 }
 
-/// Largest velocity that a plan takes: a ramp from one velocity to another needs no limit between them.
+/// Velocity limit of a plan: a ramp from one velocity to another needs no limit between them.
 const UNLIMITED: f64 = 1e30;
 
 fn plan(steepness: &Steepness, velocity: f64, from: &Setpoint) -> Result<Transition, PlanError> {

@@ -1,16 +1,16 @@
-//! The stop that an option code asks for (605Ah to 605Eh): how the axis is braked whatever the mode.
+//! Stop by an option code (605Ah to 605Eh): braking of the axis in every mode.
 //!
-//! On a ramp the velocity goes linearly to zero, by the deceleration of the profile (6084h) or of the quick stop (6085h),
+//! On a ramp the velocity decreases linearly to zero, at the deceleration of the profile (6084h) or of the quick stop (6085h),
 //!
 //! ```text
 //! v = v0 − sgn(v0)·d·t,   x = x0 + v0·t − sgn(v0)·d·t²/2,   until t = |v0|/d at x0 + v0·|v0|/(2d).
 //! ```
 //!
-//! What the master fed forward (60B1h, 60B2h) goes with the velocity, offset·v/v0: cut off at once, the position loop would have
-//! to build up in its error what the offset had spared it, v0/K_v, and the axis would dive under its ramp.
+//! The offsets of the master (60B1h, 60B2h) decrease with the velocity, offset·v/v0: if they were cut off at once, the position loop would
+//! have to replace them by a position error of v0/K_v, and the axis would undershoot its ramp.
 //!
-//! Where a position loop was closed it stays closed and holds the axis at the end; where none was, the velocity loop brakes.
-//! At the current or the voltage limit the velocity loop is asked for standstill at once, and whatever limits it brakes.
+//! A closed position loop stays closed and holds the axis at the end; otherwise the velocity loop brakes. At the current or the voltage
+//! limit the velocity loop gets a demand of standstill at once, and its limits determine the braking.
 use crate::{Demand, Offsets};
 use servobench_base::{Setpoint, Stateful};
 
@@ -25,7 +25,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// From the set-point of now and what was fed forward with it; without a deceleration standstill is asked for at once.
+    /// Ramp from the present set-point and its offsets; without a deceleration standstill is demanded at once.
     #[must_use]
     pub fn begin(now: &Setpoint, offsets: Offsets, deceleration: Option<f64>, closes_position: bool) -> Self {
         let (from, duration) = match deceleration {
@@ -35,13 +35,13 @@ impl Ramp {
         Self { from, duration, steps: 0, closes_position, offsets }
     }
 
-    /// Where the ramp ends.
+    /// End position of the ramp.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.from.after(self.duration).x
     }
 
-    /// The demand of the next step, the first one being that of now.
+    /// Demand of the next step, beginning with the present one.
     pub fn step(&mut self, period: f64) -> Demand {
         let passed = f64::from(self.steps) * period;
         let setpoint = if passed < self.duration {

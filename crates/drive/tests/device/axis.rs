@@ -1,4 +1,4 @@
-//! A drive over an axis that does exactly what it is asked, with a master that holds its frame.
+//! A drive with an ideal axis, which follows every demand exactly, and a master that holds its frame.
 use servobench_base::Setpoint;
 use servobench_cia402::{Actuals, Command, Commands, ControlBit, Controlword, Mode, StatusBit};
 use servobench_drive::Demand;
@@ -12,7 +12,7 @@ pub(crate) struct Axis {
     pub(crate) measured: Measured,
     pub(crate) fault: Option<u16>,
     pub(crate) main_voltage: bool,
-    /// Where the axis is (m).
+    /// Position of the axis (m).
     pub(crate) position: f64,
     pub(crate) velocity: f64,
     pub(crate) last: Demand,
@@ -34,7 +34,7 @@ impl Axis {
         }
     }
 
-    /// One period with a frame or without one, then the axis has done what was demanded.
+    /// Runs one period, with or without a frame; the axis has then followed the demand.
     pub(crate) fn step(&mut self, with_frame: bool) -> Outputs {
         self.measured.increments = self.params.units.increments(self.position);
         self.measured.velocity = self.velocity;
@@ -91,7 +91,7 @@ impl Axis {
         self.frame.controlword = self.frame.controlword.with(bit, set);
     }
 
-    /// Clears bit 4, sets it, and says whether the set-point was acknowledged at once.
+    /// Clears bit 4, then sets it with `target`; true if the set-point was acknowledged at once.
     pub(crate) fn give(&mut self, target: i32) -> bool {
         self.set(ControlBit::ModeSpecific4, false);
         self.step(true);

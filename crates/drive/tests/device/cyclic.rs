@@ -7,7 +7,7 @@ use servobench_motion::interpolate;
 
 const MICROMETRE: f64 = 1e-6;
 
-/// Oracle: by hand. A target that comes with a frame is reached a cycle later, on a line.
+/// Oracle: by hand. The target of a frame is reached a cycle later, on a line.
 #[test]
 fn linear_targets_are_reached_a_cycle_later() {
     let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
@@ -28,7 +28,7 @@ fn linear_targets_are_reached_a_cycle_later() {
 }
 
 /// Oracle: the sum by hand (IEC 61800-7-201, cyclic synchronous position mode), across the end of the counter too. The offset
-/// is of no effect where the profile does not know it.
+/// has no effect in modes for which the profile does not define it.
 #[test]
 fn the_position_offset_is_added_to_the_target_of_csp_alone() {
     let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
@@ -49,7 +49,7 @@ fn the_position_offset_is_added_to_the_target_of_csp_alone() {
     assert_eq!(axis.actuals().position, 100);
 }
 
-/// Oracle: x = t³ is a cubic, and its velocity at the frames is 3t²: interpolated, nothing of it changes.
+/// Oracle: x = t³ is a cubic with the velocity 3t² at the frames: interpolation reproduces it.
 #[test]
 fn cubic_interpolation_by_the_velocity_offsets_is_exact_for_cubics() {
     let params = Params {
@@ -73,7 +73,7 @@ fn cubic_interpolation_by_the_velocity_offsets_is_exact_for_cubics() {
     }
 }
 
-/// A line is what every interpolation keeps; the B-spline passes it a cycle later.
+/// Every interpolation reproduces a line; the B-spline does so a cycle later.
 #[test]
 fn a_b_spline_keeps_a_line_a_cycle_later() {
     let params = Params { interpolation: interpolate::Mode::CubicBSpline, ..Params::default() };
@@ -165,7 +165,7 @@ fn frames_that_come_late_by_less_than_the_shift_lose_nothing() {
     }
 }
 
-/// Frame n of a line comes so many steps late; what the loops follow at each step, and whether a cycle is missing its frame.
+/// Frame n of a line comes `late[n]` steps late: the set-point of the loops at each step, and true if a cycle is missing its frame.
 fn line_with_late_frames(params: &Params, late: &[i32]) -> Vec<(servobench_base::Setpoint, bool)> {
     let mut axis = Axis::enabled(params, Mode::CyclicSynchronousPosition);
     let mut seen = Vec::new();
@@ -181,7 +181,7 @@ fn line_with_late_frames(params: &Params, late: &[i32]) -> Vec<(servobench_base:
 }
 
 /// Oracle: by hand. Each frame that is later by a step than any before it moves the clock by a step, 25 µm on this line: the
-/// velocity of that cycle is 3/4 of the others'. Afterwards nothing tells frames in time from those up to two steps late.
+/// velocity of that cycle is 3/4 of the others'. Afterwards frames in time and those up to two steps late have the same effect.
 #[test]
 fn the_clock_follows_the_latest_of_the_frames() {
     let late = [0, 0, 0, 1, 0, 2, 0, 0, 1, 2, 0, 1, 2, 2, 0, 0];
@@ -254,7 +254,7 @@ fn cyclic_efforts_are_ramps_between_the_frames_within_the_limits_of_their_direct
     assert_eq!(efforts(-800, 0), (vec![0.5, 0.4, 0.0, -0.25], true));
 }
 
-/// Oracle: the lower of the object of the direction and of what the frame says, in thousandths of the rated effort.
+/// Oracle: the lower of the direction's object and the limit in the frame, in thousandths of the rated effort.
 #[test]
 fn a_frame_limits_the_effort_in_every_mode_until_one_comes_that_does_not() {
     let limits = Limits { effort: EffortLimits { forward: 0.5, backward: 0.25 }, ..Params::default().limits };

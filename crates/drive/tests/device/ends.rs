@@ -31,7 +31,7 @@ fn a_limit_switch_stops_the_axis_in_its_direction_and_lets_it_go_back() {
         let way = f64::from(sign) * (axis.position - at_switch);
         assert!((way - 2e-3).abs() < 1e-12 && axis.velocity == 0.0, "{way}");
         assert_eq!(bits(&axis), [true, false]);
-        // Back: held until the targets are on this side of where it stands, then followed.
+        // Back: held until the targets are on the near side of the axis, then followed.
         follow(&mut axis, -200, 20);
         assert!((f64::from(sign) * (axis.position - at_switch) - 2e-3).abs() < 1e-12);
         assert_eq!(bits(&axis), [true, false]);
@@ -62,7 +62,7 @@ fn velocities_and_efforts_are_held_at_a_switch_too() {
         axis.cycles(200);
         assert!(matches!(axis.last, Demand::Velocity { .. }) && setpoint(&axis.last).v == 0.0, "{mode:?}");
         assert!(axis.has(StatusBit::InternalLimitActive));
-        // In profile velocity bit 12 says that the axis stands; a cyclic mode does not follow the master here.
+        // In profile velocity bit 12 means standstill; a cyclic mode does not follow the master here.
         assert_eq!(axis.has(StatusBit::ModeSpecific12), mode == Mode::ProfileVelocity, "{mode:?}");
         (axis.frame.target_velocity, axis.frame.target_torque) = (-100_000, -100);
         axis.cycles(200);
@@ -86,7 +86,7 @@ fn cyclic_targets_beyond_the_software_limits_are_cut() {
     }
 }
 
-/// Oracle: the quick stop begins where the axis is at the limit: 5 mm and the 0.5 mm of 0.1 m/s by 10 m/s².
+/// Oracle: the quick stop begins when the axis is at the limit: 5 mm and the 0.5 mm of 0.1 m/s by 10 m/s².
 #[test]
 fn a_velocity_that_leads_beyond_a_software_limit_is_braked_there() {
     let limits = Limits { position: Some([-5e-3, 5e-3]), ..Params::default().limits };
@@ -98,7 +98,7 @@ fn a_velocity_that_leads_beyond_a_software_limit_is_braked_there() {
     assert!(setpoint(&axis.last).v == 0.0);
 }
 
-/// A master that hears of the switch halts the axis by the deceleration of the profile, which is gentler than the quick stop.
+/// A master that sees the switch halts the axis by the deceleration of the profile, which is gentler than the quick stop.
 #[test]
 fn a_halt_at_a_limit_switch_does_not_make_the_way_longer() {
     let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);
@@ -117,8 +117,8 @@ fn a_halt_at_a_limit_switch_does_not_make_the_way_longer() {
     assert!(axis.has(StatusBit::InternalLimitActive));
 }
 
-/// Which way a drive moves at 0.1 m/s, whose switches are wired and read as given, beyond the positive end or in between. The master
-/// sees the inputs as they are.
+/// Directions in which a drive moves at 0.1 m/s, with switches wired and read as given, beyond the positive end or in between. The
+/// master sees the inputs as they are.
 #[test]
 fn a_switch_is_met_by_its_input_and_by_how_that_is_read() {
     for (is_closed, reverse_switches, is_beyond) in

@@ -1,11 +1,11 @@
-//! Bits 12 and 13 of the statusword while the axis is halted: what they mean depends on the mode, not on the halt.
+//! Bits 12 and 13 of the statusword while the axis is halted: their meaning depends on the mode, not on the halt.
 use crate::axis::Axis;
 use servobench_cia402::{Command, ControlBit, HaltOption, Mode, StatusBit};
 use servobench_drive::Demand;
 use servobench_drive::device::{Params, Window};
 use servobench_drive::modes::homing::Method;
 
-/// Steps of a frame each, so that bits are seen at every step.
+/// One frame per step, so that bits are seen at every step.
 fn params() -> Params {
     let mut params = Params::default();
     params.cycle.steps = 1;
@@ -25,7 +25,7 @@ impl Axis {
     }
 }
 
-/// IEC 61800-7-201, set-point handshake: the drive takes the acknowledgement back after the master has taken bit 4 back.
+/// IEC 61800-7-201, set-point handshake: the drive clears the acknowledgement after the master has cleared bit 4.
 #[test]
 fn a_set_point_stays_acknowledged_until_its_bit_is_cleared() {
     let mut axis = Axis::enabled(&params(), Mode::ProfilePosition);
@@ -92,7 +92,7 @@ fn a_homed_axis_stays_homed_and_a_failed_search_failed() {
         let mut params = params();
         params.homing.method = Method::from_number(method).unwrap();
         let mut axis = Axis::enabled(&params, Mode::Homing);
-        // An end without an index pulse before it, where the method looks for one.
+        // A limit switch without an index pulse before it, when the method searches for one.
         axis.measured.negative_limit = !is_homed;
         axis.with(ControlBit::ModeSpecific4, true);
         axis.cycles(1000);
@@ -115,7 +115,7 @@ fn a_halted_drive_does_not_follow_the_master() {
     }
 }
 
-/// What the master feeds forward is faded with the velocity of the ramp. Oracle: by hand, 0.2 m/s by 10 m/s² of the quick stop.
+/// The master's feedforward fades with the velocity of the ramp. Oracle: by hand, 0.2 m/s by 10 m/s² of the quick stop.
 #[test]
 fn what_was_fed_forward_goes_with_the_velocity() {
     let mut axis = Axis::enabled(&Params::default(), Mode::CyclicSynchronousPosition);

@@ -1,10 +1,10 @@
-//! Profile position: bits 4, 5, 6 and 9 of the controlword against bits 10 and 12 of the statusword, frame by frame as the
-//! timing diagrams of the profile have it (IEC 61800-7-201, profile position mode, set-point handshake).
+//! Profile position: bits 4, 5, 6 and 9 of the controlword against bits 10 and 12 of the statusword, frame by frame as in the
+//! timing diagrams of the profile (IEC 61800-7-201, profile position mode, set-point handshake).
 use crate::axis::Axis;
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::{Params, Window};
 
-/// Steps of a frame each, so that bits are seen at every step; nothing to wait for in the window.
+/// One frame per step, so that bits are seen at every step; no waiting time in the window.
 fn axis() -> Axis {
     let mut params = Params { position: Window { width: 2e-6, time: 0.0 }, ..Params::default() };
     params.cycle.steps = 1;
@@ -118,7 +118,7 @@ fn relative_set_points_count_from_the_target_before() {
     axis.set(ControlBit::ModeSpecific4, false);
     axis.settle();
     assert!((axis.micrometres() - 2_000.0).abs() < 1e-9);
-    // At once: from the target under way, not from where the axis is.
+    // At once: relative to the target under way, not to the present position.
     axis.set(ControlBit::ModeSpecific5, true);
     axis.give(5_000);
     axis.steps(100);
@@ -127,7 +127,7 @@ fn relative_set_points_count_from_the_target_before() {
     assert!((axis.micrometres() - 12_000.0).abs() < 1e-9);
 }
 
-/// Oracle: on the set-point the axis has its profile velocity, 0.1 m/s, and never less on the way to the next one until it
+/// Oracle: the axis passes the set-point at its profile velocity, 0.1 m/s, and keeps it towards the next one until it
 /// brakes for that, 5 mm before.
 #[test]
 fn a_change_on_set_point_passes_the_first_one_at_its_velocity() {

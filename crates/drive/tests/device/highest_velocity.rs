@@ -1,4 +1,4 @@
-//! The highest velocity (6080h) in cyclic synchronous and interpolated position: just at it, above it, on any grid.
+//! The highest velocity (6080h) in cyclic synchronous and interpolated position: exactly at it, above it, on any grid.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::interpolated::{Point, SubMode};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
@@ -27,7 +27,7 @@ fn axis(interpolation: interpolate::Mode, position: i32, steps: u32, units: i32)
     (axis, velocity)
 }
 
-/// Oracle: what moves at most at `v` moves at most v·T in a step. Roundings of positions of up to 2 km.
+/// Oracle: at a velocity of at most `v` a step covers at most v·T. Roundings of positions of up to 2 km.
 fn assert_steady(axis: &mut Axis, velocity: f64, what: &str) {
     let mut before = axis.position;
     let allowed = velocity * axis.params.period * (1.0 + 1e-9) + 4.0 * f64::EPSILON * before.abs();
@@ -39,7 +39,7 @@ fn assert_steady(axis: &mut Axis, velocity: f64, what: &str) {
     }
 }
 
-/// Targets that ask for just the highest velocity, there and back and with rests between: nothing is cut, and nothing jumps.
+/// Targets that require exactly the highest velocity, there and back and with rests between: nothing is cut, and nothing jumps.
 #[test]
 fn just_the_highest_velocity_is_followed_by_every_interpolation() {
     for interpolation in WAYS {
@@ -58,7 +58,7 @@ fn just_the_highest_velocity_is_followed_by_every_interpolation() {
                 axis.frame.target_position = target;
                 axis.frame.velocity_offset = axis.params.units.velocity(velocity * f64::from(way.signum()));
                 if interpolation == interpolate::Mode::Cubic && n % 10 == 0 {
-                    // A cubic that begins or ends at rest is faster than its ends in between: by the offset of a line it is none.
+                    // A cubic that begins or ends at rest is faster in between than at its ends, so the offset of a line does not fit.
                     axis.frame.velocity_offset = 0;
                 }
                 assert_steady(&mut axis, velocity, &format!("{interpolation:?}, frame {n} from {position}"));
@@ -69,7 +69,7 @@ fn just_the_highest_velocity_is_followed_by_every_interpolation() {
     }
 }
 
-/// At random: at, below and beyond the highest velocity, through zero. Bit 11 says whether the targets are cut.
+/// Random targets: at, below and beyond the highest velocity, through zero. Bit 11 is set while the targets are cut.
 #[test]
 fn no_targets_make_the_demand_jump_or_pass_the_highest_velocity() {
     let mut random = Random::seeded(6080);
@@ -100,7 +100,7 @@ fn no_targets_make_the_demand_jump_or_pass_the_highest_velocity() {
     }
 }
 
-/// 0.143 m/s asked for, 0.1 m/s allowed: interpolated position obeys, says so while it does, and makes up for it.
+/// 0.143 m/s commanded, 0.1 m/s allowed: interpolated position keeps the limit, reports it meanwhile, and catches up.
 #[test]
 fn interpolated_position_obeys_it_too() {
     let defaults = Params::default();

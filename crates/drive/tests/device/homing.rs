@@ -3,7 +3,7 @@ use crate::axis::{Axis, setpoint};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::Params;
 
-/// Oracle: by hand. Method 35 takes where the axis is as the reference, which gets the home offset.
+/// Oracle: by hand. Method 35 takes the present position as the reference, which gets the home offset.
 #[test]
 fn the_reference_gets_the_home_offset_and_the_loops_see_no_jump() {
     let mut axis = Axis::new(&Params::default());
@@ -49,7 +49,7 @@ fn an_index_pulse_is_the_zero_where_it_came() {
     assert!((f64::from(shown) - behind).abs() <= 0.5 && (-16.0..-12.0).contains(&behind), "{shown} {behind}");
 }
 
-/// The switch goes on while the axis brakes for the halt: the search begins anew, on the switch.
+/// The switch turns on while the axis brakes for the halt: the search begins anew, on the switch.
 #[test]
 fn a_switch_that_is_passed_during_a_halt_is_found_all_the_same() {
     let mut params = Params::default();

@@ -15,8 +15,8 @@ impl Axis {
     }
 }
 
-/// Oracle: 50 µm in 10 ms from rest to rest and back by cubics; in the middle of each the axis is half way, at 1.5 times the mean
-/// velocity.
+/// Oracle: 50 µm in 10 ms from rest to rest and back by cubics; in the middle of each the axis has covered half the distance, at 1.5 times
+/// the mean velocity.
 #[test]
 fn points_of_the_master_are_followed_and_an_empty_buffer_is_an_underflow() {
     let params = Params { sub_mode: SubMode::Cubic, ..Params::default() };
@@ -51,7 +51,7 @@ fn a_point_that_cannot_be_read_is_a_warning_until_a_good_one_comes() {
     assert!(!axis.has(StatusBit::Warning));
 }
 
-/// Oracle: 100 µm per 10 ms, on a line from where the axis is.
+/// Oracle: 100 µm per 10 ms, on a line from the present position.
 #[test]
 fn points_come_through_the_data_record_too() {
     let period = TimePeriod::new(10, -3).unwrap();
@@ -68,7 +68,7 @@ fn points_come_through_the_data_record_too() {
     }
 }
 
-/// Oracle: the data record itself. What a frame carries beyond the sub-mode is refused, and the drive warns.
+/// Oracle: the data record itself. Parts of a frame that the sub-mode does not use are refused, and the drive warns.
 #[test]
 fn a_frame_carries_the_data_record() {
     let period = TimePeriod::new(10, -3).unwrap();
@@ -116,7 +116,7 @@ fn a_move_through_the_serial_interface_needs_no_bit() {
     assert!(!axis.has(StatusBit::ModeSpecific12) && axis.has(StatusBit::TargetReached));
 }
 
-/// Halted and let go again, with bit 4 set all the time: the course has gone on without the axis and is not taken up again.
+/// Halted and released, with bit 4 set all the time: the trajectory has ended and is not resumed.
 #[test]
 fn a_halt_ends_the_move_and_nothing_jumps() {
     let params = Params { sub_mode: SubMode::Cubic, ..Params::default() };
@@ -130,7 +130,7 @@ fn a_halt_ends_the_move_and_nothing_jumps() {
     for k in 0..1000 {
         axis.frame.controlword = run.with(ControlBit::Halt, (60..400).contains(&k));
         axis.step(k % 4 == 0);
-        // Beyond 0.125 m/s the cubics do not go: 31.25 µm per period.
+        // The cubics do not exceed 0.125 m/s: 31.25 µm per period.
         assert!((axis.position - last).abs() < 32e-6, "step {k}: {last} {}", axis.position);
         last = axis.position;
         assert_eq!(axis.has(StatusBit::ModeSpecific12), k < 60, "step {k}");

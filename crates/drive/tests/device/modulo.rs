@@ -1,4 +1,4 @@
-//! Rotary axes: positions within a range (607Bh), and the ways to a target (60F2h).
+//! Rotary axes: positions within a range (607Bh), and the directions to a target (60F2h).
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::counter::Counter;
 use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
@@ -29,7 +29,7 @@ fn params(min: i32, direction: RotaryAxisOption, polarity: u8) -> Params {
 }
 
 impl Axis {
-    /// Thousandths of a degree that the axis has turned in the direction of its encoder.
+    /// Angle turned in the direction of the encoder (thousandths of a degree).
     fn turned(&self) -> f64 {
         self.position / TAU * f64::from(TURN)
     }
@@ -44,7 +44,7 @@ fn positioning(params: &Params, from: f64) -> Axis {
     axis
 }
 
-/// Ways by hand, in degrees: from, to, and the way linearly, in negative and positive direction, and the shortest one.
+/// Distances by hand, in degrees: from, to, and the distance linearly, in negative and positive direction, and the shortest one.
 const WAYS: [(i32, i32, [i32; 4]); 8] = [
     (350, 10, [-340, -340, 20, 20]),
     (10, 350, [340, -20, 340, -20]),
@@ -92,8 +92,8 @@ fn many_turns_in_one_direction_do_not_drift() {
     assert!((axis.turned() - 120_000_000.0).abs() < 1e-6, "{}", axis.turned());
 }
 
-/// 350° is under way and the axis still before 10° when that is given: it lies 20° behind 350° for a set-point that waits, and just
-/// ahead for one that is given at once.
+/// 10° is commanded on the way to 350°, while the axis is still before 10°: it lies 20° beyond 350° for a set-point that waits, and just
+/// ahead for one that takes effect at once.
 #[test]
 fn a_set_point_that_waits_counts_from_the_one_before_it() {
     for (at_once, expected) in [(false, 370_000.0), (true, 10_000.0)] {
@@ -136,7 +136,7 @@ fn without_a_range_the_counter_is_the_turn() {
     }
 }
 
-/// Ten turns in csp, 7° a cycle, by targets of the range; what is read is in the range. Oracle: counted.
+/// Ten turns in csp, 7° a cycle, by targets within the range; readings are in the range. Oracle: counted.
 #[test]
 fn cyclic_targets_go_on_at_the_other_end_of_the_range() {
     for step in [7_000, -7_000] {

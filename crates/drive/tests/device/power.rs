@@ -55,7 +55,7 @@ fn assert_brakes(axis: &mut Axis, deceleration: f64, what: &str) {
             stopped_after = Some(axis.position - from);
         }
     }
-    // The axis does a step at a time: its last one is not cut where the ramp ends.
+    // The axis moves by whole steps: the last one is not cut at the end of the ramp.
     let way = 0.02 / deceleration;
     assert!((stopped_after.unwrap() - way).abs() < 0.5 * deceleration * h * h + 1e-12, "{what}: {stopped_after:?}");
 }
@@ -130,7 +130,7 @@ fn at_the_current_limit_the_velocity_loop_is_asked_for_standstill() {
     assert!(setpoint.v == 0.0 && setpoint.a == 0.0, "{setpoint:?}");
 }
 
-/// A mode begins with what the loops follow: the set-points of the step before, carried on by a period.
+/// A mode begins with the set-points of the loops: those of the step before, extrapolated by a period.
 #[test]
 fn every_change_of_mode_is_without_a_jump() {
     for from in MODES {
@@ -146,7 +146,7 @@ fn every_change_of_mode_is_without_a_jump() {
     }
 }
 
-/// Halted while it brakes without a set-point and let go before it stands: the velocity falls on, by no more than 1 m/s².
+/// Halted while it brakes without a set-point, and released before standstill: the velocity continues to fall, by at most 1 m/s².
 #[test]
 fn a_halt_that_is_over_before_the_axis_stands_leaves_no_jump() {
     let mut axis = moving(&Params::default(), Mode::CyclicSynchronousVelocity);
@@ -210,7 +210,7 @@ fn without_a_mode_an_axis_that_moves_is_stopped() {
     }
 }
 
-/// When the power comes back during the fault reaction, the axis is braked from where it has got to.
+/// Power that returns during the fault reaction: the axis is braked from its present state.
 #[test]
 fn power_that_comes_back_brakes_the_axis_from_where_it_is() {
     let mut axis = moving(&Params::default(), Mode::CyclicSynchronousPosition);
@@ -250,7 +250,7 @@ fn a_harder_stop_takes_over_from_a_softer_one() {
     assert!((axis.velocity - 0.075).abs() < 1e-12, "{}", axis.velocity);
 }
 
-/// An axis that sticks stands, but not by its ramp: 0.2 m/s by 1 m/s² take 0.2 s but for the last millisecond, at 1 mm/s.
+/// An axis that sticks is at standstill before its ramp ends: 0.2 m/s at 1 m/s² takes 0.2 s but for the last millisecond, at 1 mm/s.
 #[test]
 fn a_stop_is_not_over_before_its_ramp() {
     let mut params = Params::default();

@@ -1,4 +1,4 @@
-//! Profile position: the ways, against closed forms.
+//! Profile position: the distances, against closed forms.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::{ControlBit, Mode, StatusBit};
 use servobench_drive::device::{Limits, Params};
@@ -11,7 +11,7 @@ fn axis(params: &Params) -> Axis {
     axis
 }
 
-/// Gives a target; the set-points from that step on.
+/// Commands a target; the set-points from that step on.
 fn positions(axis: &mut Axis, target: i32, steps: usize) -> Vec<servobench_base::Setpoint> {
     axis.frame.target_position = target;
     axis.frame.controlword = axis.frame.controlword.with(ControlBit::ModeSpecific4, true);
@@ -39,7 +39,7 @@ fn a_trapezoid_has_its_own_ramps_up_and_down() {
     assert!(axis.has(StatusBit::TargetReached));
 }
 
-/// Oracle: rest to rest with a cruise and full acceleration takes D/V + V/A + A/J, and by half the time it has half the way.
+/// Oracle: rest to rest with a cruise and full acceleration takes D/V + V/A + A/J, with half the distance after half the time.
 #[test]
 fn a_jerk_limited_move_keeps_its_jerk_and_takes_its_time() {
     let mut params = Params::default();
@@ -56,7 +56,7 @@ fn a_jerk_limited_move_keeps_its_jerk_and_takes_its_time() {
     }
 }
 
-/// Oracle: passed at 0.04 m/s, the axis goes on at that.
+/// Oracle: the axis passes the target at 0.04 m/s and continues at that velocity.
 #[test]
 fn an_end_velocity_is_that_of_the_axis_at_the_target_and_after_it() {
     let mut params = Params::default();

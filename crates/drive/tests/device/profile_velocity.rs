@@ -94,7 +94,7 @@ fn an_acceleration_beyond_the_highest_is_cut_and_the_drive_says_so() {
 }
 
 /// Oracle: from rest to V within A and J takes V/A + A/J; half way it is at V/2 with A.
-/// A new target on the way is taken without a jump of the acceleration.
+/// A new target meanwhile takes effect without a jump of the acceleration.
 #[test]
 fn jerk_limited_velocities_keep_their_jerk() {
     let mut params = Params::default();

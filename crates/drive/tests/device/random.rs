@@ -1,4 +1,4 @@
-//! Masters that send anything.
+//! Masters that send random frames.
 use crate::axis::Axis;
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode};
@@ -85,7 +85,7 @@ fn segment(random: &mut Random, status: u32) -> Option<[u8; 8]> {
     command.encode()
 }
 
-/// Whatever comes, an axis is driven only while its drive function is enabled, by numbers, and within the limits of its mode.
+/// With any input, an axis is driven only while its drive function is enabled, by finite numbers, within the limits of its mode.
 #[test]
 fn no_frame_drives_a_disabled_axis_or_any_axis_beyond_its_limits() {
     let sweep: u32 = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|value| value.parse().ok()).unwrap_or(100_000);

@@ -1,9 +1,9 @@
-//! Settings that the drive does not take.
+//! Settings that the drive refuses.
 use servobench_drive::device::{Params, State, Window};
 use servobench_drive::modes::profile::Ramp;
 use servobench_motion::interpolate;
 
-/// What a refusal says of settings that `spoil` has changed.
+/// Error message of the default settings after `spoil` has changed them.
 fn refusal(spoil: impl Fn(&mut Params)) -> String {
     let mut params = Params::default();
     spoil(&mut params);

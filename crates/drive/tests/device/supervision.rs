@@ -1,4 +1,4 @@
-//! Faults: which, with which code, after which time, and what the drive does then.
+//! Faults: their codes, their delays and the reactions of the drive.
 use crate::axis::{Axis, setpoint};
 use servobench_cia402::{Command, ErrorCode, FaultReactionOption, Mode, PowerState, Source, StatusBit};
 use servobench_drive::Demand;
@@ -14,7 +14,7 @@ fn running(params: &Params) -> Axis {
     axis
 }
 
-/// Every fault is told by its code, brakes on the quick stop ramp where it can, ends in Fault and is gone after a reset.
+/// Every fault is reported by its code, brakes on the quick stop ramp if possible, ends in Fault and is gone after a reset.
 #[test]
 fn every_fault_has_its_code_and_its_reaction() {
     let following_error = Window { width: 1e-3, time: 0.0 };
@@ -73,7 +73,7 @@ fn every_fault_has_its_code_and_its_reaction() {
         }
         axis.cycles(100);
         assert_eq!((axis.state.power(), axis.last), (PowerState::Fault, Demand::Off), "{fault:?}");
-        // While its cause is there, some cannot be reset.
+        // Some faults cannot be reset while their cause is present.
         axis.command(Command::DisableVoltage);
         axis.cycle();
         axis.command(Command::FaultReset);
@@ -92,8 +92,8 @@ fn every_fault_has_its_code_and_its_reaction() {
     }
 }
 
-/// From the step on at which the encoder fails nothing is asked of a loop, whatever the option code, the mode and the order of
-/// faults: the power stage is off, and Fault is reached at the next step, without waiting for a standstill that nobody sees.
+/// From the step at which the encoder fails, no loop gets a demand, for any option code, mode and order of faults: the power stage is
+/// off, and Fault is reached at the next step, without waiting for a standstill that cannot be measured.
 #[test]
 fn without_an_encoder_no_loop_is_closed() {
     for option in FaultReactionOption::CODES {
@@ -120,7 +120,7 @@ fn without_an_encoder_no_loop_is_closed() {
                     if k > 0 {
                         assert_eq!(axis.state.power(), PowerState::Fault, "{what}, step {k}");
                     }
-                    // One good reading does not bring the loops back.
+                    // One valid reading does not close the loops again.
                     axis.measured.effort = if k == 100 { 0.0 } else { f64::NAN };
                 }
                 assert!((axis.velocity - velocity).abs() < 1e-15, "{what}: it coasts");
@@ -181,7 +181,7 @@ fn the_following_error_may_leave_its_window_for_the_time_out() {
     assert_eq!(outside(40, -1.5e-3), Some(20), "20 periods of 0.25 ms");
 }
 
-/// Bit 13 tells a lost position until the fault is reset, only that fault and only in the modes that give it this meaning.
+/// Bit 13 reports a lost position until the fault is reset, only that fault and only in the modes that give it this meaning.
 #[test]
 fn bit_13_tells_a_lost_position_until_the_reset() {
     use PowerState::{Fault as Faulty, FaultReactionActive, SwitchOnDisabled};

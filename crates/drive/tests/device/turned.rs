@@ -1,4 +1,4 @@
-//! An axis that the polarity (607Eh) turns round: the same frames, the mirrored motion, under the drive's own loops.
+//! An axis reversed by the polarity (607Eh): the same frames, the mirrored motion, under the drive's own loops.
 use servobench_base::{PowerCommand, Rate, Setpoint};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};
 use servobench_cia402::{Command as Word, Commands, Controlword, Mode};
@@ -7,7 +7,7 @@ use servobench_drive::{self as drive, Demand, EffortLimits, Sensors, Stage, dela
 use servobench_motion::interpolate;
 use std::f64::consts::TAU;
 
-/// kg, and N of which the bus counts thousandths.
+/// Mass (kg), and rated force (N), of which the bus counts thousandths.
 const MASS: f64 = 20.0;
 const RATED: f64 = 1000.0;
 
@@ -36,13 +36,13 @@ fn loops() -> drive::Params {
     }
 }
 
-/// What the master sees.
+/// Readings of the master.
 struct Seen {
     position: Vec<i32>,
     torque: Vec<i16>,
     /// Largest following error (m).
     peak: f64,
-    /// Where the axis ends, in the encoder's direction (m).
+    /// Final position of the axis, in the encoder's direction (m).
     end: f64,
 }
 
@@ -73,7 +73,7 @@ fn moved(polarity: u8, with_force: bool) -> Seen {
             if is_frame {
                 let words = [Word::DisableVoltage, Word::Shutdown, Word::SwitchOn, Word::EnableOperation];
                 frame.controlword = Controlword::of(words[usize::try_from(k / 16).unwrap().min(3)]);
-                // The set-point of the end of the cycle, 60B1h as the cubic takes it, and 60B2h which goes there with it.
+                // The set-point of the end of the cycle, 60B1h as used by the cubic, and 60B2h for the same instant.
                 let passed = ((f64::from(k) * tick - 0.1) / 0.5).clamp(0.0, 1.0);
                 let (sine, cosine) = (TAU * passed).sin_cos();
                 let velocity = 0.1 * (1.0 - cosine) / 0.5;
@@ -113,9 +113,9 @@ fn moved(polarity: u8, with_force: bool) -> Seen {
     seen
 }
 
-/// Oracle: mass, loops and rounding are odd, so that a turned axis makes the mirrored motion bit for bit and the master sees the same.
-/// Turned in position and velocity only, as the standard has it, it is pushed the wrong way: about twice as far off as without any
-/// force in 60B2h.
+/// Oracle: mass, loops and rounding are odd, so that a reversed axis makes the mirrored motion bit for bit and the master sees the same.
+/// Reversed in position and velocity only, as in the standard, it is pushed in the wrong direction: about twice as far off as without
+/// any force in 60B2h.
 #[test]
 fn an_axis_turned_in_all_three_follows_as_well_as_one_that_is_not() {
     let (straight, turned) = (moved(0, true), moved(0xE0, true));

@@ -41,7 +41,7 @@ fn targets_and_measurements_go_through_the_factor_group() {
     assert_eq!(actuals.following_error, 55);
 }
 
-/// The master sees the axis the other way round, the loops see the encoder.
+/// The master sees the axis reversed, the loops see the encoder.
 #[test]
 fn polarity_turns_set_points_and_measurements_round() {
     for (polarity, position, velocity) in [
@@ -64,7 +64,7 @@ fn polarity_turns_set_points_and_measurements_round() {
     }
 }
 
-/// Bit 5 turns what the master sends and reads, and nothing else does.
+/// Bit 5 alone reverses the torques that the master sends and reads.
 #[test]
 fn torque_has_a_polarity_of_its_own() {
     for (polarity, sign) in [(0, 1), (POLARITY_POSITION | POLARITY_VELOCITY, 1), (POLARITY_TORQUE, -1), (0xE0, -1)] {
@@ -138,7 +138,7 @@ fn cyclic_targets_run_through_the_end_of_narrow_counters() {
     }
 }
 
-/// Counters whose readings take two words. Those of 64 bits end where the drive's own integers do.
+/// Counters whose readings take two words. Those of 64 bits end with the drive's own integers.
 #[test]
 fn cyclic_targets_run_through_the_end_of_wide_counters() {
     for (bits, signed, cycles) in [(33, true, 30), (40, false, 30), (48, true, 30), (64, true, 1), (64, false, 1)] {

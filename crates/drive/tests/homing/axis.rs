@@ -1,4 +1,4 @@
-//! An ideal axis: it goes on as the last set-point says. Its switches and index pulses are what the drive knows of it.
+//! An ideal axis: it moves as the last set-point demands. The drive sees only its switches and index pulses.
 use servobench_base::Setpoint;
 use servobench_cia402::{Command, ControlBit, Controlword};
 use servobench_drive::Demand;
@@ -7,15 +7,15 @@ use servobench_drive::modes::{Actual, Moment, Targets};
 use std::ops::RangeInclusive;
 
 pub(crate) const PERIOD: f64 = 1.0 / 2000.0;
-/// Of the encoder of an axis that lags behind: at the speed for zero there is one every other period.
+/// Increment of the encoder of a lagging axis: at the speed for zero, one every other period.
 pub(crate) const INCREMENT: f64 = 10e-6;
-/// Where the limit switches go on.
+/// Positions of the limit switches.
 pub(crate) const ENDS: (f64, f64) = (-1.0, 1.0);
 
-/// What is mounted at the axis.
+/// Switches and index pulses of the axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Machine {
-    /// Where the home switch is on.
+    /// Range in which the home switch is on.
     pub(crate) home: RangeInclusive<f64>,
     /// Positions of index pulses, in ascending order.
     pub(crate) pulses: Vec<f64>,
@@ -43,26 +43,26 @@ impl Machine {
 
 /// The axis under the drive.
 pub(crate) struct Axis<'a> {
-    /// Time by which it is behind what it is asked (s).
+    /// Time constant with which the axis follows the set-point (s).
     pub(crate) lag: f64,
-    /// Where it is, if it lags behind.
+    /// Position of the axis, if it lags.
     behind: f64,
     machine: &'a Machine,
     /// The last set-point, in the machine's coordinate.
     pub(crate) demanded: Setpoint,
-    /// What the coordinate of the drive is ahead of the machine's.
+    /// Offset of the drive's coordinate from the machine's.
     pub(crate) shift: f64,
     last: f64,
     pub(crate) params: Params,
     pub(crate) state: State,
 }
 
-/// What was seen at a step, in the machine's coordinate.
+/// Record of a step, in the machine's coordinate.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
-    /// Where the axis was at the step.
+    /// State of the axis at the step.
     pub(crate) at: Setpoint,
-    /// What it was asked to do.
+    /// The set-point of the axis.
     pub(crate) demanded: Setpoint,
     pub(crate) output: Output,
 }
@@ -82,7 +82,7 @@ impl<'a> Axis<'a> {
         Self { lag: 0.0, behind: at, machine, demanded, shift: 0.0, last: at, params, state: State::begin(&moment) }
     }
 
-    /// The mode takes over anew, at such a word.
+    /// Starts the mode anew with `controlword`.
     pub(crate) fn take_over(&mut self, controlword: Controlword) {
         let (demanded, actual) = (self.demanded, Actual::default());
         self.state = State::begin(&Moment { targets: targets(controlword), actual, demanded, period: PERIOD });
@@ -91,7 +91,7 @@ impl<'a> Axis<'a> {
     pub(crate) fn step(&mut self, controlword: Controlword) -> Seen {
         let asked = self.demanded.after(PERIOD);
         let at = self.place(asked);
-        // The switches know nothing of increments.
+        // The switches do not depend on increments.
         let truly = if self.lag == 0.0 { at.x } else { self.behind };
         let [negative_limit, positive_limit, home] = self.machine.switches(truly);
         let crossed =
@@ -117,8 +117,8 @@ impl<'a> Axis<'a> {
 }
 
 impl Axis<'_> {
-    /// Where the axis is when it is asked to be somewhere: there, or behind, with an encoder by whose increments its velocity is
-    /// measured.
+    /// State of the axis for a set-point: the set-point itself, or a lagging position, with the velocity measured by the increments of an
+    /// encoder.
     fn place(&mut self, asked: Setpoint) -> Setpoint {
         if self.lag == 0.0 {
             return asked;

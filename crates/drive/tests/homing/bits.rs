@@ -1,4 +1,4 @@
-//! The statusword's bits 10, 12 and 13, and what takes the search back.
+//! The statusword's bits 10, 12 and 13, and the ways to cancel the search.
 use crate::axis::{Axis, Machine, Seen, idle, start};
 use crate::methods::params;
 use servobench_base::Setpoint;
@@ -17,7 +17,7 @@ const HOMED: [bool; 3] = [false, true, true];
 const FAILED_MOVING: [bool; 3] = [true, false, false];
 const FAILED: [bool; 3] = [true, false, true];
 
-/// What the bits said one after another while the word was `word`, repetitions left out, until they are `last`.
+/// Sequence of the bits, without repetitions, with the controlword `word` until they are `last`.
 fn until(axis: &mut Axis, word: Controlword, last: [bool; 3]) -> Vec<[bool; 3]> {
     let mut said: Vec<[bool; 3]> = vec![];
     for _ in 0..300_000 {
@@ -38,7 +38,7 @@ fn a_search_says_under_way_then_attained_then_homed() {
     let mut axis = Axis::new(&machine, params(7), 0.0);
     assert_eq!(bits(&axis.step(idle())), NOT_STARTED);
     assert_eq!(until(&mut axis, start(), HOMED), [UNDER_WAY, ATTAINED, HOMED]);
-    // Homed it stays, whether bit 4 is taken back or not, until it rises again.
+    // The axis stays homed, with bit 4 cleared or not, until bit 4 rises again.
     assert_eq!(bits(&axis.step(start())), HOMED);
     assert_eq!(bits(&axis.step(idle())), HOMED);
     assert_eq!(bits(&axis.step(start())), UNDER_WAY);
@@ -105,7 +105,7 @@ fn velocity_and_acceleration_are_those_of_the_parameters_through_every_turn() {
     let mut axis = Axis::new(&machine, params(25), 0.9);
     let mut last = axis.demanded;
     for k in 0..60_000 {
-        // Taken back and given again, halted and let go.
+        // Cancelled and started again, halted and released.
         let word = if k % 7_001 < 40 { idle() } else { start().with(ControlBit::Halt, k % 5_003 < 30) };
         axis.step(word);
         let now = axis.demanded;
@@ -114,7 +114,7 @@ fn velocity_and_acceleration_are_those_of_the_parameters_through_every_turn() {
         let slack = 1.0 + 1e-9;
         assert!(now.v.abs() <= 0.1 * slack && now.a.abs() <= 1.0 * slack, "{k}: {now:?}");
         assert!(v.abs() <= 1.0 * period * slack && a.abs() <= 200.0 * period * slack, "{k}: {last:?} {now:?}");
-        // The mean velocity between two set-points lies between theirs, up to what the jerk bends it.
+        // The mean velocity between two set-points lies between theirs, up to the effect of the jerk.
         let mean = (now.x - last.x) / period;
         let bend = 200.0 * period * period;
         assert!(mean <= now.v.max(last.v) + bend && mean >= now.v.min(last.v) - bend, "{k}: {last:?} {now:?}");

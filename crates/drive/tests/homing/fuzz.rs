@@ -1,4 +1,4 @@
-//! Switches, pulses and a controlword gone mad.
+//! Random switches, pulses and controlwords.
 use crate::axis::PERIOD;
 use crate::methods::params;
 use servobench_base::Setpoint;
@@ -8,7 +8,7 @@ use servobench_drive::modes::homing::{Method, Params, State, step};
 use servobench_drive::modes::{Actual, Moment, Targets};
 use servobench_fuzz::{ValueGenerator, check, fuzz, produce};
 
-/// For so many steps the inputs with these bits.
+/// Number of steps, and the bits of the inputs and the controlword in them.
 type Act = (u8, u8, u16);
 
 fn acts() -> impl ValueGenerator<Output = Vec<Act>> {

@@ -1,4 +1,4 @@
-//! Homing: what every method finds on an ideal axis, against what manuals print of the profile's drawings.
+//! Homing: the reference of every method on an ideal axis, against the profile's drawings as printed in manuals.
 mod axis;
 mod bits;
 mod fuzz;

@@ -36,7 +36,7 @@ fn home(machine: &Machine, params: Params, at: f64) -> (Vec<Seen>, Axis<'_>) {
     panic!("{params:?} from {at} is still looking");
 }
 
-/// The machine that a row of the table is about, and the edge that it names.
+/// The machine for a row of the table, and the edge that the row names.
 fn machine(main: Main, width: f64) -> (Machine, f64) {
     let cam = Machine::with_home(0.2..=0.2 + width);
     match main {
@@ -49,7 +49,7 @@ fn machine(main: Main, width: f64) -> (Machine, f64) {
     }
 }
 
-/// The index of a switch in what [`Machine::switches`] says.
+/// Index of a switch in the result of [`Machine::switches`].
 fn signal(main: Main) -> usize {
     match main {
         Main::NegativeLimit => 0,
@@ -82,10 +82,10 @@ fn check(row: (i8, Main, Fine, LimitSwitch), width: f64, at: f64, jerk: Option<f
         }
     }
 
-    // Speeds: that for switches is reached and not passed on the way to the first edge, the reference is passed at that for zero.
+    // Speeds: the speed for switches is reached and not exceeded before the first edge; the reference is passed at the speed for zero.
     let peak = seen.iter().map(|seen| seen.demanded.v.abs()).fold(0.0, f64::max);
     assert!(peak <= SWITCH_SPEED * (1.0 + 1e-12), "{case}: {peak}");
-    // The room in which the axis gets to the speed for switches.
+    // The distance in which the axis reaches the speed for switches.
     let room = SWITCH_SPEED * SWITCH_SPEED / 2.0 + SWITCH_SPEED / 50.0;
     let meets = |k: &usize| machine.switches(seen[k - 1].at.x)[signal] != machine.switches(seen[*k].at.x)[signal];
     let passed = to.v.abs();
@@ -98,7 +98,7 @@ fn check(row: (i8, Main, Fine, LimitSwitch), width: f64, at: f64, jerk: Option<f
         assert_near(first.v.abs(), SWITCH_SPEED, 1e-12, &case);
     }
 
-    // Limit switches: only the one that the table names turns the axis round.
+    // Limit switches: only the one named in the table reverses the axis.
     let lowest = seen.iter().map(|seen| seen.at.x).fold(at, f64::min);
     let highest = seen.iter().map(|seen| seen.at.x).fold(at, f64::max);
     let may = (
@@ -139,8 +139,8 @@ fn a_switch_that_is_narrower_than_the_reversal_is_found_by_the_same_edge() {
     }
 }
 
-/// It still runs on as the demand turns round: what it passes then is passed in the wrong direction. By the width of the switch,
-/// that is its far edge, or is not.
+/// A lagging axis still moves on when the demand reverses: an edge passed then is passed in the wrong direction. The width of the switch
+/// decides if it is the far edge.
 #[test]
 fn an_axis_that_lags_behind_finds_the_same_edge() {
     for (number, main, fine, _) in published::TABLE {
@@ -193,7 +193,7 @@ fn a_limit_switch_that_the_method_does_not_expect_is_an_error() {
         (&bare, 4, Switch::PositiveLimit),
         (&bare, 5, Switch::NegativeLimit),
         (&bare, 6, Switch::NegativeLimit),
-        // Turned round at one end, it must find the switch before the other.
+        // Reversed at one end, the axis must find the switch before the other end.
         (&bare, 7, Switch::NegativeLimit),
         (&bare, 10, Switch::NegativeLimit),
         (&bare, 12, Switch::PositiveLimit),

@@ -1,4 +1,4 @@
-//! What the methods find, as published: Bonfiglioli, *Active Cube, application manual Positioning*, 04/08, table 5.2,
+//! References of the methods, as published: Bonfiglioli, *Active Cube, application manual Positioning*, 04/08, table 5.2,
 //! "Overview Table of Homing Types". Its "falling" and "rising edge" are those of the signal as the axis passes.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub(crate) enum Fine {
     Rising,
 }
 
-/// Which limit switch turns the axis round; the others must not be met.
+/// The limit switch that reverses the axis; the others must not be met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LimitSwitch {
     Unused,

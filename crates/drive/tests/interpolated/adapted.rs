@@ -1,4 +1,4 @@
-//! Sub-mode 0: a master whose clock is not the drive's.
+//! Sub-mode 0: a master whose clock differs from the drive's.
 use crate::axis::{Axis, PERIOD, assert_near, run};
 use servobench_cia402::interpolated::{SubMode, TimePeriod};
 use servobench_drive::modes::interpolated::DataRecord;
@@ -7,7 +7,7 @@ use servobench_testkit::Random;
 const POINTS: i32 = 10_000;
 const STEP: i32 = 100;
 
-/// A master that sends a point per period of its own clock, `late` of a period late at most.
+/// A master that sends a point per period of its own clock, late by at most the fraction `late` of a period.
 fn stream(units: u8, clock: f64, late: f64, seed: u64) {
     let mut random = Random::seeded(seed);
     let period = TimePeriod::new(units, -3).unwrap();

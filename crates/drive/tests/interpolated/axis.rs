@@ -1,4 +1,4 @@
-//! The mode over loops that do what they are asked, with a master that writes to the buffer between two steps.
+//! The mode over ideal loops, with a master that writes to the buffer between two steps.
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::{Point, SubMode, TimePeriod};
 use servobench_cia402::{Command, ControlBit, Controlword};
@@ -33,7 +33,7 @@ impl Axis {
         Self { params: params(sub_mode), state, buffer, last, answer }
     }
 
-    /// The mode takes over anew, at such a word.
+    /// Starts the mode anew with `word`.
     pub(crate) fn take_over(&mut self, word: Controlword) {
         self.state = State::begin(&moment(word, self.last));
     }
@@ -56,7 +56,7 @@ impl Axis {
         }
     }
 
-    /// Steps until the axis rests, the first of them with the move still up: every set-point.
+    /// Steps until the axis rests, the first one with the move still active; returns every set-point.
     pub(crate) fn until_rest(&mut self, word: Controlword) -> Vec<Setpoint> {
         let mut setpoints = vec![];
         for _ in 0..1_000_000 {

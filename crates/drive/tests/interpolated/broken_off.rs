@@ -1,11 +1,11 @@
-//! Moves that are broken off: by a master that stops sending, by clearing the buffer, by bit 4 and by halt.
+//! Aborted moves: by a master that stops sending, by clearing the buffer, by bit 4 and by halt.
 use crate::axis::{Axis, PERIOD, STOP, assert_near, cubic, idle, linear, run, whole};
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::{BufferError, Point, SubMode};
 use servobench_cia402::{ControlBit, Controlword};
 use servobench_drive::modes::interpolated::StartRefused;
 
-/// An accelerating move of whose points the last is missing: 10 ms each, 4 m/s² on average.
+/// An accelerating move whose last point is missing: 10 ms per segment, 4 m/s² on average.
 fn start() -> Axis {
     let mut axis = Axis::at(0, SubMode::Cubic);
     for k in 0..20 {
@@ -16,25 +16,25 @@ fn start() -> Axis {
     axis
 }
 
-/// From the set-point that the loops followed when the move was broken off to standstill, within the steepness of a stop.
+/// From the set-point of the loops at the abort to standstill, within the steepness of a stop.
 fn assert_stops(before: Setpoint, stop: &[Setpoint]) {
     let (a_max, j_max) = (STOP.acceleration, STOP.jerk.unwrap());
     let begin = before.after(PERIOD);
     let slack = 1.0 + 1e-9;
     let mut last = begin;
     for (k, now) in stop.iter().enumerate() {
-        // The first set-point of the stop is where the loops were going anyway.
+        // The first set-point of the stop is the continuation of the move.
         let period = if k == 0 { 0.0 } else { PERIOD };
         assert!(now.a.abs() <= a_max.max(begin.a.abs()) * slack, "{k}: {now:?}");
         assert!((now.a - last.a).abs() <= j_max * period * slack + 1e-12, "acceleration, {k}: {last:?} {now:?}");
-        // Trapezoids of rounded accelerations and velocities: what the jerk bends them is a period's.
+        // Trapezoids of rounded accelerations and velocities: the jerk bends them by that of a period.
         let bend = j_max * period * period;
         assert_near(now.v, last.v + 0.5 * period * (last.a + now.a), bend + 1e-12);
         assert_near(now.x, last.x + 0.5 * period * (last.v + now.v), (a_max * period + bend) * period + 1e-12);
         last = *now;
     }
     assert_eq!((last.v, last.a), (0.0, 0.0));
-    // No longer than the way of least jerk: to nothing but the steepness of the stop.
+    // No longer than the distance of least jerk: bounded by the steepness of the stop alone.
     let shortest = begin.v.abs() / a_max;
     let longest = shortest + 3.0 * a_max / j_max;
     let took = (stop.len() as f64 - 1.0) * PERIOD;
@@ -121,7 +121,7 @@ fn without_a_jerk_the_velocity_falls_linearly_at_once() {
     }
     let begin = axis.last.after(PERIOD);
     let stop = axis.until_rest(idle());
-    // v² / 2a, a period before which it is not seen to rest.
+    // v² / 2a, and a period before standstill is detected.
     let (a, v) = (STOP.acceleration, begin.v);
     assert_near(axis.last.x, begin.x + v * v / (2.0 * a), 1e-12);
     assert_near(stop.len() as f64 * PERIOD, v / a + PERIOD, PERIOD);

@@ -46,7 +46,7 @@ fn a_running_move_that_lost_a_point_ends_in_underflow_not_in_a_gap() {
     axis.add(&[linear(3200, 10), linear(3300, 10)]);
     assert_eq!(axis.buffer.add(linear(3400, 10)), Err(Refusal::Full));
     for _ in 0..33 * 40 {
-        // Whatever the master goes on sending.
+        // Whatever the master sends afterwards.
         assert_eq!(axis.buffer.add(linear(0, 10)), Err(Refusal::Latched { errors: 2 }));
         assert!(axis.answer.bit_12);
         axis.step(run());

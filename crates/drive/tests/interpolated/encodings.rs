@@ -4,7 +4,7 @@ use servobench_cia402::interpolated::{CAPACITY, Point, SubMode, TimePeriod};
 use servobench_drive::modes::interpolated::serial::{Port, SerialError};
 use servobench_drive::modes::interpolated::{Buffer, DataRecord, RecordError, StartRefused};
 
-/// What lies in the buffer, by moving an axis through it.
+/// Positions in the buffer, found by moving an axis through it.
 fn positions(buffer: &Buffer, sub_mode: SubMode) -> Vec<f64> {
     let mut axis = Axis::at(0, sub_mode);
     axis.buffer = *buffer;
@@ -87,7 +87,7 @@ fn a_move_through_the_serial_interface() {
     }
     assert!(!axis.answer.bit_12 && axis.errors() == 0);
 
-    // Clearing is what clears errors here.
+    // Here, clearing the buffer clears errors.
     port.command(&mut axis.buffer, 17).unwrap();
     axis.step(idle());
     assert_eq!(axis.errors(), 4);

@@ -1,4 +1,4 @@
-//! Random words and bytes into every object and parameter that takes points, and a controlword gone mad.
+//! Random words and bytes into every object and parameter that takes points, and random controlwords.
 use crate::axis::Axis;
 use servobench_cia402::Controlword;
 use servobench_cia402::interpolated::{CAPACITY, SegmentCommand, SubMode, TimePeriod};
@@ -6,7 +6,7 @@ use servobench_drive::modes::interpolated::DataRecord;
 use servobench_drive::modes::interpolated::serial::Port;
 use servobench_fuzz::{ValueGenerator, check, fuzz, produce};
 
-/// What a master may do between two steps.
+/// Action of a master between two steps.
 #[derive(Debug, Clone)]
 enum Act {
     Segment([u8; 8]),
@@ -23,7 +23,7 @@ fn acts() -> impl ValueGenerator<Output = Vec<Act>> {
     produce::<Vec<Raw>>().with().len(0..60_usize).map_gen(|raw| raw.into_iter().map(act).collect())
 }
 
-/// Half of what is sent is sensible, so that moves come about.
+/// Makes an action of random numbers, half of them sensible, so that moves happen.
 fn act((kind, bytes, values, word): Raw) -> Act {
     match kind % 10 {
         0 => Act::Segment(bytes),

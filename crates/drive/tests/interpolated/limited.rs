@@ -1,4 +1,4 @@
-//! The highest velocity (6080h): points that ask for more are reached later.
+//! The highest velocity (6080h): points that require more are reached later.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, linear, run, whole};
 use servobench_cia402::interpolated::{Point, SubMode};
 use servobench_drive::modes::interpolated::Params;
@@ -42,8 +42,8 @@ fn a_move_goes_on_until_its_last_point_is_reached() {
     assert!(axis.answer.target_reached && !axis.state.is_following());
 }
 
-/// Points of any times, ways and velocities, and any highest one: it is not passed, nothing jumps, and every move ends at its last
-/// point. A move that is nowhere limited is that of a drive without a limit, bit for bit.
+/// Points with any times, distances and velocities, and any highest velocity: it is not exceeded, nothing jumps, and every move ends at
+/// its last point. A move that is nowhere limited equals that of a drive without a limit, bit for bit.
 #[test]
 fn no_points_make_the_demand_jump_or_pass_the_highest_velocity() {
     let mut random = Random::seeded(11);

@@ -1,4 +1,4 @@
-//! Interpolated position: moves through the trajectory buffer, and what goes wrong with it.
+//! Interpolated position: moves through the trajectory buffer, and its errors.
 
 mod adapted;
 mod axis;

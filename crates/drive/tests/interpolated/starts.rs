@@ -1,4 +1,4 @@
-//! Where a move begins, by sub-mode.
+//! Start of a move, by sub-mode.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run};
 use servobench_cia402::interpolated::{Point, SegmentCommand, SubMode, TimePeriod};
 use servobench_drive::modes::interpolated::StartRefused;
@@ -92,7 +92,7 @@ fn sub_mode_0_empties_the_buffer_and_waits_for_three_points() {
     }
     assert_near(axis.last.x, 100.0 * COUNT, 1e-15);
 
-    // Taken back while it waits, it does not begin.
+    // Cancelled while it waits, the move does not begin.
     let mut axis = Axis::at(0, SubMode::LinearAdapted);
     axis.step(run());
     axis.step(idle());

@@ -1,4 +1,4 @@
-//! A long move, streamed by a master that comes when it can.
+//! A long move, streamed by a master with irregular cycles.
 use crate::axis::{Axis, COUNT, PERIOD, assert_near, cubic, idle, linear, run, whole};
 use servobench_cia402::interpolated::{BufferError, Point, SegmentCommand, SubMode};
 use servobench_motion::pvt::{Knot, Table};
@@ -6,7 +6,7 @@ use servobench_testkit::Random;
 
 const POINTS: usize = 10_000;
 
-/// The points in SI, as a table counts them: from the position at which the move is started, in absolute times.
+/// The points in SI, as in a table: relative to the position at the start of the move, at absolute times.
 fn knots(points: &[Point], origin: i32) -> Vec<Knot> {
     let (mut position, mut time) = (origin, 0_u32);
     let knot = |point: &Point| {
@@ -42,7 +42,7 @@ fn move_along_sines(random: &mut Random) -> Vec<Point> {
     points
 }
 
-/// A master that wakes every 20 ms and up to 100 ms late, and sends no more than there is room for.
+/// A master that wakes every 20 ms, up to 100 ms late, and sends no more points than the buffer has room for.
 struct Master<'a> {
     points: &'a [Point],
     sent: usize,
@@ -56,7 +56,7 @@ impl Master<'_> {
             return;
         }
         self.wakes += 0.02 + 0.1 * self.random.unit();
-        // 2012h is all that it knows of the buffer: free places, and the number of the next segment.
+        // The master knows the buffer by 2012h only: free places, and the number of the next segment.
         let free = usize::try_from(axis.buffer.status() >> 16 & 0xFF).unwrap();
         for point in self.points.iter().skip(self.sent).take(free) {
             let counter = axis.buffer.status().to_le_bytes()[0] & 7;
@@ -109,7 +109,7 @@ fn a_master_that_comes_late_keeps_ten_thousand_points_flowing() {
 
 #[test]
 fn linear_points_and_cubic_ones_mix_as_in_a_table() {
-    // The first one is approached by nothing: its velocity is what a cubic begins with.
+    // No segment leads to the first point: a cubic begins with its velocity.
     for (first, second) in
         [(None, None), (Some(1_000_000), None), (Some(1_000_000), Some(-400_000)), (None, Some(-400_000))]
     {

@@ -4,10 +4,10 @@
 //! ω(k) = (θ_e(k) − θ_e(k−1))/(t_e(k) − t_e(k−1))          an edge in the cycle
 //! |ω(k)| = min(|ω(k−1)|, q/(t(k) − t_e(k)))                none
 //! ```
-//! θ_e is where the last edge before the cycle k was, t_e when, in periods τ of a timer. The travel between two edges is whole
-//! increments and known exactly, so that only the timer errs: by less than a period at both ends together, |Δω|/ω ≤ τ/(t_m − τ) for
-//! the measured time t_m, which is longer than T less one increment's time. A difference of positions errs by up to q/T at every speed. Without
-//! an edge the motor cannot have passed a whole increment q since the last one.
+//! θ_e is the position and t_e the time of the last edge before cycle k, in periods τ of a timer. The travel between two edges is a whole
+//! number of increments and known exactly, so that only the timer errs: by less than a period at both ends together, |Δω|/ω ≤ τ/(t_m − τ)
+//! for the measured time t_m, which is longer than T less one increment's time. A difference of positions errs by up to q/T at every speed.
+//! Without an edge the motor cannot have travelled a whole increment q since the last one.
 //! Source: Ohmae, Matsuda, Kamiyama, Tachikawa, *A microprocessor-controlled high-accuracy wide-range speed regulator for motor drives*,
 //! IEEE Transactions on Industrial Electronics 29(3), 1982. The bound without an edge: by hand.
 use super::Edge;
@@ -26,7 +26,7 @@ servobench_config::parameters! {
     }
 }
 
-/// Constant during a run.
+/// Parameters; constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Period of the timer τ (s).
@@ -40,7 +40,7 @@ pub struct Params {
 pub struct State {
     /// Cycles so far.
     cycles: u64,
-    /// Where the last edge was and when, in periods of the timer.
+    /// Position of the last edge, and its time in periods of the timer.
     last: Option<(f64, f64)>,
     velocity: f64,
 }
@@ -54,7 +54,7 @@ impl Params {
     }
 }
 
-/// The velocity at a cycle, `h` (s) after the last one, of a motor at `position`; zero until there have been two edges.
+/// Velocity in a cycle, `h` (s) after the last one, of a motor at `position`; zero until there have been two edges.
 pub fn step(p: &Params, x: &mut State, position: f64, edge: Option<Edge>, h: f64) -> f64 {
     let now = x.cycles as f64 * h;
     x.cycles += 1;
@@ -64,7 +64,7 @@ pub fn step(p: &Params, x: &mut State, position: f64, edge: Option<Edge>, h: f64
         x.last = Some((place, time));
         return 0.0;
     };
-    // An edge is as old as a cycle by rounding at most; one that is older is that of the last cycle if it is in the same place.
+    // Only by rounding is a new edge as old as a cycle; an older one in the same place is the edge of the last cycle.
     let is_new = (place - last_place).abs() > p.step / 2.0 || edge.age < h * (1.0 - 1e-9);
     if is_new {
         x.velocity = (place - last_place) / ((time - last_time).max(1.0) * p.timer);
@@ -85,8 +85,8 @@ mod tests {
     const Q: f64 = core::f64::consts::TAU / 4096.0;
     const P: Params = Params { timer: 100e-9, step: Q };
 
-    /// What an encoder of the increment Q tells at `t` of the position `x(t)`, whose edges are at (n + 1/2)·Q: by bisection of the
-    /// last cycle of an encoder that has been read at every T.
+    /// Reading of an encoder of increment Q at `t` for the position `x(t)`, with edges at (n + 1/2)·Q: found by bisection of the last
+    /// cycle, for an encoder read at every T.
     struct Encoder<F: Fn(f64) -> f64> {
         x: F,
         edge: Option<(f64, f64)>,
@@ -99,7 +99,7 @@ mod tests {
             Self { x, edge: None, last }
         }
 
-        /// Of a motion in one direction within the cycle.
+        /// Reads the encoder; the motion keeps its direction within the cycle.
         fn read(&mut self, t: f64) -> (f64, Option<Edge>) {
             let at = (self.x)(t);
             let (now, before) = ((at / Q).round(), (self.last / Q).round());
@@ -129,8 +129,8 @@ mod tests {
         (0..cycles).map(cycle).collect()
     }
 
-    /// Oracle: |Δω|/ω ≤ τ/(t_m − τ) with t_m of as many whole increments as pass in T, or of one: the times of two edges are each rounded
-    /// down by less than τ. The bound is not idle: a third of it is reached. At speeds off any grid, from one edge in three cycles on.
+    /// Oracle: |Δω|/ω ≤ τ/(t_m − τ), where t_m spans the whole increments that pass in T, or one: the times of two edges are each rounded
+    /// down by less than τ. The bound is not idle: a third of it is reached. Speeds are off any grid, from one edge in three cycles up.
     #[test]
     fn it_errs_by_the_timer_alone() {
         for omega in [5.237_f64, -13.71, 24.913, 101.77, -377.31] {
@@ -142,14 +142,14 @@ mod tests {
             let worst = found[20..].iter().map(|v| (v / omega - 1.0).abs()).fold(0.0, f64::max);
             // 4e4 cycles are 5 s: rounding of the time is 1e-9 periods of the timer.
             assert!(worst <= bound * (1.0 + 1e-6) && worst > bound / 3.0, "{omega}: {worst} {bound}");
-            // A difference errs by the fraction of an increment that passes in a cycle, or what is left to a whole one.
+            // A difference errs by the fraction of an increment that passes in a cycle, or its complement.
             let passed = (T / per_edge).fract();
             let of_differences = passed.max(1.0 - passed) * Q / T / omega.abs();
             assert!(of_differences > 20.0 * worst, "{omega}: {worst} {of_differences}");
         }
     }
 
-    /// Oracle: by hand. After a stop the speed falls as one increment over the time since the last edge.
+    /// Oracle: by hand. After a stop the measured speed falls as one increment over the time since the last edge.
     #[test]
     fn without_an_edge_it_is_bounded_by_one_increment() {
         let omega = 31.7;
@@ -163,7 +163,7 @@ mod tests {
         assert!((found[790] / omega - 1.0).abs() < 2e-3);
     }
 
-    /// An edge that is passed back and forth is no motion.
+    /// An edge that is passed back and forth is not a motion.
     #[test]
     fn to_and_fro_over_one_edge_is_no_velocity() {
         let amplitude = 0.2 * Q;
@@ -172,7 +172,7 @@ mod tests {
         assert!(velocities(|_| 0.1, 50).iter().all(|v| *v == 0.0));
     }
 
-    /// Oracle: the mean of the speed between the edges, of a ramp: that of their middle.
+    /// Oracle: of a ramp, the mean speed between the edges is that at their middle.
     #[test]
     fn a_ramp_is_measured_between_its_edges() {
         let acceleration = 731.0;
@@ -180,7 +180,7 @@ mod tests {
         for (k, v) in found.iter().enumerate().skip(1_000) {
             let t = k as f64 * T;
             let late = (acceleration * t - v) / acceleration;
-            // The middle of two edges is from T/2 to T/2 and the time between two edges before the cycle.
+            // The middle of two edges lies T/2 before the cycle, or earlier by up to the time between two edges.
             let per_edge = Q / (acceleration * t);
             assert!(
                 late > T / 2.0 - P.timer * t / T * 2.0 && late < T / 2.0 + per_edge + P.timer * t / T * 2.0,

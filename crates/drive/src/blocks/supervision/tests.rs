@@ -46,7 +46,7 @@ fn winding_and_current_have_their_thresholds() {
     }
 }
 
-/// Oracle: 17 ms are 136 cycles, at the 136th it is found, and a cycle that moves begins anew.
+/// Oracle: 17 ms are 136 cycles, the finding comes at the 136th, and a cycle with motion restarts the count.
 #[test]
 fn a_stall_has_to_last() {
     let p = Params { stall: Some(Stall { speed: 0.3, time: 17e-3 }), ..Params::default() };
@@ -86,14 +86,14 @@ fn commutation(way: impl Iterator<Item = (f64, f64)>) -> Option<usize> {
     None
 }
 
-/// What accelerates, brakes, turns round or is driven by less current than counts is not a fault; what runs away is.
+/// Accelerating, braking, reversing, or being driven under a current below the threshold is not a fault; running away is.
 #[test]
 fn speed_gained_against_the_current_is_a_fault() {
     let line = |from: f64, step: f64, q: f64| (0..200).map(move |k| (from + step * f64::from(k), q));
     assert_eq!(commutation(line(0.0, 1.0, 9.0)), None, "accelerates");
     assert_eq!(commutation(line(150.0, -1.0, -9.0)), None, "brakes and turns round");
     assert_eq!(commutation(line(0.0, 1.0, -3.9)), None, "friction or weight, at a small current");
-    // From rest on a cycle of -1 rad/s is the first against the current: 20 more.
+    // From rest, the cycle at -1 rad/s is the first against the current: 20 more.
     assert_eq!(commutation(line(0.0, -1.0, 9.0)), Some(21), "runs away");
     assert_eq!(commutation(line(70.0, 0.5, -4.0)), Some(40));
     // Braking down to 30 first, and then faster again.
@@ -101,7 +101,7 @@ fn speed_gained_against_the_current_is_a_fault() {
     assert_eq!(commutation(way.map(|v| (v, -8.0))), Some(41 + 20));
 }
 
-/// A trapped motor gains 13 rad/s and loses them again in each swing; a braking one that a spring drives loses more than it gains.
+/// A trapped motor gains 13 rad/s and loses them again in each swing; a braking one driven by a spring loses more than it gains.
 #[test]
 fn speed_gained_in_swings_is_a_fault() {
     let swing = |mean: f64, slope: f64, size: f64| {
@@ -115,8 +115,8 @@ fn speed_gained_in_swings_is_a_fault() {
     assert_eq!(commutation(swing(900.0, 900.0, 9.5)), None, "brakes, on a spring");
 }
 
-/// Cycles after which a phase is found lost, of a reference of `length` (A) that goes on by so many turns per cycle, with what the motor
-/// makes of it.
+/// Cycles until a lost phase is found, for a reference of `length` (A) that advances by `turn` turns per cycle, with the current that the
+/// motor makes of it.
 fn phases(length: f64, turn: f64, made: fn(AlphaBeta) -> AlphaBeta) -> Option<u32> {
     let p = Params { phases: Some(Phases { current: 1.3, time: 10e-3 }), ..Params::default() };
     let mut x = State::default();
@@ -129,7 +129,7 @@ fn phases(length: f64, turn: f64, made: fn(AlphaBeta) -> AlphaBeta) -> Option<u3
     })
 }
 
-/// Oracle: 80 cycles with a reference of 1.3 A or more in that leg; at 5 A it has that for 1 − 2·asin(1.3/5)/π of a turn.
+/// Oracle: 80 cycles with a reference of 1.3 A or more in that leg; at 5 A the reference is that large for 1 − 2·asin(1.3/5)/π of a turn.
 #[test]
 fn a_leg_without_the_current_that_it_is_to_have_is_a_lost_phase() {
     for turn in [0.0, 1.0 / 731.0, -1.0 / 97.3, 0.031] {
@@ -141,7 +141,7 @@ fn a_leg_without_the_current_that_it_is_to_have_is_a_lost_phase() {
     for turn in [1.0 / 97.3, 0.031] {
         let share = 1.0 - 2.0 / core::f64::consts::PI * (1.3_f64 / 5.0).asin();
         let found = f64::from(phases(5.0, turn, without_a).unwrap());
-        // At most what a crossing of zero takes, earlier or later.
+        // At most the duration of a zero crossing, earlier or later.
         assert!((found - 80.0 / share).abs() < (1.0 - share) / turn + 2.0, "{turn}: {found}");
     }
     assert_eq!(phases(1.29, 0.01, |_| AlphaBeta::default()), None, "less than what counts");
@@ -150,7 +150,7 @@ fn a_leg_without_the_current_that_it_is_to_have_is_a_lost_phase() {
     assert!(phases(5.0, 1.0 / 97.3, without_c).is_some());
 }
 
-/// An increment of a coarse encoder to and fro asks for 5 A up and down in turn, which no loop can follow; the mean flows.
+/// An increment of a coarse encoder to and fro demands 5 A up and down in turn, which no loop can follow; the mean flows.
 #[test]
 fn a_reference_to_and_fro_is_not_a_lost_phase() {
     let found = |mean: f64, flows: f64| {

@@ -2,7 +2,7 @@
 use super::*;
 use crate::current::{Gains, voltage_limit};
 
-/// The 2.2 kW motor; `r` of 0 is none.
+/// The 2.2 kW motor with the resistance `r`.
 fn motor(r: f64, d: f64, q: f64, flux_linkage: f64) -> MotorEstimate {
     MotorEstimate { electrical_ratio: 3.0, resistance: r, inductance: Dq { d, q }, flux_linkage }
 }
@@ -24,8 +24,8 @@ fn salient(max_current: f64) -> Loop {
     drive(motor(LOSSLESS, 36e-3, 51e-3, 0.545), Strategy::Mtpa, max_current, 540.0)
 }
 
-/// Oracle: the closed form ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + i²/2), either saliency; 0 without. By effort it is the
-/// same point, and ±0.1 % of the angle take more current.
+/// Oracle: the closed form ψ/(4(L_q − L_d)) − √(ψ²/(16(L_q − L_d)²) + i²/2), either saliency; 0 without. By effort it is the same point,
+/// and ±0.1 % of the angle take more current.
 #[test]
 fn mtpa_is_the_closed_form() {
     for (d, q) in [(36e-3, 51e-3), (12e-3, 55.3e-3), (51e-3, 36e-3), (40e-3, 40e-3), (40e-3, 40.000_001e-3)] {
@@ -55,7 +55,7 @@ fn mtpa_is_the_closed_form() {
     }
 }
 
-/// Oracle: below the base speed, where |u| of the MTPA point is U, all of its torque is there; i_d is that of MTPA.
+/// Oracle: below the base speed, where |u| of the MTPA point is U, all of its torque is available; i_d is that of MTPA.
 #[test]
 fn below_base_speed_there_is_all_torque_at_mtpa() {
     let p = salient(9.12);
@@ -86,7 +86,7 @@ fn the_corner_of_circle_and_ellipse_is_the_closed_form() {
         let d = (-b + (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
         let exact = torque(&p.motor, Dq { d, q: (9.12 * 9.12 - d * d).sqrt() });
         let found = Envelope::new(&p, &State::default(), omega).forward;
-        // What is left of the golden section is 4e-9 of the current limit's width, on either side of a corner.
+        // The remaining interval of the golden section is 4e-9 of the current limit's width, on either side of a corner.
         assert!(
             (found.d - d).abs() < 1e-7 && (found.effort / exact - 1.0).abs() < 1e-7,
             "{omega}: {found:?} {d} {exact}"
@@ -94,8 +94,8 @@ fn the_corner_of_circle_and_ellipse_is_the_closed_form() {
     }
 }
 
-/// Oracle: Morimoto's closed form of the maximum torque per voltage, which is inside the circle where ψ/L_d < I_max and the speed is
-/// high: i_d = −ψ/L_d + Δ, Δ = (L_q·ψ − √((L_q·ψ)² + 8·(L_q − L_d)²·(U/ω)²))/(4·L_d·(L_q − L_d)).
+/// Oracle: Morimoto's closed form of maximum torque per voltage, which lies inside the circle where ψ/L_d < I_max and the speed is high:
+/// i_d = −ψ/L_d + Δ, Δ = (L_q·ψ − √((L_q·ψ)² + 8·(L_q − L_d)²·(U/ω)²))/(4·L_d·(L_q − L_d)).
 #[test]
 fn at_infinite_speed_it_is_the_most_torque_per_voltage() {
     let (l_d, l_q, psi) = (36e-3_f64, 51e-3_f64, 0.545_f64);
@@ -109,20 +109,20 @@ fn at_infinite_speed_it_is_the_most_torque_per_voltage() {
         assert!(d.hypot(q) < 19.7, "{omega}: inside of the circle");
         let found = Envelope::new(&p, &State::default(), omega).backward;
         let exact = torque(&p.motor, Dq { d, q });
-        // At a smooth maximum the torque is exact to the square of what i_d is not.
+        // At a smooth maximum the error of the torque is of second order in that of i_d.
         assert!(
             (found.effort / exact - 1.0).abs() < 1e-9 && (found.d - d).abs() < 1e-6,
             "{omega}: {found:?} {d} {exact}"
         );
     }
-    // Without saliency the most is straight above the centre.
+    // Without saliency the maximum is straight above the centre.
     let round = drive(motor(LOSSLESS, 36e-3, 36e-3, psi), Strategy::Mtpa, 19.7, 540.0);
     let found = Envelope::new(&round, &State::default(), 3_000.0).forward;
     let exact = 1.5 * 3.0 * psi * round.max_voltage / 3_000.0 / 36e-3;
     assert!((found.effort / exact - 1.0).abs() < 1e-9 && (found.d + psi / 36e-3).abs() < 1e-6, "{found:?}");
 }
 
-/// Oracle: a grid over all currents within circle and ellipse, with resistance; and the speed beyond which nothing is left.
+/// Oracle: a grid over all currents within circle and ellipse, with resistance.
 #[test]
 fn with_resistance_it_is_the_best_of_a_grid() {
     for (strategy, max_current) in [(Strategy::Mtpa, 9.12), (Strategy::Mtpa, 19.7), (Strategy::DReference, 14.0)] {
@@ -152,7 +152,7 @@ fn with_resistance_it_is_the_best_of_a_grid() {
     }
 }
 
-/// Every effort that there is is given, within both limits, and continuously.
+/// Every effort within the envelope is reached, within both limits, and continuously.
 #[test]
 fn every_effort_within_the_envelope_is_given_within_both_limits() {
     for (strategy, max_current) in [(Strategy::Mtpa, 9.12), (Strategy::Mtpa, 19.7), (Strategy::DReference, 14.0)] {
@@ -160,7 +160,7 @@ fn every_effort_within_the_envelope_is_given_within_both_limits() {
         for omega in [0.0, 310.0, 560.0, -700.0, 1_100.0, -2_300.0] {
             let envelope = Envelope::new(&p, &State::default(), omega);
             let EffortLimits { forward, backward } = envelope.limits();
-            // Beyond the last speed no current is within both: see below.
+            // Beyond the last speed no current is within both limits: see below.
             let is_possible = forward > 0.0 || backward > 0.0;
             let mut last: Option<f64> = None;
             for k in 0..=400 {
@@ -172,7 +172,7 @@ fn every_effort_within_the_envelope_is_given_within_both_limits() {
                 let u = p.motor.steady_voltage(i, omega).magnitude();
                 assert!(!is_possible || u <= p.max_voltage * (1.0 + 1e-6), "{omega} {effort}: {u} {}", p.max_voltage);
                 if let Some(last) = last {
-                    // At the peak of a smooth envelope i_d goes as the root of what is left of the effort, a 400th.
+                    // At the peak of a smooth envelope i_d goes as the root of the remaining effort, a 400th.
                     assert!((i.d - last).abs() < 0.1 * max_current, "{omega} {effort}: {} from {last}", i.d);
                 }
                 last = Some(i.d);
@@ -183,7 +183,7 @@ fn every_effort_within_the_envelope_is_given_within_both_limits() {
     }
 }
 
-/// Oracle: ω where the voltage is U at i_q = 0 and i_d = −I_max: (R·I)² + ω²·(ψ − L_d·I)² = U². Beyond it nothing is left.
+/// Oracle: ω at which the voltage is U with i_q = 0 and i_d = −I_max: (R·I)² + ω²·(ψ − L_d·I)² = U². Beyond it no effort is left.
 #[test]
 fn beyond_the_last_speed_nothing_is_left() {
     let p = drive(motor(3.6, 36e-3, 51e-3, 0.545), Strategy::Mtpa, 9.12, 540.0);
@@ -197,14 +197,14 @@ fn beyond_the_last_speed_nothing_is_left() {
     assert!((i.d + 9.12).abs() < 1e-12 && i.q.abs() < 1e-12, "{i:?}");
 }
 
-/// A reluctance motor of 6.7 kW without magnets, either axis being the one of the larger inductance.
+/// A reluctance motor of 6.7 kW without magnets; either axis may have the larger inductance.
 fn reluctance(r: f64, d: f64, q: f64) -> Loop {
     let motor = MotorEstimate { electrical_ratio: 2.0, ..motor(r, d, q, 0.0) };
     drive(motor, Strategy::Mtpa, 31.0, 540.0)
 }
 
-/// Oracle: τ = K·(L_d − L_q)·i_d·i_q is largest for a current at 45°: |i_d| = |i_q| = √(|τ|/(K·|L_d − L_q|)), i_d with the sign of
-/// L_d − L_q and i_q with that of τ. No torque takes no current, nor does one whose square is below the smallest number.
+/// Oracle: τ = K·(L_d − L_q)·i_d·i_q is largest for a current at 45°: |i_d| = |i_q| = √(|τ|/(K·|L_d − L_q|)), i_d with the sign of L_d −
+/// L_q and i_q with that of τ. Zero torque takes no current, nor does a torque whose square underflows.
 #[test]
 fn a_motor_without_magnets_has_both_currents_alike() {
     for (l_d, l_q) in [(41.5e-3, 6.2e-3), (6.2e-3, 41.5e-3)] {
@@ -226,14 +226,14 @@ fn a_motor_without_magnets_has_both_currents_alike() {
             for nothing in [0.0, -0.0] {
                 assert_eq!(envelope.currents(&p, nothing).magnitude().to_bits(), 0.0_f64.to_bits());
             }
-            // Field weakening finds a d-axis current that suffices by halving what the limit allows.
+            // Field weakening finds a sufficient d-axis current by bisection from the limit.
             assert!(envelope.currents(&p, 1e-200).magnitude() < 31.0 * 0.5_f64.powi(35));
         }
     }
 }
 
-/// Oracles, without resistance: the corner of circle and ellipse, L_d²·i_d² + L_q²·(I² − i_d²) = (U/ω)²; from where it is inside of the
-/// circle the most torque per voltage, L_d·|i_d| = L_q·|i_q| = U/(√2·ω). With the smaller inductance in d that is less i_d than at rest.
+/// Oracles, without resistance: the corner of circle and ellipse, L_d²·i_d² + L_q²·(I² − i_d²) = (U/ω)²; once it is inside the circle,
+/// maximum torque per voltage, L_d·|i_d| = L_q·|i_q| = U/(√2·ω). With the smaller inductance in d that is less i_d than at rest.
 #[test]
 fn the_field_of_a_motor_without_magnets_is_weakened_to_its_voltage() {
     let (most, ratio) = (31.0_f64, 1.5 * 2.0);
@@ -265,7 +265,7 @@ fn the_field_of_a_motor_without_magnets_is_weakened_to_its_voltage() {
     }
 }
 
-/// Without magnets the d axis needs a current for the effort that the strategy gives; without saliency there is none.
+/// Without magnets the d axis needs a current for an effort; without saliency there is none.
 #[test]
 fn a_motor_without_any_torque_is_refused() {
     let p = reluctance(0.54, 41.5e-3, 6.2e-3);
@@ -280,7 +280,7 @@ fn a_motor_without_any_torque_is_refused() {
     }
 }
 
-/// Oracle: dU/dt = α·(U − |u|): what exceeds it by 10 V for 3 ms at 20 Hz takes 10·2π·20·3e-3 V; it never rises above 0 and ends at
+/// Oracle: dU/dt = α·(U − |u|): an excess of 10 V for 3 ms at 20 Hz takes 10·2π·20·3e-3 V; the correction never rises above 0 and ends at
 /// half.
 #[test]
 fn the_feedback_lowers_the_voltage_and_gives_it_back() {

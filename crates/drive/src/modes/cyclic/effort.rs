@@ -1,11 +1,11 @@
-//! Cyclic synchronous torque (cst): the effort goes linearly to the sum of target (6071h) and offset (60B2h) within a cycle.
+//! Cyclic synchronous torque (cst): the effort approaches the sum of target (6071h) and offset (60B2h) linearly within a cycle.
 use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
 use servobench_base::Stateful;
 
-/// How the drive interpolates.
+/// Interpolation of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Params {
     /// Steps of the drive per cycle.
@@ -20,14 +20,14 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on with the effort that the motor gives until the first target.
+    /// Continues with the present effort of the motor until the first target.
     #[must_use]
     pub const fn begin(now: &Moment) -> Self {
         Self { effort: Linear::resting(now.actual.effort), progress: Progress { steps: 0 } }
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
     if event != CycleEvent::Between {

@@ -1,18 +1,18 @@
 //! Cyclic synchronous position (csp).
 //!
-//! A target is the sum of target position (607Ah) and position offset (60B0h). Between two targets the position is that of
-//! [`interpolate`](servobench_motion::interpolate), in one of three ways:
+//! A target is the sum of target position (607Ah) and position offset (60B0h). The position between two targets follows
+//! [`interpolate`](servobench_motion::interpolate), in one of three modes:
 //!
-//! | interpolation | by | target reached after |
+//! | interpolation | from | target reached after |
 //! |---|---|---|
 //! | linear | the targets | a cycle |
 //! | cubic | the targets, and the velocity offsets (60B1h) as their velocities | a cycle |
-//! | cubic B-spline | the targets as control points | two cycles; passed by in a curve |
+//! | cubic B-spline | the targets as control points | two cycles; passed at a distance, in a curve |
 //!
-//! The targets may ask for no more than the highest velocity: what is beyond is cut, and the drive says so (bit 11). A cubic
-//! that would pass it between two targets is replaced by the line. A B-spline needs no such watch: its velocity is a mean of the
-//! slopes between its control points, with weights that are not negative. It could not be replaced either, as the line from the
-//! last target is a cycle ahead of it. What rounding makes of a velocity just at the limit is not beyond it.
+//! The highest velocity limits the targets: an excess is cut, and the drive reports it (bit 11). A cubic that would exceed it between two
+//! targets is replaced by the line. A B-spline needs no such check: its velocity is a mean of the slopes between its control points, with
+//! nonnegative weights. It could not be replaced either, as the line from the last target is a cycle ahead of it. Rounding of a velocity
+//! exactly at the limit does not count as an excess.
 use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::CycleEvent;
@@ -21,7 +21,7 @@ use crate::modes::{Answer, Moment};
 use servobench_base::{ParamError, Setpoint, Stateful, limit};
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 
-/// How the drive interpolates.
+/// Interpolation of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Linear, cubic or cubic B-spline.
@@ -51,10 +51,10 @@ impl Params {
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
-    /// The last targets, the newest last: as many as the interpolation needs.
+    /// Last targets, the newest last: as many as the interpolation needs.
     points: [Sample; 4],
     has_begun: bool,
-    /// Set-point at the beginning of the cycle; its derivatives hold for all of it.
+    /// Set-point at the beginning of the cycle; its derivatives hold for the whole cycle.
     start: Setpoint,
     progress: Progress,
     velocity_offset: Linear,
@@ -63,8 +63,8 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on as before until the first target. The offsets begin with those of the frame before: a master that tells the velocity
-    /// of an axis that moves when it is enabled has it at once, not a cycle later.
+    /// Continues the present motion until the first target. The offsets begin with those of the previous frame: a velocity offset sent for
+    /// an axis that moves when it is enabled applies at once, not a cycle later.
     #[must_use]
     pub const fn begin(p: &Params, now: &Moment) -> Self {
         let start = Setpoint { x: now.demanded.x, v: now.demanded.v, ..Setpoint::at_rest(0.0) };
@@ -79,13 +79,13 @@ impl State {
         }
     }
 
-    /// Whether the last target asked for more than the highest velocity.
+    /// True if the last target exceeded the highest velocity.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
 
-    /// The next cycle goes to `target`.
+    /// Heads for `target` in the next cycle.
     fn go_to(&mut self, p: &Params, cycle: f64, target: Sample) {
         let [_, b, c, d] = self.points;
         let way = target.x - d.x;
@@ -102,10 +102,10 @@ impl State {
         self.progress = Progress::default();
     }
 
-    /// The beginning of the way between the targets.
+    /// Set-point at the beginning of the path between the targets.
     fn along(&self, mode: Mode, cycle: f64) -> Option<Setpoint> {
         if mode == Mode::Linear {
-            // The same as below in a tenth of the time.
+            // Same result as below in a tenth of the time.
             let [.., from, to] = self.points;
             return Some(Setpoint { v: (to.x - from.x) / cycle, ..Setpoint::at_rest(from.x) });
         }
@@ -113,7 +113,7 @@ impl State {
         interval.at(0.0).ok().map(|command| command.setpoint)
     }
 
-    /// Lays the targets before the first one so that every interpolation begins where the axis is, at its velocity.
+    /// Sets the targets before the first one so that every interpolation begins at the position and velocity of the axis.
     fn lay(&mut self, cycle: f64, now: Setpoint, mode: Mode) {
         let sample = |cycles: f64| Sample { x: now.x + cycles * cycle * now.v, v: now.v, ..Sample::default() };
         self.points = match mode {
@@ -125,7 +125,7 @@ impl State {
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
     let cycle = f64::from(p.steps) * now.period;

@@ -1,12 +1,12 @@
-//! Cyclic synchronous velocity (csv): the velocity goes linearly to the sum of target (60FFh) and offset (60B1h) within a
-//! cycle. Its slope is there for the feedforward.
+//! Cyclic synchronous velocity (csv): the velocity approaches the sum of target (60FFh) and offset (60B1h) linearly within a cycle. Its
+//! slope is available to the feedforward.
 use super::{Linear, Progress};
 use crate::Demand;
 use crate::device::CycleEvent;
 use crate::modes::{Answer, Moment};
 use servobench_base::{Setpoint, Stateful};
 
-/// How the drive interpolates.
+/// Interpolation of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Steps of the drive per cycle.
@@ -25,7 +25,7 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on as before until the first target.
+    /// Continues the present motion until the first target.
     #[must_use]
     pub const fn begin(now: &Moment) -> Self {
         Self {
@@ -36,14 +36,14 @@ impl State {
         }
     }
 
-    /// Whether the last target asked for more than the highest velocity.
+    /// True if the last target exceeded the highest velocity.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment, event: CycleEvent) -> Answer {
     let targets = &now.targets;

@@ -1,4 +1,4 @@
-//! A leg of a search: in which direction, how fast, and until when.
+//! A leg of a search: its direction, its speed and its end.
 use crate::modes::Actual;
 use core::fmt;
 use servobench_base::Stateful;
@@ -10,12 +10,12 @@ pub enum Switch {
     NegativeLimit,
     /// At the positive end of the axis, on from there outwards.
     PositiveLimit,
-    /// Between them: on over a part of the way, or from one point to an end.
+    /// Between them: on over a part of the travel, or from one point to an end.
     Home,
 }
 
 impl Switch {
-    /// Whether it is on.
+    /// True if the switch is on.
     #[must_use]
     pub const fn is_on(self, actual: &Actual) -> bool {
         match self {
@@ -64,7 +64,7 @@ impl Direction {
         }
     }
 
-    /// The limit switch at the end that it leads to.
+    /// Limit switch at the end in this direction.
     #[must_use]
     pub const fn limit_switch(self) -> Switch {
         match self {
@@ -74,18 +74,18 @@ impl Direction {
     }
 }
 
-/// What ends a leg.
+/// Event that ends a leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// The switch of the method goes on.
+    /// The switch of the method turns on.
     On,
-    /// The switch of the method goes off.
+    /// The switch of the method turns off.
     Off,
     /// An index pulse comes.
     Index,
 }
 
-/// Which of the homing speeds (6099h) the axis travels at.
+/// Homing speed (6099h) of a leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Speed {
     /// During search for switch (6099h.1).
@@ -97,11 +97,11 @@ pub enum Speed {
 /// A leg of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Leg {
-    /// Where to.
+    /// Direction.
     pub direction: Direction,
-    /// Until when. An event counts only while the axis moves in the direction of the leg.
+    /// End of the leg. An event counts only while the axis moves in the direction of the leg.
     pub until: Event,
-    /// How fast.
+    /// Speed.
     pub speed: Speed,
 }
 

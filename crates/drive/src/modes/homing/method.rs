@@ -1,12 +1,13 @@
-//! The methods of 6098h as data: which legs lead from where the axis starts to its reference.
+//! The methods of 6098h as data: the legs from the start of the axis to its reference.
 //!
-//! Methods 17 to 30 are 1 to 14 without the index pulse. Methods 1 to 14 are rows of (switch, direction ahead, edge), and an
-//! edge is one of four as the axis meets them on its way ahead: it goes on at the near edge of a switch and off at the far one,
-//! each sought in one of the two directions.
+//! Methods 17 to 30 are 1 to 14 without the index pulse. Methods 1 to 14 are rows of (switch, direction ahead, edge). There are four edges,
+//! as the axis meets them in the direction ahead: the switch turns on at its near edge and off at its far one, each sought in one of the
+//! two
+//! directions.
 //!
-//! The last leg finds the reference, at the speed for zero; those before it are for the switch. An edge that is the reference is
-//! met at the speed for the switch, as the drawing of the profile has it, and then passed at that for zero: where it was met in the
-//! direction in which it is sought, the axis goes back first. So what is found does not depend on where the axis started.
+//! The last leg finds the reference, at the speed for zero; those before it use the speed for the switch. An edge that is the reference is
+//! met at the speed for the switch, as in the drawing of the profile, and then passed at that for zero: if it was met in the direction in
+//! which it is sought, the axis first goes back. So the result does not depend on the start of the axis.
 use super::leg::{Direction, Event, Leg, Speed, Switch};
 use servobench_base::Stateful;
 use thiserror::Error;
@@ -23,7 +24,7 @@ pub struct Method {
 
 servobench_base::saved_as!(Method: i8, Method::number, |number| Self::from_number(number).ok());
 
-/// A value of 6098h that is no method here.
+/// A value of 6098h that is not a supported method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("homing method (6098h) must be one of 1 to 14, 17 to 30, 33, 34, 35 and 37, got {number}")]
 pub struct UnknownMethod {
@@ -31,7 +32,7 @@ pub struct UnknownMethod {
     pub number: i8,
 }
 
-/// Where the axis is as the search begins, or begins anew.
+/// Start of a search, or of its repetition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Start {
     /// The switch of the method is off.
@@ -46,7 +47,7 @@ impl Method {
     /// The method with this number.
     ///
     /// # Errors
-    /// [`UnknownMethod`] for numbers that the profile reserves, and for the manufacturer's below zero.
+    /// [`UnknownMethod`] for numbers that the profile reserves, and for manufacturer-specific ones below zero.
     pub fn from_number(number: i8) -> Result<Self, UnknownMethod> {
         match number {
             1..=14 => Ok(Self::by_switch(number, number, true)),
@@ -78,20 +79,20 @@ impl Method {
         self.number
     }
 
-    /// The switch that the axis looks for.
+    /// Switch that the axis searches for.
     #[must_use]
     pub const fn switch(&self) -> Option<Switch> {
         self.switch
     }
 
-    /// Whether a limit switch that comes on the first leg turns the axis round; otherwise it ends the search.
+    /// True if a limit switch met on the first leg reverses the axis; otherwise it ends the search.
     #[must_use]
     pub const fn turns_at_limit(&self) -> bool {
         self.turns_at_limit
     }
 
-    /// Leg `number` from `start`, counted from 0; `None` behind the last. The event that ends the last one is the reference; without a
-    /// leg the axis is there.
+    /// Leg `number` from `start`, counted from 0; `None` behind the last. The event that ends the last leg is the reference; without legs,
+    /// the present position is.
     #[must_use]
     pub fn leg(&self, start: Start, number: usize) -> Option<Leg> {
         let stages = match start {
@@ -109,21 +110,21 @@ impl Method {
     }
 }
 
-/// An edge of a switch, as the axis meets them on its way ahead, and in which direction it is passed.
+/// An edge of a switch, as the axis meets it in the direction ahead, and the direction in which it is passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Edge {
-    /// The near edge, passed on the way back: the switch goes off.
+    /// The near edge, passed in the direction back: the switch turns off.
     NearBack,
-    /// The near edge, passed on the way ahead: the switch goes on.
+    /// The near edge, passed in the direction ahead: the switch turns on.
     NearAhead,
-    /// The far edge, passed on the way back: the switch goes on.
+    /// The far edge, passed in the direction back: the switch turns on.
     FarBack,
-    /// The far edge, passed on the way ahead: the switch goes off.
+    /// The far edge, passed in the direction ahead: the switch turns off.
     FarAhead,
 }
 
-/// Methods 1 to 14: the switch, the first direction of an axis that is not on it, the edge, and whether a limit switch turns
-/// the axis round before it.
+/// Methods 1 to 14: the switch, the first direction of an axis that is not on it, the edge, and true if a limit switch met before it
+/// reverses the axis.
 const BY_SWITCH: [(Switch, Direction, Edge, bool); 14] = [
     (Switch::NegativeLimit, Direction::Negative, Edge::NearBack, false),
     (Switch::PositiveLimit, Direction::Positive, Edge::NearBack, false),
@@ -141,7 +142,7 @@ const BY_SWITCH: [(Switch, Direction, Edge, bool); 14] = [
     (Switch::Home, Direction::Negative, Edge::FarAhead, true),
 ];
 
-/// Direction of a leg against the first direction of the method.
+/// Direction of a leg relative to the first direction of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turn {
     Ahead,
@@ -150,7 +151,7 @@ enum Turn {
 
 type Stage = (Turn, Event);
 
-/// What to do from each start.
+/// Legs from each start.
 #[derive(Debug, PartialEq, Eq)]
 struct Sequence {
     off: &'static [Stage],
@@ -169,7 +170,7 @@ const HERE: Sequence = Sequence { off: &[], on: &[], at_limit: &[] };
 const INDEX: Sequence = Sequence { off: &[AHEAD_INDEX], on: &[AHEAD_INDEX], at_limit: &[] };
 
 impl Edge {
-    /// To the edge, or past it to the first index pulse behind it.
+    /// Legs to the edge, or past it to the first index pulse behind it.
     const fn sequence(self, with_index: bool) -> &'static Sequence {
         match (self, with_index) {
             (Self::NearBack, true) => &Sequence {

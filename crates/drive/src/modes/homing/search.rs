@@ -1,11 +1,11 @@
-//! A search under way: the leg that the axis is on, and what its switches and the index pulse say of it.
+//! Progress of a search: the present leg, and its evaluation of switches and index pulse.
 use super::Params;
 use super::leg::{Direction, Event, Leg, Switch};
 use super::method::{Method, Start};
 use crate::modes::{Actual, Moment};
 use servobench_base::Stateful;
 
-/// Where a search is.
+/// Progress of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) struct Search {
     method: Method,
@@ -15,25 +15,25 @@ pub(super) struct Search {
     was_on: bool,
 }
 
-/// What a look says.
+/// Result of a step of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Finding {
-    /// This leg goes on, or has just begun.
+    /// This leg continues, or has just begun.
     Leg(Leg),
     /// The reference is at this position.
     Reference(f64),
-    /// A limit switch came that the method does not expect.
+    /// A limit switch was met that the method does not expect.
     Limit(Switch),
 }
 
 impl Search {
-    /// From where the axis is.
+    /// Begins a search at the present position.
     pub(super) fn begin(method: Method, actual: &Actual) -> Self {
         let was_on = method.switch().is_some_and(|switch| switch.is_on(actual));
         Self { method, start: if was_on { Start::On } else { Start::Off }, leg: 0, was_on }
     }
 
-    /// Anew from where the axis is.
+    /// Restarts the search at the present position.
     pub(super) fn restart(&mut self, actual: &Actual) {
         *self = Self::begin(self.method, actual);
     }
@@ -69,8 +69,8 @@ impl Search {
     }
 }
 
-/// Whether the axis moves in a direction: it is asked to, and is not seen to go back as one that lags behind does. What noise makes
-/// of the slowest motion counts as no motion back.
+/// True if the axis moves in a direction: by its demand, unless it is measured moving back, as a lagging axis may. Velocity noise in the
+/// slowest motion does not count as moving back.
 fn moves(params: &Params, moment: &Moment, direction: Direction) -> bool {
     let sign = direction.sign();
     moment.demanded.v * sign > 0.0 && moment.actual.velocity * sign > -0.5 * params.zero_speed

@@ -1,19 +1,19 @@
-//! The trajectory buffer: 32 points, what went wrong with them, and the two words in which a master reads that.
+//! The trajectory buffer: 32 points, their latched errors, and the status words for the master.
 use servobench_base::Stateful;
 use servobench_cia402::interpolated::{BufferError, CAPACITY, Point, SegmentCommand};
 use thiserror::Error;
 
-/// A point on its way out of the buffer, or a place from which the next relative one counts.
+/// A point in the buffer, or a base from which the next relative one counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) enum Entry {
     Point(Point),
     Base(i32),
 }
 
-/// Why nothing was added to the buffer.
+/// Cause of a refused addition to the buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// There is no room; latched.
+    /// The buffer is full; latched.
     #[error(
         "the trajectory buffer holds {CAPACITY} points and is full: read the free count (2011h) before sending more"
     )]
@@ -31,12 +31,12 @@ pub enum Refusal {
         "a point was lost before (errors {errors:#04x}): clear the errors and send again from the one that was lost"
     )]
     Latched {
-        /// Errors that are latched, as in the highest byte of 2012h.
+        /// Latched errors, as in the highest byte of 2012h.
         errors: u8,
     },
 }
 
-/// The buffer. It outlives the moves: points are added before one is started, and while it runs.
+/// The trajectory buffer. It outlives the moves: points are added before one is started, and while it is active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct Buffer {
     entries: [Entry; CAPACITY],
@@ -66,12 +66,12 @@ impl Buffer {
     /// Adds a point.
     ///
     /// # Errors
-    /// [`Refusal`] when there is no room, which is latched, and after a point was lost.
+    /// [`Refusal`] if the buffer is full, which is latched, and after a lost point.
     pub fn add(&mut self, point: Point) -> Result<(), Refusal> {
         self.push(Entry::Point(point))
     }
 
-    /// Does what a move segment command (2010h) says.
+    /// Executes a move segment command (2010h).
     ///
     /// # Errors
     /// [`Refusal`] of a point.
@@ -102,7 +102,7 @@ impl Buffer {
         Ok(())
     }
 
-    /// Adds an entry that says which one it is by the lowest three bits of its number.
+    /// Adds an entry, checked by the lowest three bits of its number.
     fn push_numbered(&mut self, counter: u8, entry: Entry) -> Result<(), Refusal> {
         let expected = self.next_segment.to_le_bytes()[0] & 7;
         if counter != expected && self.errors & BufferError::Overflow as u8 == 0 {
@@ -112,13 +112,13 @@ impl Buffer {
         self.push(entry)
     }
 
-    /// Empties the buffer and aborts the move, if one runs. Errors stay latched.
+    /// Empties the buffer and aborts an active move. Errors stay latched.
     pub fn clear(&mut self) {
         self.flush();
         self.is_aborted = true;
     }
 
-    /// Takes back the `number` points that were added last, all where there are fewer. The move goes on with those that are left.
+    /// Removes the last `number` points, or all if there are fewer. The move continues with the rest.
     pub fn remove(&mut self, number: u8) {
         self.count = self.count.saturating_sub(number.into());
     }
@@ -134,13 +134,13 @@ impl Buffer {
         CAPACITY - self.count
     }
 
-    /// Whether the error is latched.
+    /// True if the error is latched.
     #[must_use]
     pub const fn has(&self, error: BufferError) -> bool {
         self.errors & error as u8 != 0
     }
 
-    /// Number of the segment that is expected next (2013h).
+    /// Expected number of the next segment (2013h).
     #[must_use]
     pub const fn next_segment(&self) -> u16 {
         self.next_segment
@@ -150,7 +150,7 @@ impl Buffer {
     ///
     /// | bits | |
     /// |---|---|
-    /// | 0–15 | number of the segment that is expected next |
+    /// | 0–15 | expected number of the next segment |
     /// | 16–23 | free places |
     /// | 24, 25, 26 | sequence error, overflow, underflow |
     /// | 31 | empty |
@@ -186,7 +186,7 @@ impl Buffer {
         })
     }
 
-    /// Whether the buffer was cleared since the last look.
+    /// Returns true once if the buffer was cleared since the last call.
     pub(super) const fn take_abort(&mut self) -> bool {
         core::mem::replace(&mut self.is_aborted, false)
     }

@@ -1,4 +1,4 @@
-//! The course of a move: from point to point, as they come out of the buffer.
+//! Trajectory of a move: from point to point, in the order of the buffer.
 //!
 //! The polynomials are those of [`Table`](servobench_motion::pvt::Table), formed one at a time:
 //!
@@ -6,10 +6,10 @@
 //! with h the time of the segment, s = (P1 − P0)/h:    linear  v = s    cubic  a0 = 2(3s − 2V0 − V1)/h,  j = 6(V0 + V1 − 2s)/h²
 //! ```
 //!
-//! A cubic segment behind a linear one begins with the velocity of that; behind a first point without a velocity, at rest.
+//! A cubic segment behind a linear one begins with its velocity; behind a first point without a velocity, at rest.
 //!
-//! No segment is faster than the highest velocity: one that is too long ends before its point, and the next one makes up for it as
-//! far as it can, behind the last point a line that leads there; a cubic that would be too fast between its ends is a line.
+//! No segment exceeds the highest velocity: one that is too long ends before its point, and the next one catches up as far as it can;
+//! behind the last point a line leads there. A cubic that would be too fast between its ends is replaced by a line.
 use super::Params;
 use super::buffer::{Buffer, Entry};
 use crate::modes::reach::Reach;
@@ -27,7 +27,7 @@ pub(super) struct Knot {
     point: Point,
 }
 
-/// The next point of the buffer; a relative one counts from `origin` (counts).
+/// Next point of the buffer; a relative one counts from `origin` (counts).
 pub(super) fn next_knot(buffer: &mut Buffer, mut origin: i64) -> Option<Knot> {
     loop {
         match buffer.pop()? {
@@ -40,48 +40,48 @@ pub(super) fn next_knot(buffer: &mut Buffer, mut origin: i64) -> Option<Knot> {
     }
 }
 
-/// The segment under way.
+/// The present segment.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Course {
-    /// State at the beginning of the segment, and the derivatives that hold for all of it.
+    /// State at the beginning of the segment, with the derivatives for the whole segment.
     start: Setpoint,
-    /// Time since then (s).
+    /// Time since the beginning (s).
     passed: f64,
     duration: f64,
     end: Knot,
-    /// How far before that point the segment ends (m or rad): not zero where it could not get there in time.
+    /// Distance from the end of the segment to its point (m or rad): not zero if the point could not be reached in time.
     left: f64,
-    /// Whether it is slower than the points ask for.
+    /// True if the segment is slower than the points request.
     is_limited: bool,
 }
 
-/// What a step of the course comes to.
+/// Result of a step of the trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Step {
-    /// The set-point of now.
+    /// Present set-point.
     Along(Setpoint),
-    /// The last point is reached: where, and at what velocity.
+    /// The last point is reached, with this position and velocity.
     Ended(Setpoint),
-    /// The next point is not there.
+    /// The next point is missing.
     Starved,
 }
 
-/// How long segments of constant time last in the end.
+/// Actual duration of segments of constant time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(super) enum Pace {
-    /// As long as the points say.
+    /// As given by the points.
     Given,
     /// A period of the drive less or more, so that the buffer holds [`HELD`] points as a segment begins.
     Adapted,
 }
 
-/// Points that sub-mode 0 waits for, and keeps in the buffer.
+/// Number of points that sub-mode 0 waits for, and keeps in the buffer.
 pub(super) const HELD: usize = 3;
 
 impl Course {
-    /// From a first point on, which lasts until the second; `None` without that.
+    /// Trajectory from a first point, which lasts until the second; `None` without a second one.
     ///
-    /// The axis sets out from where it is, within a count of the first point.
+    /// The axis starts at its present position, within a count of the first point.
     pub(super) fn from_knot(first: Knot, at: f64, p: &Params, buffer: &mut Buffer) -> Option<Self> {
         let v = first.velocity(p.count).unwrap_or(0.0);
         let start = Setpoint { v, ..Setpoint::at_rest(at) };
@@ -89,13 +89,13 @@ impl Course {
         Some(Self::segment(start, first.duration(), end, p, end.offset(at, p.count)))
     }
 
-    /// From where the axis is to the first point in a constant time (s).
+    /// Trajectory from the present position to the first point in a constant time (s).
     pub(super) fn approach(at: f64, counts: i64, duration: f64, p: &Params, buffer: &mut Buffer) -> Option<Self> {
         let end = next_knot(buffer, counts)?;
         Some(Self::segment(Setpoint::at_rest(at), duration, end, p, end.offset(at, p.count)))
     }
 
-    /// From `start` to `end`, which is `distance` away, as far as the highest velocity allows.
+    /// Segment from `start` to `end`, which is `distance` away, as far as the highest velocity allows.
     fn segment(start: Setpoint, duration: f64, end: Knot, p: &Params, distance: f64) -> Self {
         let reach = Reach::new(p.velocity, duration, start.x.abs() + distance.abs());
         let cut = reach.cut(distance);
@@ -117,17 +117,17 @@ impl Course {
         Self { start, passed: 0.0, duration, end, left, is_limited: cut.is_some() || is_slower }
     }
 
-    /// The first set-point.
+    /// First set-point.
     pub(super) const fn start(&self) -> Setpoint {
         self.start
     }
 
-    /// Whether the highest velocity makes it slower than the points ask for.
+    /// True if the highest velocity makes the trajectory slower than the points request.
     pub(super) const fn is_limited(&self) -> bool {
         self.is_limited
     }
 
-    /// One period of the drive on.
+    /// Advances by one period of the drive.
     pub(super) fn step(&mut self, period: f64, p: &Params, pace: Pace, buffer: &mut Buffer) -> Step {
         self.passed += period;
         while self.passed >= self.duration {
@@ -152,21 +152,21 @@ impl Course {
         Step::Along(self.start.after(self.passed))
     }
 
-    /// Where the segment ends, and at what velocity.
+    /// Position and velocity at the end of the segment.
     fn reached(&self, count: f64) -> Setpoint {
         let x = self.end.counts as f64 * count - self.left;
         let asked = self.end.velocity(count).filter(|_| !self.is_limited);
         Setpoint { v: asked.unwrap_or_else(|| self.start.after(self.duration).v), ..Setpoint::at_rest(x) }
     }
 
-    /// What is left of the way to the last point, from `x` on at the highest velocity.
+    /// Line over the remaining distance to the last point, from `x` on at the highest velocity.
     fn rest(&self, x: f64, p: &Params) -> Self {
         let start = Setpoint { v: p.velocity.copysign(self.left), ..Setpoint::at_rest(x) };
         Self { start, duration: self.left.abs() / p.velocity, left: 0.0, ..*self }
     }
 }
 
-/// A period shorter when more points than [`HELD`] wait, a period longer when fewer do.
+/// Duration, shorter by a period if more points than [`HELD`] wait, longer by a period if fewer do.
 fn adapted(duration: f64, waiting: usize, period: f64) -> f64 {
     match waiting.cmp(&HELD) {
         core::cmp::Ordering::Less => duration + period,
@@ -176,12 +176,12 @@ fn adapted(duration: f64, waiting: usize, period: f64) -> f64 {
 }
 
 impl Knot {
-    /// How far the point is from `at`.
+    /// Distance of the point from `at`.
     fn offset(&self, at: f64, unit: f64) -> f64 {
         self.counts as f64 * unit - at
     }
 
-    /// Whether the move ends there.
+    /// True if the move ends at this point.
     pub(super) const fn is_last(&self) -> bool {
         self.point.time == 0
     }

@@ -7,7 +7,7 @@ use servobench_base::Stateful;
 use servobench_cia402::interpolated::{Point, SubMode, TimePeriod};
 use thiserror::Error;
 
-/// Why a write to the data record was refused.
+/// Cause of a refused write to the data record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum RecordError {
     /// 60C1h has no such sub-index, or the sub-mode does not use it.
@@ -27,12 +27,12 @@ pub enum RecordError {
         /// Rejected value.
         value: i32,
     },
-    /// The buffer did not take the point.
+    /// The buffer refused the point.
     #[error(transparent)]
     Refused(#[from] Refusal),
 }
 
-/// The data record (60C1h): what was written to it.
+/// The data record (60C1h), as written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct DataRecord {
     position: i32,
@@ -40,8 +40,8 @@ pub struct DataRecord {
 }
 
 impl DataRecord {
-    /// Writes `value` to `sub_index`: 1 position (counts), 2 time (ms), 3 velocity (0.1 counts/s). The write that the sub-mode
-    /// names adds the point to the buffer.
+    /// Writes `value` to `sub_index`: 1 position (counts), 2 time (ms), 3 velocity (0.1 counts/s). The write to the last sub-index of the
+    /// sub-mode adds the point to the buffer.
     ///
     /// # Errors
     /// [`RecordError`] for a sub-index that the sub-mode does not use, a time beyond its range, and a point that the buffer

@@ -1,7 +1,6 @@
-//! The serial interface as the drive has it: parameters 115h and C8h, and the start move command.
+//! Serial interface of the drive: parameters 115h and C8h, and the start move command.
 //!
-//! Trajectory mode 3 (C8h), PVT, is the one that there is. The interface has no other way to clear latched errors than to clear
-//! the buffer.
+//! Only trajectory mode 3 (C8h), PVT, is supported. The interface can clear latched errors only by clearing the buffer.
 use super::buffer::{Buffer, Refusal};
 use servobench_base::Stateful;
 use servobench_cia402::interpolated::serial::{
@@ -9,16 +8,16 @@ use servobench_cia402::interpolated::serial::{
 };
 use thiserror::Error;
 
-/// Why a message was refused.
+/// Cause of a refused message.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum SerialError {
-    /// No such parameter here.
+    /// An unsupported parameter.
     #[error("parameter {parameter:#05x} is not known here: {TRAJECTORY_MODE:#05x} and {TRAJECTORY_BUFFER:#05x} are")]
     Parameter {
         /// Rejected parameter.
         parameter: u16,
     },
-    /// No such command here.
+    /// An unsupported command.
     #[error("op-code {op_code} is not known here: {START_MOVE}, start move, is")]
     OpCode {
         /// Rejected op-code.
@@ -29,35 +28,35 @@ pub enum SerialError {
     Mode {
         /// Rejected word.
         word: u16,
-        /// Number of values behind it.
+        /// Number of values behind the word.
         values: usize,
     },
     /// A move is started before its mode is selected.
     #[error("start move (op-code {START_MOVE}): write {PVT}, PVT, to the trajectory mode (C8h) first")]
     NoMode,
-    /// What was written to 115h is malformed.
+    /// A malformed record was written to 115h.
     #[error("point {record}: {error}")]
     Record {
         /// Number of the record, from 0.
         record: usize,
-        /// What is wrong with it.
+        /// Error in the record.
         error: RecordError,
     },
-    /// The buffer did not take the point.
+    /// The buffer refused the point.
     #[error(transparent)]
     Refused(#[from] Refusal),
 }
 
-/// What the interface remembers.
+/// State of the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Port {
     is_pvt: bool,
-    /// Records that came before, by whose number a malformed one is named.
+    /// Number of records so far, which identifies a malformed one.
     records: usize,
 }
 
 impl Port {
-    /// Does what a message says.
+    /// Executes a message.
     ///
     /// # Errors
     /// [`SerialError`], as [`write`](Self::write) and [`command`](Self::command).
@@ -71,7 +70,7 @@ impl Port {
     /// Writes a parameter: its first word, and the values behind it.
     ///
     /// # Errors
-    /// [`SerialError`] says which word or value, and what is allowed.
+    /// [`SerialError`] names the word or value, and the allowed ones.
     pub fn write(&mut self, buffer: &mut Buffer, parameter: u16, word: u16, values: &[i32]) -> Result<(), SerialError> {
         match parameter {
             TRAJECTORY_MODE if word == PVT && values.is_empty() => self.is_pvt = true,
@@ -94,10 +93,10 @@ impl Port {
         Ok(())
     }
 
-    /// Does what an op-code says.
+    /// Executes an op-code.
     ///
     /// # Errors
-    /// [`SerialError`] for one that is not known, and for a start without the mode.
+    /// [`SerialError`] for an unknown op-code, and for a start before the mode is selected.
     pub fn command(&self, buffer: &mut Buffer, op_code: u8) -> Result<(), SerialError> {
         match op_code {
             START_MOVE if self.is_pvt => {

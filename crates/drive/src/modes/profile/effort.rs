@@ -1,11 +1,11 @@
-//! Profile torque (tq): the effort goes linearly to its target (6071h) by the torque slope (6087h). The target is reached (bit
-//! 10) when the demand is there.
+//! Profile torque (tq): the effort ramps to its target (6071h) at the torque slope (6087h). The target is reached (bit 10) when the demand
+//! equals it.
 use super::slopes::Slopes;
 use crate::Demand;
 use crate::modes::{Answer, Moment};
 use servobench_base::Stateful;
 
-/// The slope.
+/// Parameters of the mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Torque slope (6087h), a magnitude (N·m/s or N/s); infinite for a step.
@@ -20,14 +20,14 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on from the effort that the motor gives.
+    /// Continues from the present effort of the motor.
     #[must_use]
     pub const fn begin(now: &Moment) -> Self {
         Self { effort: now.actual.effort }
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: Params, x: &mut State, now: &Moment) -> Answer {
     let effort = x.effort;

@@ -5,25 +5,25 @@
 //! | | bit | |
 //! |---|---|---|
 //! | controlword | 4, new set-point | its rising edge gives the target position with the profile of the frame |
-//! | | 5, change set immediately | the set-point replaces the one under way and the one that waits |
+//! | | 5, change set immediately | the set-point replaces the active and the waiting one |
 //! | | 6, relative | the target is a distance from the target before it (60F2h = 0) |
-//! | | 9, change on set-point | the axis does not stop on the set-point under way but goes on at its profile velocity, and to this one from there |
-//! | statusword | 10, target reached | the axis has been within the position window (6067h) for its time (6068h) and nothing waits |
-//! | | 12, set-point acknowledge | set when a set-point is taken; cleared when bit 4 is cleared and another one would be taken |
+//! | | 9, change on set-point | the axis passes the active set-point at its profile velocity, without a stop, and continues to this one |
+//! | statusword | 10, target reached | the axis has been within the position window (6067h) for its time (6068h) and no set-point waits |
+//! | | 12, set-point acknowledge | set when a set-point is accepted; cleared when bit 4 is cleared and another one would be accepted |
 //!
-//! One set-point may wait while another one is under way. One more is not taken: it is not acknowledged by a cleared bit 12, and
-//! the edge is lost. While the axis is halted nothing is taken, but bit 12 falls as ever. Afterwards the move goes on, and an edge is
-//! taken whose bit 4 is still set.
+//! One set-point may wait while another one is active. A further one is not accepted: bit 12 was not cleared to invite it, and the edge is
+//! lost. While the axis is halted no set-point is accepted, but bit 12 falls as usual. Afterwards the move continues, and an edge whose bit
+//! 4 is still set is accepted.
 //!
-//! On an axis whose positions repeat an absolute target is at the end of a [`Turn`] from where the axis is asked to be, or, for a
-//! set-point that has to wait, from the target before it. With a direction of its own (60F2h) a target may be too near for a moving
-//! axis to stop there: it is passed, and come back to.
+//! On an axis whose positions repeat, an absolute target is at the end of a [`Turn`] from the demanded position, or, for a set-point that
+//! has to wait, from the target before it. With a prescribed direction (60F2h) a target may be too close for a moving axis to stop there:
+//! the axis passes it, and comes back.
 //!
-//! # The way
+//! # The profile
 //!
-//! Ramps are linear or jerk-limited (6086h), from whatever the axis is doing. Speeding up is by the profile's acceleration, slowing
-//! down by its deceleration. A target is passed at the end velocity (6082h), at less where the way is too short for it, and a
-//! set-point without a stop (bit 9) in the same way at the profile velocity: no axis turns back to gain a run-up.
+//! Ramps are linear or jerk-limited (6086h), from any state of motion. The profile's acceleration applies while the speed rises, its
+//! deceleration while it falls. A target is passed at the end velocity (6082h), or slower if the distance is too short for it, and a
+//! set-point without a stop (bit 9) likewise at the profile velocity: the axis never turns back to gain a run-up.
 mod set_point;
 mod turn;
 
@@ -39,18 +39,18 @@ use set_point::SetPoint;
 
 pub use turn::Turn;
 
-/// What does not come with a set-point.
+/// Settings that do not come with a set-point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     /// Motion profile type (6086h).
     pub ramp: Ramp,
-    /// Velocity with which a target is passed (6082h), a magnitude; zero for a stop there.
+    /// Velocity at which a target is passed (6082h), a magnitude; zero to stop there.
     pub end_velocity: f64,
     /// Position window and time (6067h, 6068h).
     pub window: Window,
     /// Lowest and highest target (607Dh).
     pub range: Option<[f64; 2]>,
-    /// How an absolute target is reached on an axis whose positions repeat; `None` straight.
+    /// Path to an absolute target on an axis whose positions repeat; `None` for the direct one.
     pub turn: Option<Turn>,
 }
 
@@ -78,13 +78,13 @@ fn asks(now: &Moment) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     way: Option<Way>,
-    /// Where the axis is held without a way.
+    /// Position at which the axis is held without a profile.
     rest: f64,
     active: Option<SetPoint>,
     waiting: Option<SetPoint>,
-    /// Whether the active set-point is passed on the way to the one that waits.
+    /// True if the active set-point is passed without a stop on the way to the waiting one.
     is_passed: bool,
-    /// Where a relative set-point counts from.
+    /// Origin of a relative set-point.
     target: f64,
     handshake: Handshake,
     within_window: Dwell,
@@ -92,7 +92,7 @@ pub struct State {
 }
 
 impl State {
-    /// Stops an axis that moves and waits for a set-point: a bit 4 that is set already gives none.
+    /// Stops a moving axis and waits for a set-point: a bit 4 that is already set gives none.
     #[must_use]
     pub fn begin(p: &Params, now: &Moment) -> Self {
         let mut state = Self {
@@ -110,7 +110,7 @@ impl State {
         state
     }
 
-    /// Goes on after a halt, from what is left of the motion.
+    /// Continues after a halt, from the remaining motion.
     pub fn resume(&mut self, p: &Params, now: &Moment) {
         (self.way, self.rest) = (None, now.demanded.x);
         match self.active {
@@ -119,7 +119,7 @@ impl State {
         }
     }
 
-    /// A step of a halt; whether the last set-point is acknowledged. A bit 4 that is cleared is seen, one that is set waits for
+    /// Executes a step of a halt; returns true if the last set-point is acknowledged. A cleared bit 4 is registered, a set one waits for
     /// the end of the halt.
     pub fn halted(&mut self, now: &Moment) -> bool {
         self.handshake.asks &= asks(now);
@@ -127,14 +127,14 @@ impl State {
         self.handshake.acknowledges
     }
 
-    /// Ends the acknowledgement when bit 4 is cleared and another set-point would be taken.
+    /// Ends the acknowledgement when bit 4 is cleared and another set-point would be accepted.
     const fn release(&mut self) {
         if !self.handshake.asks && self.waiting.is_none() {
             self.handshake.acknowledges = false;
         }
     }
 
-    /// Sets out for standstill, which is the target then.
+    /// Begins to brake to standstill, which becomes the target.
     fn stop(&mut self, p: &Params, now: &Moment) {
         let brake = SetPoint::at(now.demanded.x, &now.targets);
         if let Ok(transition) = brake.plan(p, &now.demanded, &Target::Velocity(0.0)) {
@@ -143,13 +143,13 @@ impl State {
         }
     }
 
-    /// Whether the last target was cut to the software limits, or could not be planned.
+    /// True if the last target was cut to the software limits, or could not be planned.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
 
-    /// A set-point was given.
+    /// Accepts a new set-point.
     fn take(&mut self, p: &Params, now: &Moment) {
         let targets = &now.targets;
         let has = |bit| targets.controlword.has(bit);
@@ -178,7 +178,7 @@ impl State {
         }
     }
 
-    /// Sets out for the active set-point. When no way can be planned the axis goes on as it did, and the drive says so.
+    /// Heads for the active set-point. If no profile can be planned, the axis continues unchanged and the drive reports a limit.
     fn go_to(&mut self, p: &Params, active: &SetPoint, from: &Setpoint) {
         self.within_window = Dwell::default();
         let most = if self.is_passed { active.velocity } else { p.end_velocity.min(active.velocity) };
@@ -191,7 +191,7 @@ impl State {
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     let asked_before = core::mem::replace(&mut x.handshake.asks, asks(now));

@@ -1,6 +1,6 @@
 //! Linear ramps.
 
-/// How fast a value may change (unit of the value per second), magnitudes.
+/// Largest rates of change of a value (unit of the value per second), magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slopes {
     /// Away from zero.
@@ -10,10 +10,9 @@ pub(super) struct Slopes {
 }
 
 impl Slopes {
-    /// Where a value is a `period` (s) later on its way to `target`. On the way through zero the slope changes there, not at
-    /// the next step.
+    /// Value after a `period` (s) on the ramp to `target`. On a ramp through zero the slope changes there, not at the next step.
     pub(super) fn next(&self, value: f64, target: f64, period: f64) -> f64 {
-        // In the direction in which the value is, or goes when it is nothing.
+        // Sign of the value, or of its target when the value is zero.
         let sign = if value == 0.0 { target.signum() } else { value.signum() };
         let (now, goal) = (sign * value, sign * target);
         let next = if goal >= now {

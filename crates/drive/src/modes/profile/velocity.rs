@@ -1,13 +1,13 @@
-//! Profile velocity (pv): the velocity goes to its target (60FFh) by the profile's acceleration (6083h) away from zero and by its
+//! Profile velocity (pv): the velocity approaches its target (60FFh) at the profile's acceleration (6083h) away from zero and at its
 //! deceleration (6084h) towards zero, linearly or jerk-limited (6086h).
 //!
-//! | bit | is set |
+//! | bit | set |
 //! |---|---|
 //! | 10, target reached | while the velocity has been within its window (606Dh) around the target for the time 606Eh |
 //! | 12, speed | unless the velocity has been above its threshold (606Fh) for the time 6070h: the axis stands |
-//! | 13, maximum slippage | never: there is none |
+//! | 13, maximum slippage | never: not supported |
 //!
-//! A target beyond the highest velocity is approached as far as that (bit 11).
+//! A target beyond the highest velocity is cut to it (bit 11).
 use super::Ramp;
 use super::slopes::Slopes;
 use super::way::Way;
@@ -17,7 +17,7 @@ use crate::modes::{Answer, Moment};
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition};
 
-/// Highest velocity (m/s or rad/s) that a way is planned with when there is no limit.
+/// Highest velocity (m/s or rad/s) of a plan without a limit.
 const UNLIMITED: f64 = 1e30;
 
 /// Ramps, limit and windows.
@@ -38,11 +38,10 @@ pub struct Params {
 pub struct State {
     /// Velocity of the next step, on linear ramps.
     velocity: f64,
-    /// The way to the target, on jerk-limited ones, and what it was planned for: the bits of target, acceleration and
-    /// deceleration.
+    /// Profile to the target, if jerk-limited, and the basis of its plan: the bits of target, acceleration and deceleration.
     way: Option<Way>,
     planned_for: [u64; 3],
-    /// What the loops follow at the next step; anything else was asked of them by others, and is gone on from.
+    /// Expected velocity demand at the next step; a different one comes from outside the mode, which then continues from there.
     expected: f64,
     within_window: Dwell,
     above_threshold: Dwell,
@@ -50,7 +49,7 @@ pub struct State {
 }
 
 impl State {
-    /// Goes on from the velocity of now.
+    /// Continues from the present velocity.
     #[must_use]
     pub fn begin(now: &Moment) -> Self {
         Self {
@@ -64,17 +63,17 @@ impl State {
         }
     }
 
-    /// Goes on after a halt, from the velocity of then.
+    /// Continues after a halt, from the velocity at its end.
     pub fn resume(&mut self, now: &Moment) {
         *self = Self { above_threshold: self.above_threshold, ..Self::begin(now) };
     }
 
-    /// A step; whether the axis stands (bit 12), whoever moves it.
+    /// Executes a step; returns true if the axis stands (bit 12), whatever moves it.
     pub fn stands(&mut self, p: &Params, now: &Moment) -> bool {
         !self.above_threshold.step(!p.threshold.holds(now.actual.velocity), p.threshold.time, now.period)
     }
 
-    /// Whether the target is beyond the highest velocity.
+    /// True if the target is beyond the highest velocity.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.is_limited
@@ -87,7 +86,7 @@ impl State {
         Setpoint { v: velocity, a: (self.velocity - velocity) / now.period, ..Setpoint::at_rest(0.0) }
     }
 
-    /// Without a plan the velocity stays, and the drive says that it is limited.
+    /// Jerk-limited set-point; without a plan the velocity stays, and the drive reports a limit.
     fn jerk_limited(&mut self, p: &Params, now: &Moment, goes_on: bool, target: f64) -> Setpoint {
         let [acceleration, deceleration] = [now.targets.profile_acceleration, now.targets.profile_deceleration];
         let asked = [target, acceleration, deceleration].map(f64::to_bits);
@@ -105,7 +104,7 @@ impl State {
     }
 }
 
-/// The demand of a step.
+/// Demand of a step.
 #[inline]
 pub fn step(p: &Params, x: &mut State, now: &Moment) -> Answer {
     let Moment { targets, actual, period, .. } = now;

@@ -1,13 +1,13 @@
-//! A planned way that is gone step by step.
+//! Step-by-step execution of a planned profile.
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Piece;
 use servobench_motion::online::Transition;
 
-/// A planned way and how far it has been gone.
+/// A planned profile and its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Way {
     pub(super) transition: Transition,
-    /// The part of it that is being gone.
+    /// Present piece of the profile.
     piece: Piece,
     steps: u32,
 }
@@ -17,7 +17,7 @@ impl Way {
         Self { transition: *transition, piece: transition.piece(0.0), steps: 0 }
     }
 
-    /// The set-point of the next step, the first one being that of the start, and whether the end is reached.
+    /// Set-point of the next step, beginning with that of the start, and true if the end is reached.
     #[inline]
     pub(super) fn next(&mut self, period: f64) -> (Setpoint, bool) {
         let passed = f64::from(self.steps) * period;

@@ -4,7 +4,7 @@ use servobench_testkit::Random;
 
 const J: f64 = 2.3e-3;
 
-/// A motor of the inertia `J` from cycle to cycle: exact under an effort that is held.
+/// A motor of inertia `J`, advanced by cycles: exact under a constant effort.
 #[derive(Clone, Copy, Default)]
 struct Motor {
     position: f64,
@@ -43,13 +43,13 @@ fn all_poles_of_the_error_are_at_the_bandwidth() {
             // Velocities of some 7 rad/s, a few roundings of travels over h.
             assert!(left.abs() < 1e-13, "{omega}: {left}");
         }
-        // What is left of the initial error is z^200 times the square of 200.
+        // The remaining initial error is z^200 times the square of 200.
         let left = 200.0_f64.powi(2) * z.powi(200) * 5.0;
         assert!(errors[199].abs() <= left + 1e-12, "{omega}: {} {left}", errors[199]);
     }
 }
 
-/// Oracle: ω = ω_0 + a·t: no lag at constant acceleration and a constant load, which is found, too.
+/// Oracle: ω = ω_0 + a·t: no lag at constant acceleration and a constant load, which is observed as well.
 #[test]
 fn a_ramp_is_followed_without_lag_and_a_load_is_found() {
     let h = 125e-6;
@@ -68,7 +68,7 @@ fn a_ramp_is_followed_without_lag_and_a_load_is_found() {
 }
 
 /// Oracle: by hand. With an effort that grows by Δτ per cycle, D grows by ΔD = (Ĵ/J − 1)·Δτ, and in the steady state r = ΔD/l_3 and
-/// ω − ω̂ = (l_1 − T·l_2/2)·r/T; for small ω_o·T that is 3·Ḋ/(Ĵ·ω_o²).
+/// ω − ω̂ = (l_1 − T·l_2/2)·r/T; for small ω_o·T the result is 3·Ḋ/(Ĵ·ω_o²).
 #[test]
 fn a_wrong_inertia_costs_an_error_at_constant_jerk() {
     let h = 125e-6;
@@ -89,8 +89,8 @@ fn a_wrong_inertia_costs_an_error_at_constant_jerk() {
     }
 }
 
-/// Oracle: white noise σ of the position is in ω̂ with (1 − z)³·(13 + 50z + 49z²)/(2·(1 + z)⁵)·σ²/T², and in a
-/// difference with 2·σ²/T²: as the sum of the squares of the response to one wrong reading, and by drawn noise.
+/// Oracle: white noise σ of the position appears in ω̂ with (1 − z)³·(13 + 50z + 49z²)/(2·(1 + z)⁵)·σ²/T², and in a difference with
+/// 2·σ²/T²: both as the sum of squares of the response to one wrong reading, and by random noise.
 #[test]
 fn noise_of_the_position_is_reduced_as_the_closed_form_says() {
     let variance = |z: f64| (1.0 - z).powi(3) * (13.0 + 50.0 * z + 49.0 * z * z) / (2.0 * (1.0 + z).powi(5));
@@ -99,7 +99,7 @@ fn noise_of_the_position_is_reduced_as_the_closed_form_says() {
         let mut x = State::default();
         let mut squares = 0.0;
         for k in 0..20_000 {
-            // A reading that is 1 too much is a travel of 1 to it and of −1 from it.
+            // A single reading that is 1 too large is a travel of 1 and then of −1.
             let travelled = [1.0, -1.0].get(k).copied().unwrap_or(0.0);
             squares += step(&p, &mut x, travelled, 0.0).powi(2);
         }
@@ -110,7 +110,7 @@ fn noise_of_the_position_is_reduced_as_the_closed_form_says() {
             (State::default(), Random::seeded(7), 0.0, 0.0, 0.0);
         let many = 400_000;
         for _ in 0..many {
-            // Evenly drawn: the variance is 1/12.
+            // Uniform noise: the variance is 1/12.
             let noise = random.unit() - 0.5;
             let velocity = step(&p, &mut x, noise - last, 0.0);
             of_differences += ((noise - last) / h).powi(2) / f64::from(many);
@@ -118,12 +118,12 @@ fn noise_of_the_position_is_reduced_as_the_closed_form_says() {
             last = noise;
         }
         let reduction = sum / of_differences;
-        // Of some 1/(ω·h) cycles one is independent: 3 % in the slowest is four standard deviations.
+        // One in some 1/(ω·h) cycles is independent: 3 % in the slowest case is four standard deviations.
         assert!((reduction / (variance(z) / 2.0) - 1.0).abs() < 0.03, "{omega}: {reduction}");
     }
 }
 
-/// The state is the error of the position: far from zero it is as exact as near to it.
+/// Errors name the parameter out of its bound.
 #[test]
 fn errors_name_the_parameter() {
     let said = |omega, inertia, compensation| Params::new(omega, 1e-3, inertia, compensation).unwrap_err().to_string();

@@ -1,11 +1,11 @@
-//! One set-point: the profile of the frame that gave it, and the ways by that profile.
+//! One set-point: the profile of its frame, and plans within that profile.
 use super::Params;
 use crate::modes::Targets;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::PlanError;
 use servobench_motion::online::{Effort, RampLimits, Sides, Target, Transition, passing_velocity};
 
-/// A target with the profile that leads to it.
+/// A target with its profile.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct SetPoint {
     pub(super) x: f64,
@@ -15,7 +15,7 @@ pub(super) struct SetPoint {
 }
 
 impl SetPoint {
-    /// At `x`, with the profile of a frame.
+    /// Set-point at `x`, with the profile of a frame.
     pub(super) const fn at(x: f64, targets: &Targets) -> Self {
         Self {
             x,
@@ -36,12 +36,12 @@ impl SetPoint {
     }
 
     /// # Errors
-    /// [`PlanError`] when the state or the profile allow no plan.
+    /// [`PlanError`] if the state or the profile allow no plan.
     pub(super) fn plan(&self, p: &Params, from: &Setpoint, target: &Target) -> Result<Transition, PlanError> {
         Transition::plan_ramps(p.ramp.order(), from, target, &self.limits(p), Effort::Fast)
     }
 
-    /// Velocity at which it is passed: `most` at most, none where the axis would have to turn back for it.
+    /// Velocity at which the set-point is passed: `most` at most, zero if the axis would have to turn back for more.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).

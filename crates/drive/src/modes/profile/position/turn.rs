@@ -1,24 +1,24 @@
-//! The way to an absolute target on an axis whose positions repeat.
+//! Path to an absolute target on an axis whose positions repeat.
 use servobench_cia402::modulo::{PositionRange, RotaryAxisOption};
 
-/// How an absolute target is reached on such an axis.
+/// Settings of the path to an absolute target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
-    /// Positions that there are (607Bh), in user-defined units.
+    /// Range of the positions (607Bh), in user-defined units.
     pub range: PositionRange,
-    /// In which direction (60F2h).
+    /// Direction (60F2h).
     pub option: RotaryAxisOption,
-    /// Metres or radians per user-defined unit, negative where the axis is turned round.
+    /// Metres or radians per user-defined unit, negative for a reversed axis.
     pub unit: f64,
 }
 
 impl Turn {
-    /// Where the axis has to go from `from`, which counts on without end, to be at the position `asked` of the range (m or rad).
+    /// Target of an axis at `from`, which counts on without end, for the position `asked` in the range (m or rad).
     ///
-    /// Both are whole units, or taken as the nearest one: the target is one of those that show `asked`, bit for bit.
+    /// Both are whole units, or rounded to them: the target is one of the positions shown as `asked`, bit for bit.
     pub(super) fn target(&self, from: f64, asked: f64) -> f64 {
         let [from, asked] = [from, asked].map(|position| whole(position / self.unit));
-        // As long as the range is, or for a linear way as far as 32 bits go.
+        // At most the length of the range, or for a linear path that of 32 bits.
         let way = match self.option.direction() {
             Some(direction) => self.range.way(from, asked, direction),
             None => asked - i64::from(self.range.wrap(from)),
@@ -27,7 +27,7 @@ impl Turn {
     }
 }
 
-/// The nearest whole number, at the ends of the range beyond it.
+/// Nearest whole number, saturated at the range.
 #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
 fn whole(units: f64) -> i64 {
     libm::round(units) as i64
