@@ -52,13 +52,13 @@ fn params(interpolation: Mode, control: Control) -> Result<Params, FieldbusError
     })
 }
 
-/// An axis that swings by 10 mm with 1 Hz, and a drive that is where it is told to be.
+/// An axis that swings by 10 mm at 1 Hz, with an ideal drive.
 struct Axis {
     params: Params,
     state: link::State,
     mailbox: Mailbox,
     actuals: Actuals,
-    /// How late each sample comes (base ticks).
+    /// Delay of each sample (base ticks).
     late: u64,
 }
 
@@ -135,7 +135,7 @@ fn set_point_of_a_base_tick(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// What the bus costs at a tick, and in every sixteenth with its cycle.
+/// Cost of the bus per tick, every sixteenth of which has a cycle.
 #[divan::bench]
 fn bus_by_the_base_tick(bencher: Bencher<'_, '_>) {
     let faults = [bus::BusFault { kind: bus::BusFaultKind::Jitter { by: 4, seed: 1 }, cycles: 0..u64::MAX }];

@@ -1,11 +1,11 @@
-//! The wire between master and drive, and what goes wrong on it.
+//! Bus between master and drive, and its faults.
 //!
-//! Cycle n is due at n·cycle and happens at the first tick that is neither before `n·cycle + late(n)` nor at or before cycle
-//! n − 1; both directions are carried by the same frame. What was put in at cycle n comes out at cycle n + delay, if that frame
-//! was not lost. A frame is lost where it is put in: what is under way arrives.
+//! Cycle n is due at n·cycle and happens at the first tick that is neither before `n·cycle + late(n)` nor at or before cycle n − 1; both
+//! directions are carried by the same frame. Data sent at cycle n arrive at cycle n + delay, if that frame was not lost. A frame is lost
+//! when it is sent: frames already on their way arrive.
 //!
-//! Everything is decided by the number of the cycle, so a run is the same every time: the jitter of a cycle is a hash of its
-//! number and the seed.
+//! Everything is determined by the number of the cycle, so every run is the same: the jitter of a cycle is a hash of its number and the
+//! seed.
 //!
 //! ```
 //! use servobench_base::{Rate, Tick};
@@ -23,7 +23,7 @@
 //!         arrived.push(state.to_drive(&params, &cycle, Commands::default()).is_some());
 //!     }
 //! }
-//! // The first frame is on its way for a cycle, the third is lost.
+//! // The first frame takes a cycle, the third is lost.
 //! assert_eq!(arrived, [false, true, true, false, true]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -35,17 +35,17 @@ use pipe::Pipe;
 use servobench_base::{Divider, Stateful, Tick};
 use servobench_cia402::{Actuals, Commands};
 
-/// Something that goes wrong in some cycles.
+/// A fault in some cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BusFault {
-    /// What.
+    /// Kind of fault.
     pub kind: BusFaultKind,
-    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end.
+    /// Affected cycles, the first of the run is 0; up to `u64::MAX` if the fault does not end.
     pub cycles: Range<u64>,
 }
 
 servobench_config::choices! {
-    /// What goes wrong on the bus. A lost frame is lost in both directions; a silent drive still receives.
+    /// Kind of a bus fault. A lost frame is lost in both directions; a silent drive still receives.
     pub enum BusFaultKind named BusFaultName {
         /// the frame does not arrive
         Lost = "lost",
@@ -93,13 +93,13 @@ impl<'a> Params<'a> {
         Ok(Self { cycle: cycle.ticks() as u64, delay: delay as usize, faults })
     }
 
-    /// From cycle to cycle (base ticks).
+    /// Period of the bus (base ticks).
     #[must_use]
     pub const fn cycle(&self) -> u64 {
         self.cycle
     }
 
-    /// The same bus, on which other things go wrong.
+    /// The same bus with other faults.
     #[must_use]
     pub const fn with_faults<'b>(&self, faults: &'b [BusFault]) -> Params<'b> {
         Params { cycle: self.cycle, delay: self.delay, faults }
@@ -109,7 +109,7 @@ impl<'a> Params<'a> {
         self.faults.iter().filter(move |fault| fault.cycles.contains(&cycle)).map(|fault| fault.kind)
     }
 
-    /// When cycle `number` would happen if there were none before it.
+    /// Time of cycle `number`, regardless of the cycles before it (base ticks).
     fn time_of(&self, number: u64) -> u64 {
         let late = self.faults_of(number).map(|kind| match kind {
             BusFaultKind::Late { by } => u64::from(by),
@@ -120,7 +120,7 @@ impl<'a> Params<'a> {
     }
 }
 
-/// What is on the wire, and when the next cycle happens.
+/// Frames on their way, and the time of the next cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct State {
     next: Option<Tick>,
@@ -129,25 +129,25 @@ pub struct State {
     to_drive: Pipe<Commands>,
 }
 
-/// A cycle that happens.
+/// A cycle of the bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a fault of its own, and any of them may come together")]
 pub struct Cycle {
-    /// Its number, from 0.
+    /// Number, from 0.
     pub number: u64,
-    /// When it was due. A master does not know that it is late: it computes for this tick.
+    /// Due tick. A master does not know that the cycle is late: it computes for this tick.
     pub due: Tick,
-    /// Whether the frame is lost.
+    /// True if the frame is lost.
     pub is_lost: bool,
-    /// Whether the drive does not answer.
+    /// True if the drive does not answer.
     pub is_silent: bool,
-    /// Whether the motion task does not run.
+    /// True if the motion task does not run.
     pub master_stopped: bool,
     /// The external fault signal.
     pub external_fault: bool,
 }
 
-/// The cycle that happens at this tick, if any; to be asked once at every tick.
+/// Cycle that happens at this tick, if any; call it once at every tick.
 #[inline]
 pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle> {
     if state.next.is_some_and(|next| tick < next) {
@@ -157,7 +157,7 @@ pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle>
 }
 
 impl State {
-    /// Cycles that have happened.
+    /// Number of cycles so far.
     #[must_use]
     pub const fn cycles(&self) -> u64 {
         self.number
@@ -183,13 +183,13 @@ impl State {
         })
     }
 
-    /// Puts in what the drive sends in this cycle; what arrives at the master in it.
+    /// Sends the drive's data of this cycle; returns those that arrive at the master.
     pub fn to_master(&mut self, params: &Params<'_>, cycle: &Cycle, actuals: Actuals) -> Option<Actuals> {
         let sent = (!cycle.is_lost && !cycle.is_silent).then_some(actuals);
         self.to_master.carry(sent, params.delay)
     }
 
-    /// Puts in what the master sends in this cycle; what arrives at the drive in it.
+    /// Sends the master's data of this cycle; returns those that arrive at the drive.
     pub fn to_drive(&mut self, params: &Params<'_>, cycle: &Cycle, commands: Commands) -> Option<Commands> {
         self.to_drive.carry((!cycle.is_lost).then_some(commands), params.delay)
     }

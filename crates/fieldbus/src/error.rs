@@ -1,15 +1,15 @@
-//! Why a link or a bus cannot be built.
+//! Errors in the settings of a link or a bus.
 use servobench_base::ParamError;
 use servobench_motion::PlanError;
 use thiserror::Error;
 
-/// A setting that is refused, with what would be accepted.
+/// A refused setting, with its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum FieldbusError {
     /// A number out of its bound.
     #[error(transparent)]
     Parameter(#[from] ParamError),
-    /// A limit that no stop can be planned with.
+    /// A limit with which no stop can be planned.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// More slack for late samples than the buffer holds samples.
@@ -20,37 +20,37 @@ pub enum FieldbusError {
     Margin {
         /// Rejected slack (base ticks).
         margin: u32,
-        /// Largest one (base ticks).
+        /// Largest slack (base ticks).
         highest: u64,
     },
-    /// A prediction beyond the present, or further than is predicted.
+    /// A prediction beyond the present, or longer than supported.
     #[error(
         "`run_ahead` must be at most {highest} cycles of the motion task with this interpolation, got {ahead}: that leaves no delay to \
          take out"
     )]
     RunAhead {
-        /// Rejected cycles.
+        /// Rejected number of cycles.
         ahead: u32,
-        /// Most of them.
+        /// Largest number of cycles.
         highest: usize,
     },
-    /// A time-out that the answer of a sound drive cannot keep.
+    /// A time-out too short for the answer of a sound drive.
     #[error("`drive_timeout` must be longer than the round trip of {round_trip} ticks, got {timeout} ticks")]
     ShortTimeout {
         /// Rejected time-out (base ticks).
         timeout: u64,
-        /// From a command to the first answer that knows of it (base ticks).
+        /// Time from a command to the first answer that reflects it (base ticks).
         round_trip: u64,
     },
-    /// A position loop in the master that would learn of the axis too late.
+    /// A position loop in the master with a too old position.
     #[error("`round_trip` and `answer_age` must be at most {highest} ticks together, got {delay}: take a longer cycle")]
     OldAnswer {
         /// Rejected sum (base ticks).
         delay: u64,
-        /// Largest one (base ticks).
+        /// Largest sum (base ticks).
         highest: u64,
     },
-    /// An integral that no gain makes stable.
+    /// An integral with which no gain is stable.
     #[error(
         "the integral time of the master's position loop must be longer than {lowest} s, the age of the position and half a cycle, got \
          {time} s: with a shorter one the loop is unstable at every gain"
@@ -58,7 +58,7 @@ pub enum FieldbusError {
     ShortIntegral {
         /// Rejected integral time (s).
         time: f64,
-        /// What it must be longer than (s).
+        /// Exclusive lower bound (s).
         lowest: f64,
     },
     /// A velocity of the axis that the drive's unit cannot express.
@@ -67,17 +67,17 @@ pub enum FieldbusError {
          unit"
     )]
     FineVelocity {
-        /// The limit in the drive's unit.
+        /// Limit in the drive's unit.
         counts: f64,
         /// Largest value.
         highest: i32,
     },
-    /// A bus whose frames are on their way for longer than is kept.
+    /// A bus with too long a delay.
     #[error("`delay` must be at most {highest} bus cycles, got {delay}: take a longer cycle")]
     Delay {
         /// Rejected delay (bus cycles).
         delay: u32,
-        /// Longest one (bus cycles).
+        /// Longest delay (bus cycles).
         highest: u32,
     },
 }

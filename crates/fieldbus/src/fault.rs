@@ -1,19 +1,19 @@
-//! Why an axis is not available.
+//! Faults that make an axis unavailable.
 use core::fmt;
 use servobench_base::Stateful;
 use servobench_cia402::ErrorCode;
 
-/// Why an axis is not available: a fault of the drive, or one of the link to it.
+/// Fault that makes an axis unavailable: of the drive, or of the link to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Fault {
-    /// The drive's own, with its code (603Fh); 0 when it gives none.
+    /// A fault of the drive, with its code (603Fh); 0 without one.
     Drive(u16),
-    /// What the link has found and stopped the axis for.
+    /// A fault found by the link, which has stopped the axis.
     Link(LinkFault),
 }
 
 impl Fault {
-    /// The code as an error number of a function block: the drive's (603Fh), or [`LinkFault::code`].
+    /// Code as an error number of a function block: the drive's (603Fh), or [`LinkFault::code`].
     #[must_use]
     pub const fn code(self) -> u16 {
         match self {
@@ -35,19 +35,19 @@ impl fmt::Display for Fault {
 /// A fault of the link between motion task and drive. It holds until a reset, and as long as its cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum LinkFault {
-    /// The drive is silent, or did not do what it was told, for longer than the drive time-out.
+    /// The drive is silent, or did not execute its commands, for longer than the drive time-out.
     DriveTimeout,
-    /// The drive left Operation enabled without having been told to and without a fault.
+    /// The drive left Operation enabled without a command and without a fault.
     DriveLeftOperation,
     /// The external fault signal.
     External,
-    /// A motion into the switch of the negative end.
+    /// A motion into the limit switch of the negative end.
     NegativeLimit,
-    /// A motion into the switch of the positive end.
+    /// A motion into the limit switch of the positive end.
     PositiveLimit,
-    /// A reading of the position that its counter cannot show, or so far from the one before that counts are lost.
+    /// A position reading outside the range of its counter, or so far from the previous one that counts are lost.
     PositionLost,
-    /// The motion task gave a value that is no number, or one that the drive's units cannot express.
+    /// The motion task gave a NaN, or a value that the drive's units cannot express.
     Command,
 }
 
@@ -63,7 +63,7 @@ impl LinkFault {
         Self::Command,
     ];
 
-    /// What happened, in words.
+    /// Name of the fault, in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ impl LinkFault {
         }
     }
 
-    /// What the drive is told.
+    /// Response of the link, in words.
     #[must_use]
     pub const fn response(self) -> &'static str {
         match self {
@@ -88,8 +88,7 @@ impl LinkFault {
         }
     }
 
-    /// Its error code: that of CiA 301 (emergency error codes) where there is one that says the same, a device-specific one
-    /// (FFxxh) otherwise.
+    /// Error code: that of CiA 301 (emergency error codes) with the same meaning if there is one, a device-specific one (FFxxh) otherwise.
     #[must_use]
     pub const fn code(self) -> u16 {
         let error = match self {

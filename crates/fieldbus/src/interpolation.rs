@@ -1,26 +1,26 @@
-//! How the interpolation fares, with the numbers of the block `RM_AxisSpline` of REXYGEN (REX Controls, function block
-//! reference, output `State`).
+//! State of the interpolation, with the numbers of the block `RM_AxisSpline` of REXYGEN (REX Controls, function block reference, output
+//! `State`).
 
 use servobench_base::Stateful;
 /// State of the interpolation between two cycles of the motion task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 #[repr(i8)]
 pub enum Interpolation {
-    /// Disabled: what is put out is what the axis does by itself: the position that the drive follows, without a position loop the
-    /// actual one, its velocity, and the actual effort.
+    /// Disabled: the output is the axis' own motion: the position that the drive follows, or the actual one without a position loop, its
+    /// velocity, and the actual effort.
     #[default]
     Off = 0,
-    /// Too few samples yet; the axis waits where it is.
+    /// Too few samples yet; the axis waits in place.
     Wait = 1,
     /// In the first interval of the buffer: every sample came in time.
     Run1 = 2,
-    /// In the second one: the newest sample is late, one step is predicted.
+    /// In the second interval: the newest sample is late, one step is predicted.
     Run2 = 3,
-    /// In the third one: two steps are predicted.
+    /// In the third interval: two steps are predicted.
     Run3 = 4,
-    /// Samples came faster than they were used up; starts again with the newest.
+    /// Samples came faster than they were used; restarts with the newest.
     Overflow = -1,
-    /// Samples stayed away for longer than can be predicted; the axis is brought to rest and starts again by itself.
+    /// Samples were missing for longer than can be predicted; the axis is brought to rest and restarts by itself.
     Underflow = -2,
     /// The sample could not be read consistently.
     Busy = -3,
@@ -42,13 +42,13 @@ impl Interpolation {
         Self::Run3,
     ];
 
-    /// Its number in the source, from −4 to 4.
+    /// Number in the source, from −4 to 4.
     #[must_use]
     pub const fn number(self) -> i8 {
         self as i8
     }
 
-    /// Its name.
+    /// Name in the source.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl Interpolation {
         }
     }
 
-    /// What it means for the axis.
+    /// Meaning for the axis.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -83,7 +83,7 @@ impl Interpolation {
         }
     }
 
-    /// Whether the axis follows the motion task, by samples or by their prediction.
+    /// True if the axis follows the motion task, by samples or by their prediction.
     #[must_use]
     pub const fn is_running(self) -> bool {
         matches!(self, Self::Run1 | Self::Run2 | Self::Run3)

@@ -1,10 +1,10 @@
-//! Between a motion task and a drive.
+//! Link between a motion task and a drive.
 //!
-//! - [`AxisCommand`] and [`AxisFeedback`]: what motion task and axis tell each other, once per cycle of that task.
-//! - [`link`]: from one to the process data of a drive (CiA 402) and back, once per cycle of the bus.
-//! - [`bus`]: the wire to the drive, and what goes wrong on it.
-//! - [`task`]: when the motion task runs, and what goes wrong with it.
-//! - `trajectory` (feature `trajectory`, with a heap): tables on their way into the buffer of a drive.
+//! - [`AxisCommand`] and [`AxisFeedback`]: exchange between motion task and axis, once per cycle of that task.
+//! - [`link`]: conversion between these and the process data of a drive (CiA 402), once per cycle of the bus.
+//! - [`bus`]: the bus to the drive, and its faults.
+//! - [`task`]: schedule of the motion task, and its faults.
+//! - `trajectory` (feature `trajectory`, with a heap): transfer of tables to the buffer of a drive.
 //!
 //! `no_std`, and no heap without that feature.
 //!

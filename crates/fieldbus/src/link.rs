@@ -1,44 +1,42 @@
-//! The link: once per bus cycle from the last answer of the drive to the next frame for it, while the motion task leaves a
-//! command once per its own, slower cycle.
+//! The link: once per bus cycle it converts the last answer of the drive to the next frame for it, while the motion task leaves a command
+//! once per its own, slower cycle.
 //!
-//! In the order of a step: receive the drive, open the mailbox, look for faults, tell the drive what is wanted, put out what the
-//! task asks for.
+//! Order of a step: receive the drive, open the mailbox, detect faults, advance the power sequence, output the set-point of the task.
 //!
 //! # From samples to set-points
 //!
-//! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval between two samples is read as soon as all samples that its
-//! mode needs must be there, and `margin` later, whenever they came: what is put out at t is the motion of the samples at
-//! `t − delay`, with the constant [`Params::delay`] = (points/2 − ahead)·cycle + margin. Following errors are to be measured against
-//! that. [`Settings::run_ahead`] predicts samples from the start to make it shorter.
+//! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval between two samples is read `margin` after the due time of the last
+//! sample that its mode needs, whenever the samples came: the output at t is the motion of the samples at `t − delay`, with the constant
+//! [`Params::delay`] = (points/2 − ahead)·cycle + margin. Following errors are to be measured against that. [`Settings::run_ahead`]
+//! predicts samples from the start to make it shorter.
 //!
-//! A sample that is late is predicted, for two cycles at most; [`Interpolation`] says how that fares and
-//! [`Interpolation::meaning`] what is done.
+//! A late sample is predicted, for two cycles at most; [`Interpolation`] reports the state and [`Interpolation::meaning`] explains it.
 //!
-//! Where what is read changes under the output – at the start, by a correction, after a stop – the output goes on from where
-//! it is, and the difference is led to zero within [`Settings::recovery`], beside the motion. It never moves faster than
-//! [`Settings::velocity_limit`]; where that binds, [`State::is_limited`] says so.
+//! When the motion that is read changes under the output – at the start, by a correction, after a stop – the output continues from its
+//! present state, and the difference is led to zero within [`Settings::recovery`], in addition to the motion. It never moves faster than
+//! [`Settings::velocity_limit`]; [`State::is_limited`] reports if that limits it.
 //!
 //! # The position loop in the master
 //!
-//! With [`Control::Velocity`] (csv) the link closes the position loop. The position that it receives at t is on its way for as long as
-//! the round trip of the bus and the [age of the answer](Settings::answer_age), together D, and is compared with the set-point
-//! that was put out at t − D. That makes up for the way at any velocity, and leaves the loop as stable as it was:
-//! it begins to oscillate at the gain `2/T·tan(π·T/(4D))`, a little more than π/(2·D). With the velocity of the set-point fed forward the error is, as long as
-//! K·D ≤ 1/e, at most (a·τ + j·T²/12)/K of an axis whose velocity lags by τ, and the units of the bus.
+//! With [`Control::Velocity`] (csv) the link closes the position loop. The position received at t is older by the round trip of the bus and
+//! the [age of the answer](Settings::answer_age), together D, and is compared with the set-point output at t − D. That compensates the
+//! delay at every velocity, and leaves the stability of the loop unchanged: it begins to oscillate at the gain `2/T·tan(π·T/(4D))`, a
+//! little more than π/(2·D). With the velocity of the set-point fed forward and K·D ≤ 1/e, the error is at most (a·τ + j·T²/12)/K for an
+//! axis whose velocity lags by τ, plus the units of the bus.
 //!
-//! # What goes wrong
+//! # Faults
 //!
-//! A fault of the drive is answered with Disable voltage until it is reset, a [`LinkFault`] as its
-//! [`response`](LinkFault::response) says: limit switches by halt, the others by quick stop. A drive that left Operation enabled
-//! does not come back by itself.
+//! The link answers a fault of the drive with Disable voltage until it is reset, and a [`LinkFault`] by its
+//! [`response`](LinkFault::response): limit switches by halt, the others by quick stop. A drive that left Operation enabled does not come
+//! back by itself.
 //!
-//! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may move out of it only.
-//! Without power, in each of these, and while the drive is in another mode, what is put out is what the axis does by itself, so that
-//! nothing jumps when the drive follows again: the position that the drive follows (6062h), without a position loop the actual one,
-//! at the time when it will be reached, D later; its velocity; the actual effort. The frame holds what its mode carries: the velocity
-//! as target (csv) or offset (csp), the effort as target (cst). As an offset the effort is sent only where it was demanded as such:
-//! what the drive's loops make of a position they go on with themselves. An axis that moves when the drive begins to follow is
-//! brought to rest, and then to what is read, within [`Settings::recovery`].
+//! Each holds until the rising edge of `reset`, and as long as its cause. After a limit switch the axis may only move out of it. Without
+//! power, during each fault, and while the drive is in another mode, the output is the axis' own motion, so that nothing jumps when the
+//! drive follows again: the position that the drive follows (6062h), or the actual one without a position loop, extrapolated by D to the
+//! time when it will be reached; its velocity; the actual effort. The frame holds the values that its mode carries: the velocity as target
+//! (csv) or offset (csp), the effort as target (cst). The effort is sent as an offset only if it was demanded as such: the drive's loops
+//! reproduce their own share themselves. An axis that moves when the drive begins to follow is brought to rest, and then to the motion that
+//! is read, within [`Settings::recovery`].
 mod actuals;
 mod buffer;
 mod course;
@@ -74,14 +72,14 @@ use servobench_motion::interpolate::{Command, Sample};
 use stream::Stream;
 use touch_probe::Probe;
 
-/// What a link sees at a step.
+/// Input of a link at a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input<'a> {
-    /// Now.
+    /// Present tick.
     pub tick: Tick,
-    /// Where the motion task leaves its command.
+    /// Mailbox with the command of the motion task.
     pub mailbox: &'a Mailbox,
-    /// What the drive has sent since the last step; `None` when nothing came.
+    /// Answer of the drive since the last step; `None` if none came.
     pub actuals: Option<Actuals>,
     /// The external fault signal.
     pub external_fault: bool,
@@ -91,16 +89,16 @@ pub struct Input<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct State {
     command: AxisCommand,
-    /// Number of the last command that was read.
+    /// Number of the last command read.
     read: u64,
     actuals: Actuals,
     has_begun: bool,
-    /// When the drive was received last, or the first step (base ticks).
+    /// Time at which the drive was last received, or of the first step (base ticks).
     received_at: u64,
     position: Option<Position>,
     position_loop: PositionLoop,
     sequencer: Sequencer,
-    /// Whether the drive was enabled and to stay so at the last step.
+    /// True if the drive was enabled, and to stay so, at the last step.
     was_on: bool,
     fault: Option<LinkFault>,
     stream: Stream,
@@ -109,15 +107,15 @@ pub struct State {
     homing: Procedure,
     drive_profile: DriveProfile,
     probe: Probe,
-    /// The effort that the axis has by itself, as far as it is demanded as such.
+    /// Own effort of the axis, as far as it is demanded as such.
     own_effort: f64,
     commands: Commands,
-    /// Since when the mode that is asked for has been (base ticks).
+    /// Time at which the present mode was first requested (base ticks).
     mode_since: u64,
-    /// When the drive was last seen in that mode or without power (base ticks).
+    /// Time at which the drive was last seen in that mode or without power (base ticks).
     in_mode_or_off: u64,
     limited: bool,
-    /// What is left of the last torque that went out, in thousandths of the rated one.
+    /// Rounding remainder of the last torque sent, in thousandths of the rated one.
     torque_rest: f64,
 }
 
@@ -150,7 +148,7 @@ impl Default for State {
     }
 }
 
-/// Tells the drive what comes next.
+/// Computes the next frame for the drive.
 pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     let now = input.tick.0;
     if !core::mem::replace(&mut state.has_begun, true) {
@@ -170,7 +168,7 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
     state.ask_for_the_mode(params, now);
     state.put_out(params, post, now);
     state.commands.digital_outputs = state.command.digital_outputs;
-    // The drive is at a target a cycle after it came, or two; a position loop here compares what was put out some time ago.
+    // The drive reaches a target one or two cycles after it came; a position loop here compares an older output.
     let delay = params.delay() + params.reference_delay + 2 * params.stream.bus_cycle;
     let effort_limit = state.effort_limit.step(state.command.effort_limit, delay, now);
     state.commands.max_torque = effort_limit.map(|limit| params.scale.max_torque(limit));
@@ -186,7 +184,7 @@ pub fn step(params: &Params, state: &mut State, input: Input<'_>) -> Commands {
 }
 
 impl State {
-    /// Bit 4 of the controlword, which starts what the drive does by itself.
+    /// Bit 4 of the controlword, which starts the drive's own procedures.
     const fn asks_to_start(&self) -> bool {
         match self.command.task {
             Task::Home { .. } => self.homing.is_started(),
@@ -195,8 +193,8 @@ impl State {
         }
     }
 
-    /// What the axis does by itself, for the time when what is put out now is reached: the position that the drive follows or else
-    /// the actual one, and its velocity, 0 below a count per cycle of the motion task.
+    /// Own motion of the axis, extrapolated to the time when the present output is reached: the position that the drive follows or else the
+    /// actual one, and its velocity, 0 below a count per cycle of the motion task.
     fn own_motion(&self, params: &Params) -> Setpoint {
         let Params { scale, stream, .. } = params;
         let tick = stream.timing.tick;
@@ -210,8 +208,8 @@ impl State {
         Setpoint { v, ..Setpoint::at_rest(x + v * (params.reference_delay as f64 * tick)) }
     }
 
-    /// The actual effort, where it is one that was demanded as such, and until what is demanded next is followed. What the loops of
-    /// the drive make of a position or a velocity they go on with: sent beside it, it would count twice.
+    /// Actual effort if it was demanded as such, held until the next demand is followed. The drive's loops reproduce their own effort
+    /// themselves: if it were sent as an offset, it would count twice.
     fn own_effort(&self, params: &Params, follows: bool) -> f64 {
         match Mode::from_code(self.actuals.mode) {
             Some(Mode::CyclicSynchronousTorque | Mode::ProfileTorque) => params.scale.effort(self.actuals.torque),
@@ -235,7 +233,7 @@ impl State {
         }
     }
 
-    /// What the motion task receives.
+    /// Feedback for the motion task.
     #[must_use]
     pub fn feedback(&self, params: &Params) -> AxisFeedback {
         let scale = &params.scale;
@@ -256,15 +254,15 @@ impl State {
         }
     }
 
-    /// The set-point that is put out at `tick`, from the last step to the next: what the drive would follow if it knew more than
-    /// a position per cycle. Not limited to whole counts.
+    /// Set-point at `tick`, from the last step to the next: the continuous motion behind one position per cycle. Not limited to whole
+    /// counts.
     #[must_use]
     pub fn setpoint(&self, params: &Params, tick: Tick) -> Setpoint {
         self.stream.at(&params.stream, tick.0).setpoint
     }
 
-    /// What was put out at the last step, in units of the axis: position, velocity and acceleration, the effort beside them, 0 where none
-    /// is sent, or instead of them; what the axis does where nothing is followed. The frame holds of it what the mode carries, rounded to the
+    /// Output of the last step, in units of the axis: position, velocity and acceleration, with the effort as an offset, 0 if none is sent,
+    /// or in their place; the axis' own motion if it follows nothing. The frame holds the values that the mode carries, rounded to the
     /// drive's units.
     #[must_use]
     pub fn output(&self, params: &Params) -> Command {
@@ -277,7 +275,7 @@ impl State {
         Command { torque, ..*self.stream.output() }
     }
 
-    /// How the set-points of the motion task arrive.
+    /// Arrival of the motion task's set-points.
     #[must_use]
     pub const fn interpolation(&self) -> Interpolation {
         match self.command.task {
@@ -286,7 +284,7 @@ impl State {
         }
     }
 
-    /// What is wrong, the drive's fault before the link's.
+    /// Present fault, the drive's before the link's.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
         if self.sequencer.is_faulty() {
@@ -295,7 +293,7 @@ impl State {
         self.fault.map(Fault::Link)
     }
 
-    /// Whether the last command was held back by the velocity limit.
+    /// True if the velocity limit held back the last command.
     #[must_use]
     pub const fn is_limited(&self) -> bool {
         self.limited
@@ -312,7 +310,7 @@ impl State {
         }
     }
 
-    /// Whether the drive function is enabled, as far as the drive knows what it is told.
+    /// True if the drive function is enabled, as far as the drive has received its commands.
     fn is_enabled(&self, params: &Params) -> bool {
         self.sequencer.is_enabled(params.settings.sequencing, self.received_at.saturating_sub(params.round_trip))
     }
@@ -323,7 +321,7 @@ impl State {
         Switches { negative_limit: closed(negative), positive_limit: closed(positive), home: closed(2) }
     }
 
-    /// By how much what the drive's loops follow is ahead of the actual position (counts).
+    /// Lead of the position that the drive's loops follow over the actual one (counts).
     fn following_error(&self, params: &Params) -> i128 {
         self.position.as_ref().map_or(0, |_| params.scale.ahead(&self.actuals))
     }

@@ -1,9 +1,9 @@
-//! The touch probe of an axis: what is asked for, and what is answered.
+//! The touch probe of an axis: request and answer.
 use servobench_base::Stateful;
 use servobench_cia402::touch_probe::{Edge, Function};
 
 servobench_config::choices! {
-    /// What has the drive latch the position of the axis.
+    /// Trigger at which the drive latches the position of the axis.
     #[derive(Stateful)]
     pub enum ProbeTrigger {
         /// the home switch is met
@@ -16,7 +16,7 @@ servobench_config::choices! {
 }
 
 impl ProbeTrigger {
-    /// The edge at which it latches.
+    /// Edge at which the trigger latches.
     pub(crate) const fn edge(self) -> Edge {
         match self {
             Self::HomeSwitchMet | Self::IndexPulse => Edge::Positive,
@@ -24,26 +24,26 @@ impl ProbeTrigger {
         }
     }
 
-    /// What the drive is told (60B8h).
+    /// Command to the drive (60B8h).
     pub(crate) const fn function(self) -> u16 {
         Function::first(self.edge(), matches!(self, Self::IndexPulse)).0
     }
 }
 
-/// A question for the position of the axis at a trigger.
+/// A request for the position of the axis at a trigger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct TouchProbe {
-    /// Its number, from 1: another one is another question.
+    /// Number, from 1: another number is another request.
     pub number: u32,
-    /// What has the drive latch the position.
+    /// Trigger at which the drive latches the position.
     pub trigger: ProbeTrigger,
 }
 
-/// The answer to a question for the position at a trigger.
+/// The answer to a request for the position at a trigger.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub struct ProbeFeedback {
-    /// Number of the question.
+    /// Number of the request.
     pub number: u32,
-    /// Where the axis was; `None` before the trigger has come.
+    /// Latched position; `None` before the trigger has come.
     pub position: Option<f64>,
 }

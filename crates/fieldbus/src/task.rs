@@ -1,9 +1,9 @@
-//! When a motion task runs, and what goes wrong with it.
+//! Schedule of a motion task, and its faults.
 //!
-//! Cycle n is due at `due(n) = due(n−1) + cycle − short(n−1)`, `due(0) = 0`, and runs at `due(n) + late(n)`, not before cycle
-//! n − 1. A task that was held up makes the cycles that it owes in a burst.
+//! Cycle n is due at `due(n) = due(n−1) + cycle − short(n−1)`, `due(0) = 0`, and runs at `due(n) + late(n)`, not before cycle n − 1. A
+//! delayed task executes its pending cycles in a burst.
 //!
-//! Everything is decided by the number of the cycle, so a run is the same every time.
+//! Everything is determined by the number of the cycle, so every run is the same.
 //!
 //! ```
 //! use servobench_base::{Rate, Tick};
@@ -19,7 +19,7 @@
 //!         ran.push((tick, cycle.due.0));
 //!     }
 //! }
-//! // The second cycle, 100 ticks late, holds the third one up.
+//! // The second cycle, 100 ticks late, delays the third one.
 //! assert_eq!(ran, [(0, 0), (164, 64), (164, 128), (192, 192)]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -27,17 +27,17 @@ use crate::bus::below;
 use core::ops::Range;
 use servobench_base::{Divider, Stateful, Tick};
 
-/// Something that goes wrong in some cycles of the motion task.
+/// A fault in some cycles of the motion task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskFault {
-    /// What.
+    /// Kind of fault.
     pub kind: TaskFaultKind,
-    /// In which cycles, the first of the run is 0; to `u64::MAX` where it does not end.
+    /// Affected cycles, the first of the run is 0; up to `u64::MAX` if the fault does not end.
     pub cycles: Range<u64>,
 }
 
 servobench_config::choices! {
-    /// What goes wrong with the motion task. The cycle of a fast clock is a base tick at least.
+    /// Kind of a fault of the motion task. The cycle of a fast clock is a base tick at least.
     pub enum TaskFaultKind named TaskFaultName {
         /// the motion task runs late, and with it the cycles that it holds up
         Late {
@@ -77,13 +77,13 @@ impl<'a> Params<'a> {
         Self { cycle: cycle.ticks() as u64, faults }
     }
 
-    /// From cycle to cycle by a clock that is right (base ticks).
+    /// Nominal period of the task (base ticks).
     #[must_use]
     pub const fn cycle(&self) -> u64 {
         self.cycle
     }
 
-    /// The same task, with which other things go wrong.
+    /// The same task with other faults.
     #[must_use]
     pub const fn with_faults<'b>(&self, faults: &'b [TaskFault]) -> Params<'b> {
         Params { cycle: self.cycle, faults }
@@ -111,7 +111,7 @@ impl<'a> Params<'a> {
     }
 }
 
-/// Which cycle is next.
+/// Next cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct State {
     number: u64,
@@ -119,27 +119,27 @@ pub struct State {
 }
 
 impl State {
-    /// Cycles that have run.
+    /// Number of cycles so far.
     #[must_use]
     pub const fn cycles(&self) -> u64 {
         self.number
     }
 }
 
-/// A cycle that runs.
+/// A cycle of the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cycle {
-    /// Its number, from 0.
+    /// Number, from 0.
     pub number: u64,
-    /// When it was due, by the task's own clock. A task does not know that it is late: it computes for this tick.
+    /// Due tick, by the task's own clock. A task does not know that it is late: it computes for this tick.
     pub due: Tick,
-    /// Whether its command is lost.
+    /// True if the command is lost.
     pub is_lost: bool,
-    /// Whether the link finds its command torn.
+    /// True if the link finds the command torn.
     pub is_torn: bool,
 }
 
-/// The next cycle that has run by `tick`, if any; to be asked until there is none.
+/// Next cycle that has run by `tick`, if any; call it until there is none.
 #[inline]
 pub fn step(params: &Params<'_>, state: &mut State, tick: Tick) -> Option<Cycle> {
     let State { number, due } = *state;

@@ -1,9 +1,8 @@
-//! Tables of a master on their way into the trajectory buffer of a drive, in interpolated position.
+//! Transfer of a master's tables to the trajectory buffer of a drive, in interpolated position.
 //!
-//! [`points`] puts a move into the units of the drive, as [`PointEncoding`] says; [`Stream`] sends the points, one in a cycle of
-//! the motion task. [`PointEncoding::sent`] has the words of a point, and [`followed`] what a drive makes of all of them. They
-//! need a heap (feature `trajectory`). How a point is written is the drive profile's
-//! ([`interpolated`](servobench_cia402::interpolated)).
+//! [`points`] converts a move to the units of the drive, by a [`PointEncoding`]; [`Stream`] sends the points, one in a cycle of the motion
+//! task. [`PointEncoding::sent`] encodes a point, and [`followed`] decodes all of them like a drive. They need a heap (feature
+//! `trajectory`). The formats of points are defined in the drive profile ([`interpolated`](servobench_cia402::interpolated)).
 mod points;
 mod stream;
 mod words;

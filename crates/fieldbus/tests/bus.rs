@@ -1,4 +1,4 @@
-//! The wire: when its cycles happen and what arrives.
+//! The wire: the ticks of its cycles, and the frames that arrive.
 use servobench_base::{Divider, Rate, Tick};
 use servobench_cia402::{Actuals, Commands};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind, Cycle, Params, State};

@@ -1,9 +1,9 @@
-//! The stability of the master's position loop as `docs/fieldbus.md` tells it, for cycles much shorter than the delay D.
+//! The stability of the master's position loop as given in `docs/fieldbus.md`, for cycles much shorter than the delay D.
 //!
 //! Oracle: the open loop L(s) = K·(1 + 1/(s·T_i) + T_d·s/(1 + s·T_d/10))·e^(−s·D)/s at s = jθ/D, whose magnitude falls with θ.
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// T_i/D (infinite where there is none) and T_d/D.
+/// T_i/D (infinite without an integrator) and T_d/D.
 #[derive(Clone, Copy)]
 struct Controller {
     integral: f64,
@@ -20,7 +20,7 @@ impl Controller {
         (real.hypot(imaginary) / theta, imaginary.atan2(real) - FRAC_PI_2 - theta)
     }
 
-    /// The largest stable K·D: where the phase is −π for the first time from above.
+    /// The largest stable K·D, at which the phase first falls to −π.
     fn largest(self) -> f64 {
         // With an integral the phase begins below −π; it is above between two crossings, of which the last one counts.
         let theta = (1..40_000).rev().map(|k| f64::from(k) * 1e-4).find(|theta| self.open_loop(*theta).1 > -PI);
@@ -57,7 +57,7 @@ fn the_page_tells_the_largest_gains_and_the_margins_of_the_loop() {
         let found = controller.margin(0.5 * largest);
         assert_eq!(format!("{found:.0}°"), *margin, "{time}: {found}");
     }
-    // What the page says of the derivative.
+    // The page's statements about the derivative.
     let with = |derivative| Controller { integral: f64::INFINITY, derivative }.largest();
     assert!(page.contains("the largest K·D from 1.57 to 1.78; from 0.5·D on it lowers it"));
     assert_eq!((format!("{:.2}", with(0.0)), format!("{:.2}", with(0.2))), ("1.57".to_owned(), "1.78".to_owned()));

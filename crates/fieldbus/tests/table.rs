@@ -20,7 +20,7 @@ fn the_page_lists_every_state_and_every_fault() {
     hold("faults", &faults);
 }
 
-/// Holds a section of the page against what it is made of, or writes it.
+/// Compares a section of the page with its source, or writes it.
 fn hold(section: &str, table: &str) {
     let (begin, end) = (format!("<!-- generated: {section} -->\n"), format!("<!-- end of generated {section} -->\n"));
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fieldbus.md");

@@ -1,4 +1,4 @@
-//! The motion task: when its cycles run and what becomes of their commands.
+//! The motion task: the ticks of its cycles, and the fate of their commands.
 use core::ops::Range;
 use servobench_base::{Divider, Rate, Tick};
 use servobench_fieldbus::task::{self, Params, State, TaskFault, TaskFaultKind};
@@ -43,7 +43,7 @@ fn a_late_cycle_is_late_alone_and_a_very_late_one_is_followed_by_a_burst() {
     assert_eq!(late(20, 1..2), [(0, 0), (84, 64), (128, 128), (192, 192), (256, 256)]);
     assert_eq!(late(150, 1..2), [(0, 0), (214, 64), (214, 128), (214, 192), (256, 256)]);
     assert_eq!(late(3, 0..1)[0], (3, 0));
-    // Two that say so are late by both.
+    // A cycle with two such faults is late by both.
     let both = [fault(TaskFaultKind::Late { by: 20 }, 1..3), fault(TaskFaultKind::Late { by: 7 }, 1..2)];
     assert_eq!(times(&both, 160), [(0, 0), (91, 64), (148, 128)]);
 }

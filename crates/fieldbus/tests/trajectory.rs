@@ -1,4 +1,4 @@
-//! A move as points of a drive, and their way there. Oracle: the sums of what is sent.
+//! A move as points for a drive, and their transfer. Oracle: the sums of the points sent.
 use servobench_base::Setpoint;
 use servobench_cia402::interpolated::serial::{Message, Record};
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand, SubMode, TimePeriod};
@@ -42,7 +42,7 @@ fn rounding_does_not_add_up() {
     }
 }
 
-/// What a drive reads of a command or a message that carries a point.
+/// The point that a drive reads from a command or a message.
 fn received(command: &ProfileCommand, message: Option<Message>) -> Option<Point> {
     let by_frame = match command {
         ProfileCommand::Points { point: Some(TrajectoryPoint::MoveSegment(bytes)), .. } => {
@@ -68,8 +68,8 @@ fn received(command: &ProfileCommand, message: Option<Message>) -> Option<Point>
     by_frame.or(by_message)
 }
 
-/// A drive that takes a point out of its buffer every third cycle, behind a bus of any delay: all points arrive, in order, none where there
-/// is no room.
+/// A drive that takes a point out of its buffer every third cycle, behind a bus of any delay: all points arrive, in order, and none without
+/// room for it.
 #[test]
 fn every_point_arrives_once_and_only_where_there_is_room() {
     let (polynomials, end) = wave(200);

@@ -1,14 +1,14 @@
-//! Frames under way in one direction.
+//! Frames on their way in one direction.
 
 use servobench_base::Stateful;
-/// Frames that a pipe holds at most.
+/// Capacity of a pipe (frames).
 const LENGTH: usize = 16;
 
-/// A frame per cycle goes in, another comes out.
+/// A delay line: a frame per cycle goes in, another comes out.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(super) struct Pipe<T> {
     frames: [Option<T>; LENGTH],
-    /// Where the next one goes in.
+    /// Index of the next input.
     entry: usize,
 }
 
@@ -19,7 +19,7 @@ impl<T: Copy> Default for Pipe<T> {
 }
 
 impl<T: Copy> Pipe<T> {
-    /// Puts a frame in, takes out the one that was put in `delay` cycles ago; `delay` is below [`LENGTH`].
+    /// Puts in a frame and takes out the one from `delay` cycles ago; `delay` is below [`LENGTH`].
     pub(super) const fn carry(&mut self, frame: Option<T>, delay: usize) -> Option<T> {
         self.frames[self.entry] = frame;
         let exit = (self.entry + LENGTH - delay) % LENGTH;

@@ -1,4 +1,4 @@
-//! What comes in: the answer of the drive, and the command of the motion task.
+//! Input of the link: the answer of the drive, and the command of the motion task.
 use super::mailbox::{Letter, Mailbox};
 use super::position::Position;
 use super::stream::{Arrival, Post};
@@ -21,7 +21,7 @@ impl State {
         }
     }
 
-    /// Reads the command, and the sample in it where there is a new one.
+    /// Reads the command, and its sample if there is a new one.
     pub(super) fn open(&mut self, p: &Params, mailbox: &Mailbox, now: u64) -> Post {
         self.drive_profile.has_news = false;
         let Some(Letter { number, tick, command }) = mailbox.read() else { return Post::Torn };
@@ -64,8 +64,8 @@ impl State {
     }
 }
 
-/// Whether a sample is one that the axis can be led along: its numbers fit the drive's units, and its velocity, and what its
-/// acceleration makes of it within a cycle, are not beyond twice the velocity limit.
+/// True if the axis can follow a sample: its numbers fit the drive's units, and neither its velocity nor the change of velocity by its
+/// acceleration within a cycle is beyond twice the velocity limit.
 fn is_followable(p: &Params, sample: &Sample) -> bool {
     let Sample { x, v, a, torque } = *sample;
     let highest = 2.0 * p.settings.velocity_limit;

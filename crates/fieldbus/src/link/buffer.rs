@@ -1,4 +1,4 @@
-//! The buffer of samples between motion task and link: which interval is read when.
+//! Buffer of samples between motion task and link: schedule of the intervals that are read.
 //!
 //! ```text
 //!                 samples of the interval that is read                  ahead of it
@@ -7,29 +7,28 @@
 //!   late by two:  … k'    k'' both predicted                             –
 //! ```
 //!
-//! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval that ends it `points/2 − 1` samples before is read from
-//! `tick(k) + margin` on, whenever the sample came: what is read at t is the motion of `t − delay`,
-//! `delay = (points/2)·cycle + margin`. That the samples after an interval's end have not come shows only when the interval
-//! is over. Then the next one is made with a predicted sample in the place of the late one, twice at most; when the late
-//! sample comes, it takes its place and the prediction behind it is made anew.
+//! Sample k is due at `tick(k) = tick(0) + k·cycle`. The interval that ends `points/2 − 1` samples before it is read from
+//! `tick(k) + margin` on, whenever the sample came: the output at t is the motion of `t − delay`, `delay = (points/2)·cycle + margin`.
+//! Missing samples after the end of an interval only matter when the interval is over. Then the next one is formed with a predicted sample
+//! in place of the late one, twice at most; when the late sample comes, it replaces its prediction, and the next one is predicted anew.
 //!
 //! # Ahead of the samples
 //!
-//! With [`Timing::ahead`] so many samples are predicted from the start: the interval that is read ends as many samples later, and the
-//! delay is as many cycles shorter. Each sample that comes takes the place of the oldest prediction, those behind it are made anew, and one
-//! more is made when the next interval begins. Of the two steps that can be predicted as many fewer are left for what is late.
+//! With [`Timing::ahead`] samples predicted from the start, the interval that is read ends that many samples later, and the delay is that
+//! many cycles shorter. Each sample that comes replaces the oldest prediction, those behind it are predicted anew, and another one is added
+//! when the next interval begins. Of the two steps that can be predicted, fewer are left for late samples accordingly.
 //!
-//! A mode predicts by what it uses. Those that use the velocity go on along the parabola of the last sample, the others along
-//! the straight line through the last two.
+//! A mode predicts from the values that it uses. Modes that use the velocity continue along the parabola of the last sample, the others
+//! along the straight line through the last two.
 use core::array::from_fn;
 use servobench_base::Stateful;
 use servobench_motion::interpolate::{Command, Interval, Mode, Sample};
 
-/// Samples that may be there before they are needed.
+/// Most samples that can be stored before they are needed.
 pub(crate) const AHEAD: usize = 4;
-/// Steps that are predicted at most.
+/// Most steps that are predicted.
 pub(crate) const PREDICTED: usize = 2;
-/// Samples that a mode uses at most.
+/// Most samples that a mode uses.
 const POINTS: usize = 6;
 
 /// Mode and times, constant during a run.
@@ -38,9 +37,9 @@ pub(crate) struct Timing {
     pub(crate) mode: Mode,
     /// Cycle of the motion task (base ticks).
     pub(crate) cycle: u64,
-    /// How late a sample may come without being predicted (base ticks).
+    /// Tolerated lateness of a sample without a prediction (base ticks).
     pub(crate) margin: u64,
-    /// Samples that are predicted when all come in time, [`PREDICTED`] and half of those that the mode uses at most.
+    /// Number of samples predicted when all come in time, at most [`PREDICTED`] and half of those that the mode uses.
     pub(crate) ahead: usize,
     /// Length of a base tick (s).
     pub(crate) tick: f64,
@@ -52,7 +51,7 @@ impl Timing {
         self.cycle as f64 * self.tick
     }
 
-    /// By how much the motion that is read lies behind the samples (base ticks).
+    /// Delay of the motion that is read behind the samples (base ticks).
     pub(crate) const fn delay(&self) -> u64 {
         (self.mode.delay_samples() - self.ahead) as u64 * self.cycle + self.margin
     }
@@ -68,42 +67,42 @@ impl Timing {
     }
 }
 
-/// What a sample has changed.
+/// Effect of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Taken {
-    /// Nothing of what is read now.
+    /// No change of the motion that is read.
     Kept,
-    /// What was predicted is known now.
+    /// A predicted sample is now known.
     Corrected,
-    /// There was no room: what is read starts again with the newest samples.
+    /// The buffer was full: reading restarts with the newest samples.
     Overflow,
 }
 
-/// How far the reading is.
+/// State of the reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reading {
     /// Nothing to read yet.
     Waiting,
-    /// In the interval of the buffer that uses so many predicted samples, 0 to 2.
+    /// In the interval of the buffer with this number of predicted samples, 0 to 2.
     Interval(usize),
-    /// Past all that can be predicted; the buffer is empty now.
+    /// Past the last predictable sample; the buffer is empty now.
     Underflow,
 }
 
-/// The samples and the interval that is read.
+/// Samples, and the interval that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Buffer {
-    /// The last samples that were shifted in, the newest at the end; those predicted are the last ones.
+    /// Samples last shifted in, the newest at the end; predicted ones come last.
     window: [Sample; POINTS],
     predicted: usize,
-    /// Samples in the window since the buffer was empty, as far as they matter.
+    /// Samples in the window since the buffer was empty, up to the number that matters.
     received: usize,
     /// Samples behind the window, the oldest first.
     ahead: [Sample; AHEAD],
     waiting: usize,
-    /// When the newest sample was due (base ticks).
+    /// Due time of the newest sample (base ticks).
     newest: u64,
-    /// From when on the interval is read (base ticks).
+    /// Begin of the interval (base ticks).
     begins: u64,
     interval: Option<Interval>,
 }
@@ -123,10 +122,10 @@ impl Buffer {
         }
     };
 
-    /// Takes a sample that was due at `due`, `missed` samples after the last one, `now`.
+    /// Takes a sample that was due at `due`, `missed` samples after the last one, at the time `now`.
     ///
-    /// On the grid of the cycle a sample belongs where its tick says, off the grid behind those before it. What is missing in
-    /// between is predicted for good; too much of it, and the buffer starts again.
+    /// A sample on the grid of the cycle is placed by its tick, one off the grid behind those before it. Missing samples in between are
+    /// permanently replaced by predictions; if too many are missing, the buffer restarts.
     pub(crate) fn take(&mut self, timing: &Timing, sample: Sample, due: u64, missed: u64, now: u64) -> Taken {
         if self.received == 0 {
             self.newest = due.saturating_sub(timing.cycle);
@@ -174,7 +173,7 @@ impl Buffer {
         Taken::Overflow
     }
 
-    /// The oldest predicted sample is known now.
+    /// Replaces the oldest predicted sample by the received one.
     fn correct(&mut self, timing: &Timing, sample: Sample) {
         let known = POINTS - self.predicted;
         self.window[known] = sample;
@@ -186,7 +185,7 @@ impl Buffer {
         self.build(timing);
     }
 
-    /// Goes on to the interval that is read when all samples come in time.
+    /// Advances to the interval that is read when all samples come in time.
     fn run_ahead(&mut self, timing: &Timing) {
         for _ in 0..timing.ahead {
             let next = if self.waiting > 0 {
@@ -212,14 +211,14 @@ impl Buffer {
         next
     }
 
-    /// Of all samples that are there, the newest become those that are read from `now` on with the nominal delay.
+    /// Restarts the reading: the newest of all stored samples are read from `now` on with the nominal delay.
     fn start_again(&mut self, timing: &Timing, sample: Sample, now: u64) {
         let all: [Sample; POINTS + AHEAD + 1] = from_fn(|i| match i {
             i if i < POINTS => self.window[i],
             i if i < POINTS + AHEAD => self.ahead[i - POINTS],
             _ => sample,
         });
-        // No sample comes before it is due: who is ahead of now counts in shorter cycles than the motion task's.
+        // No sample comes before it is due: a tick in the future means that its sender counts in shorter cycles than the motion task's.
         self.newest = self.newest.min(now);
         // Samples that are not to be read yet: the margin is two cycles at most.
         let early = (self.newest + timing.margin).saturating_sub(now).div_ceil(timing.cycle);
@@ -233,7 +232,7 @@ impl Buffer {
         self.build(timing);
     }
 
-    /// Goes on to the interval that is read `now`.
+    /// Advances to the interval that is read at `now`.
     pub(crate) fn advance(&mut self, timing: &Timing, now: u64) -> Reading {
         if self.interval.is_none() || now < self.begins {
             return Reading::Waiting;
@@ -260,7 +259,7 @@ impl Buffer {
         Reading::Interval(self.predicted)
     }
 
-    /// The motion at `now`; along its derivatives where the interval is over. `None` while there is none.
+    /// Motion at `now`, extrapolated by its derivatives when the interval is over; `None` without an interval.
     pub(crate) fn at(&self, timing: &Timing, now: u64) -> Option<Command> {
         let interval = self.interval.as_ref()?;
         let passed = now.checked_sub(self.begins)?;
@@ -281,7 +280,7 @@ impl Buffer {
         self.received = (self.received + 1).min(POINTS);
     }
 
-    /// The last two samples, predicted ones left out; while there is only one, it twice.
+    /// Last two samples without predicted ones; if there is only one, that one twice.
     fn last_two(&self) -> [Sample; 2] {
         let known = POINTS - self.predicted;
         let last = |back: usize| match self.waiting.checked_sub(back) {

@@ -1,30 +1,30 @@
-//! What is put out: the motion that is read from the buffer, reached and left without a jump.
+//! Output of the link: the motion that is read from the buffer, joined and left without a jump.
 //!
-//! Whenever what is read changes under the output – at the start, when a prediction turns out to be wrong, after a stop – the
-//! output goes on from where it is, and the difference to what is read from now on,
+//! Whenever the motion that is read changes under the output – at the start, when a prediction turns out to be wrong, after a stop – the
+//! output continues from its present state, with the difference to the motion from now on,
 //!
 //! ```text
-//! e(t) = output(t) − read(t),     e(now) and its velocity and acceleration as they are,
+//! e(t) = output(t) − read(t),     e(now) with its velocity and acceleration,
 //! ```
 //!
-//! but for an acceleration beyond that of the recovery, twice: it is that of samples which contradict each other, such as positions that
-//! follow a moving axis at velocity zero, and gone with the next interval.
+//! except that its acceleration is limited to twice that of the recovery: a higher one comes from contradictory samples, such as positions
+//! that follow a moving axis at velocity zero, and is gone with the next interval.
 //!
-//! That difference is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is at
-//! most what is read plus that of the recovery. A stop is the same kind of transition, to standstill. What torque differs by
-//! fades linearly over the same time.
+//! That difference is led to zero by a jerk-limited transition with the recovery limits. So the output never jumps, and its acceleration is
+//! at most that of the motion plus that of the recovery. A stop is the same kind of transition, to standstill. A difference of torque fades
+//! linearly over the same time.
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::Order;
 use servobench_motion::interpolate::Command;
 use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
 
-/// How differences are led to zero, constant during a run.
+/// Limits of the recovery from differences, constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Recovery {
     pub(crate) limits: DirectionalLimits,
-    /// The largest acceleration that a difference is taken to have (m/s² or rad/s²).
+    /// Largest acceleration of a difference that is taken into account (m/s² or rad/s²).
     pub(crate) highest_acceleration: f64,
-    /// A difference in position that does not matter (m or rad).
+    /// Negligible difference in position (m or rad).
     pub(crate) resolution: f64,
     /// Cycle of the motion task (base ticks).
     pub(crate) cycle: f64,
@@ -33,22 +33,22 @@ pub(crate) struct Recovery {
 }
 
 impl Recovery {
-    /// Whether a difference is more than the resolution within a cycle of the motion task.
+    /// True if a difference exceeds the resolution within a cycle of the motion task.
     fn matters(&self, e: &Setpoint) -> bool {
         let t = self.cycle * self.tick;
         e.x.abs() + t * (e.v.abs() + t * e.a.abs()) > self.resolution
     }
 }
 
-/// A transition that is under way.
+/// An active transition.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct ProfileCommand {
     transition: Transition,
     /// Torque at its start, zero at its end (N·m or N).
     torque: f64,
-    /// When it started (base ticks).
+    /// Start time (base ticks).
     from: u64,
-    /// Length (base ticks), not rounded: of the transition, and of a cycle of the motion task at least, for the torque.
+    /// Length (base ticks), not rounded: of the transition, and at least a cycle of the motion task, for the torque.
     length: f64,
 }
 
@@ -71,21 +71,21 @@ impl ProfileCommand {
     }
 }
 
-/// What is put out.
+/// Output of the link.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) enum Course {
     /// At rest at a position.
     Rest(f64),
     /// To standstill.
     Stop(ProfileCommand),
-    /// What is read.
+    /// The motion that is read.
     Read,
-    /// What is read and what the output differs by.
+    /// The motion that is read plus the fading difference of the output.
     Join(ProfileCommand),
 }
 
 impl Course {
-    /// From `output` to standstill; at once where no stop can be planned.
+    /// From `output` to standstill; immediately if no stop can be planned.
     pub(crate) fn stop(output: Command, recovery: &Recovery, now: u64) -> Self {
         match ProfileCommand::plan(output, Target::Velocity(0.0), recovery, now) {
             Some(way) => Self::Stop(way),
@@ -93,7 +93,7 @@ impl Course {
         }
     }
 
-    /// From `output` to what is read; `None` where that cannot be planned.
+    /// From `output` to the motion that is read; `None` if that cannot be planned.
     pub(crate) fn join(output: Command, read: Command, recovery: &Recovery, now: u64) -> Option<Self> {
         let (o, r) = (output.setpoint, read.setpoint);
         let highest = recovery.highest_acceleration;
@@ -106,7 +106,7 @@ impl Course {
             .map(Self::Join)
     }
 
-    /// The output at `now`, with what is read then.
+    /// Output at `now`, with the motion that is read then.
     pub(crate) fn at(&self, read: impl FnOnce() -> Option<Command>, now: u64, tick: f64) -> Option<Command> {
         match self {
             Self::Rest(x) => Some(Command { setpoint: Setpoint::at_rest(*x), torque: 0.0 }),
@@ -116,7 +116,7 @@ impl Course {
         }
     }
 
-    /// Drops a transition that is over.
+    /// Drops a finished transition.
     pub(crate) fn settle(&mut self, now: u64, tick: f64) {
         match self {
             Self::Stop(way) if way.is_over(now) => *self = Self::Rest(way.at(now, tick).setpoint.x),

@@ -1,21 +1,22 @@
-//! Limits of the effort, and efforts from one cycle of the motion task to the next: linear, as the source has it for the torque in every mode.
+//! Limits of the effort, and interpolation of efforts between cycles of the motion task: linear, as in the source for the torque in every
+//! mode.
 //!
-//! It begins with the actual effort. Held when the next one is late, and led to zero within a cycle when it stays away for as long as set-points would be
-//! predicted.
+//! It begins with the actual effort. The effort is held when the next one is late, and led to zero within a cycle when it stays away longer
+//! than set-points would be predicted.
 use super::buffer::{PREDICTED, Timing};
 use crate::Interpolation;
 use servobench_base::Stateful;
 
-/// The largest effort that the drive is told. One that is lifted or raised acts until the set-points from before are behind: an axis
-/// that is held by its limit would push with all it has.
+/// Largest effort sent to the drive. A limit that is removed or raised stays active until earlier set-points have passed: an axis that is
+/// held by its limit would otherwise push with full effort.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Stateful)]
 pub(crate) struct Limit {
-    /// The limit that acts (N·m or N), and when it was asked for last (base ticks).
+    /// Limit in effect (N·m or N), and the time of its last request (base ticks).
     held: Option<(f64, u64)>,
 }
 
 impl Limit {
-    /// What the drive is told `now`, with set-points that are `delay` ticks on their way; `asked` by the motion task.
+    /// Limit sent to the drive at `now`, for set-points delayed by `delay` ticks; `asked` comes from the motion task.
     pub(crate) fn step(&mut self, asked: Option<f64>, delay: u64, now: u64) -> Option<f64> {
         let is_lower = |limit: f64| asked.is_none_or(|asked| asked > limit);
         match self.held {
@@ -26,18 +27,18 @@ impl Limit {
     }
 }
 
-/// From one effort to another (N·m or N).
+/// Linear ramp from one effort to another (N·m or N).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Ramp {
     from: f64,
     to: f64,
-    /// When it started (base ticks).
+    /// Start time (base ticks).
     start: u64,
     state: Interpolation,
 }
 
 impl Ramp {
-    /// Nothing is followed; who begins to follow begins with `effort`.
+    /// A ramp without a demand; a new demand starts from `effort`.
     pub(crate) const fn off(effort: f64) -> Self {
         Self { from: effort, to: effort, start: 0, state: Interpolation::Off }
     }
@@ -46,7 +47,7 @@ impl Ramp {
         self.state
     }
 
-    /// Towards `effort`, where there is a new one; what is put out `now`.
+    /// Advances towards `effort`, if there is a new one; returns the output at `now`.
     pub(crate) fn step(&mut self, timing: &Timing, effort: Option<f64>, now: u64) -> f64 {
         if let Some(effort) = effort {
             *self = Self { from: self.at(timing, now), to: effort, start: now, state: Interpolation::Run1 };
@@ -66,7 +67,7 @@ impl Ramp {
         self.at(timing, now)
     }
 
-    /// The effort at `now`.
+    /// Effort at `now`.
     pub(crate) fn at(&self, timing: &Timing, now: u64) -> f64 {
         let passed = now.saturating_sub(self.start).min(timing.cycle);
         self.from + (self.to - self.from) * (passed as f64 / timing.cycle as f64)

@@ -1,7 +1,7 @@
-//! What goes out: the frame for the drive.
+//! Output of the link: the frame for the drive.
 //!
-//! Torques are whole thousandths of the rated one (6071h, 60B2h), often coarser than what a model of the axis feeds forward. What
-//! is rounded off one goes into the next, so that their mean is exact: the axis integrates them twice and hardly sees the steps.
+//! Torques are whole thousandths of the rated one (6071h, 60B2h), often coarser than the feedforward of an axis model. The rounding error
+//! of one is carried into the next, so that their mean is exact: the axis integrates them twice and hardly sees the steps.
 use super::drive_profile;
 use super::effort::Ramp;
 use super::position::Position;
@@ -15,7 +15,7 @@ use servobench_cia402::{Commands, Mode};
 use servobench_motion::interpolate;
 
 impl State {
-    /// Asks for the mode that the task needs, and for how long.
+    /// Requests the mode that the task needs, and supervises the time for the change.
     pub(super) fn ask_for_the_mode(&mut self, p: &Params, now: u64) {
         let mode = match (&self.command.task, &p.settings.control) {
             _ if self.homing.is_interrupted() => Mode::Homing,
@@ -36,13 +36,13 @@ impl State {
         }
     }
 
-    /// Whether the drive shows the mode that it is asked for, and knows that it is; the simplified sequence does not ask.
+    /// True if the drive shows the requested mode, in an answer that reflects the request; the simplified sequence does not check.
     fn is_in_mode(&self, p: &Params) -> bool {
         p.settings.sequencing == Sequencing::Simplified
             || self.actuals.mode == self.commands.mode && self.mode_since + p.round_trip <= self.received_at
     }
 
-    /// Whether the drive does what the task asks for.
+    /// True if the drive follows the task.
     pub(super) fn follows(&self, p: &Params) -> bool {
         self.was_on && self.fault.is_none() && self.is_in_mode(p)
     }
@@ -112,7 +112,7 @@ impl State {
         }
     }
 
-    /// Tells the position loop of the master what the axis was off by when it was measured last.
+    /// Compares the position with the delayed set-point for the position loop of the master.
     fn compare(&mut self, p: &Params, setpoint: &Setpoint, now: u64) {
         let Control::Velocity { gains, .. } = &p.settings.control else { return };
         self.position_loop.put_out(now, setpoint);
@@ -122,8 +122,8 @@ impl State {
         }
     }
 
-    /// Asks for what the axis does anyway, as far as the mode that the task needs carries it: the position that its drive follows,
-    /// its velocity, and the effort that it is commanded.
+    /// Commands the axis' own motion, as far as the mode of the task carries it: the position that its drive follows, its velocity, and its
+    /// commanded effort.
     pub(super) fn rest(&mut self, p: &Params) {
         let ahead = self.following_error(p);
         let Setpoint { v, .. } = self.own_motion(p);
@@ -160,7 +160,7 @@ impl State {
         let effort = self.ramp.step(&p.stream.timing, effort, now);
         let mut left = self.torque_rest;
         self.rest(p);
-        // Between efforts that fit.
+        // The ramp runs between efforts that fit.
         self.commands.target_torque = p.scale.thousandths_with(effort, &mut left).unwrap_or(0);
         self.torque_rest = left;
     }
@@ -175,13 +175,13 @@ impl State {
         if !follows {
             return self.homing.fail();
         }
-        // What was received now answers what was told a round trip ago.
+        // The present answer reflects commands of a round trip ago.
         if self.homing.step(self.actuals.statusword, self.received_at.saturating_sub(p.round_trip), now) {
             self.count_from_reference(p);
         }
     }
 
-    /// A homing that was interrupted is over when the drive is known to rest, or does nothing at all.
+    /// Ends an interrupted homing when the drive is known to rest, or is off.
     fn end_homing(&mut self, p: &Params) {
         if !self.follows(p) {
             if self.homing.is_interrupted() && !self.was_on {
@@ -192,7 +192,7 @@ impl State {
         }
     }
 
-    /// The reference was found: the position is the one of all readings that is nearest to it.
+    /// Counts from the found reference: of all positions with the present reading, the nearest to the reference is taken.
     fn count_from_reference(&mut self, p: &Params) {
         let reference = self.commands.home_offset;
         match Position::near(&p.scale, reference.into(), &self.actuals, self.received_at) {
@@ -202,15 +202,15 @@ impl State {
     }
 }
 
-/// The target position, in as many words as the counter needs.
+/// Sets the target position, in as many words as the counter needs.
 pub(super) const fn set_target(commands: &mut Commands, counter: Counter, counts: i128) {
     [commands.target_position, commands.target_position_high] = counter.words(counts);
 }
 
-/// A frame that is filled.
+/// A frame under construction.
 struct Sent<'a> {
     commands: &'a mut Commands,
-    /// Whether the drive's units could express everything; what they could not is as it was.
+    /// True if the drive's units could express every value; the others keep their old value.
     complete: bool,
 }
 

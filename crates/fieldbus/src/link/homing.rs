@@ -1,39 +1,39 @@
-//! Homing by the drive (mode 6), as the master sees it.
+//! Homing by the drive (mode 6), on the master's side.
 //!
-//! Bit 4 of the controlword starts it by its edge, given when the drive shows the mode (6061h). The statusword tells the rest
-//! (IEC 61800-7-201, homing mode):
+//! The edge of bit 4 of the controlword starts it, once the drive shows the mode (6061h). The statusword reports the progress (IEC
+//! 61800-7-201, homing mode):
 //!
 //! | bit 13 | bit 12 | bit 10 | |
 //! |---|---|---|---|
-//! | 0 | 0 | 0 | under way |
+//! | 0 | 0 | 0 | searching |
 //! | 0 | 0 | 1 | interrupted or not started |
 //! | 0 | 1 | 0 | attained, still moving |
 //! | 0 | 1 | 1 | completed |
 //! | 1 | 0 | x | error |
 //!
-//! What the drive says before it can know of the start belongs to an earlier homing and is not looked at.
+//! A statusword sent before the drive can know of the start belongs to an earlier homing and is ignored.
 //!
-//! A motion task that asks for something else meanwhile takes bit 4 back. The mode stays until the drive is known to rest: it may find
-//! its reference before it learns of the change, and its positions then count from another zero than those it would be sent.
+//! If the motion task changes its task meanwhile, bit 4 is cleared. The mode stays until the drive is known to rest: it may find its
+//! reference before it learns of the change, and its positions would then count from another zero than the targets sent to it.
 use crate::Homing;
 use servobench_base::Stateful;
 use servobench_cia402::{StatusBit, Statusword};
 
-/// How far it is.
+/// State of the procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) enum Procedure {
-    /// Not asked for, or waiting for the mode.
+    /// Not requested, or waiting for the mode.
     Idle,
     /// Started at this tick.
     Started(u64),
-    /// Over, for good or bad.
+    /// Finished, with success or failure.
     Over(Homing),
-    /// Taken back at this tick; the drive is not known to rest yet.
+    /// Withdrawn at this tick; the drive is not known to rest yet.
     Interrupted(u64),
 }
 
 impl Procedure {
-    /// Whether bit 4 is set.
+    /// True if bit 4 is set.
     pub(crate) const fn is_started(self) -> bool {
         matches!(self, Self::Started(_) | Self::Over(_))
     }
@@ -47,8 +47,8 @@ impl Procedure {
         }
     }
 
-    /// The drive is in the mode and has said `word`; the answer to what was told at `known` and before. Whether the reference
-    /// was found with that.
+    /// Evaluates the statusword `word` of a drive in the mode, which reflects the commands up to `known`. Returns true if the reference was
+    /// found with it.
     pub(crate) const fn step(&mut self, word: Statusword, known: u64, now: u64) -> bool {
         match *self {
             Self::Idle => *self = Self::Started(now),
@@ -65,7 +65,7 @@ impl Procedure {
         false
     }
 
-    /// Something else is asked for.
+    /// Withdraws the request.
     pub(crate) const fn leave(&mut self, now: u64) {
         *self = match *self {
             Self::Started(_) => Self::Interrupted(now),
@@ -78,8 +78,8 @@ impl Procedure {
         matches!(self, Self::Interrupted(_))
     }
 
-    /// The drive has said `word` while it is interrupted, the answer to what was told at `known` and before. Whether the reference
-    /// was found before it received of that.
+    /// Evaluates the statusword `word` during an interruption, which reflects the commands up to `known`. Returns true if the reference was
+    /// found before the drive received the interruption.
     pub(crate) const fn end(&mut self, word: Statusword, known: u64) -> bool {
         match *self {
             Self::Interrupted(since) if since <= known && word.has(StatusBit::TargetReached) => {
@@ -90,7 +90,7 @@ impl Procedure {
         }
     }
 
-    /// The drive cannot go on.
+    /// Ends the procedure because the drive cannot continue.
     pub(crate) const fn fail(&mut self) {
         match self {
             Self::Started(_) => *self = Self::Over(Homing::Failed),

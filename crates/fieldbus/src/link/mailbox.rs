@@ -1,7 +1,7 @@
-//! Where the motion task leaves its command and the link finds it.
+//! Mailbox in which the motion task leaves its command for the link.
 //!
-//! Two tasks, one slot and a number before and after (a sequence lock): the writer counts up before it writes and again when
-//! it has written, so that the reader sees whether it looked in between.
+//! Two tasks, one slot and a number before and after (a sequence lock): the writer increments one number before it writes and the other
+//! after it, so that the reader can detect a write in progress.
 //!
 //! ```
 //! use servobench_base::Tick;
@@ -15,19 +15,19 @@ use crate::{AxisCommand, Task};
 use servobench_base::{Stateful, Tick};
 use servobench_motion::interpolate::Sample;
 
-/// The command of the motion task with the cycle that it belongs to.
+/// Command of the motion task, with its cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub struct Mailbox {
-    /// Number of writings that were begun.
+    /// Number of writes begun.
     begun: u64,
-    /// Number of those that are finished.
+    /// Number of writes finished.
     written: u64,
     tick: Tick,
     command: AxisCommand,
 }
 
 impl Default for Mailbox {
-    /// Nothing written: the axis is not powered.
+    /// Empty: the axis is not powered.
     fn default() -> Self {
         let task = Task::Follow(Sample::default());
         Self { begun: 0, written: 0, tick: Tick(0), command: AxisCommand { power: false, ..AxisCommand::of(task) } }
@@ -35,18 +35,18 @@ impl Default for Mailbox {
 }
 
 impl Mailbox {
-    /// Leaves the command of the cycle of the motion task that was due at `tick`. It may come later than that.
+    /// Leaves the command of the motion task's cycle that was due at `tick`. It may come later than that.
     pub const fn write(&mut self, tick: Tick, command: AxisCommand) {
         self.begin();
         self.finish(tick, command);
     }
 
-    /// Begins to write: who reads now finds the command torn. For a motion task that is interrupted by the link.
+    /// Begins a write: a reader finds the command torn meanwhile. For a motion task that is interrupted by the link.
     pub const fn begin(&mut self) {
         self.begun += 1;
     }
 
-    /// Ends what [`begin`](Self::begin) began.
+    /// Finishes the write that [`begin`](Self::begin) began.
     pub const fn finish(&mut self, tick: Tick, command: AxisCommand) {
         (self.tick, self.command) = (tick, command);
         self.written = self.begun;
@@ -58,7 +58,7 @@ impl Mailbox {
         self.written
     }
 
-    /// The command, when it is whole.
+    /// The command, if it is complete.
     pub(crate) const fn read(&self) -> Option<Letter> {
         if self.begun == self.written {
             Some(Letter { number: self.written, tick: self.tick.0, command: self.command })
@@ -68,12 +68,12 @@ impl Mailbox {
     }
 }
 
-/// A command as it was read.
+/// A command that was read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Letter {
-    /// How many were written before and with it.
+    /// Number of the command, from 1.
     pub(crate) number: u64,
-    /// When its cycle was due (base ticks).
+    /// Due time of its cycle (base ticks).
     pub(crate) tick: u64,
     pub(crate) command: AxisCommand,
 }

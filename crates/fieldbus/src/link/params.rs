@@ -1,4 +1,4 @@
-//! What a link needs to know before it starts.
+//! Settings of a link.
 use super::buffer::{PREDICTED, Timing};
 use super::course::Recovery;
 use super::position_loop;
@@ -12,32 +12,32 @@ use servobench_motion::Order;
 use servobench_motion::interpolate::{Interval, Mode, Sample};
 use servobench_motion::online::{DirectionalLimits, Effort, Target, Transition};
 
-/// What the drive is commanded while the axis follows set-points.
+/// Commands to the drive while the axis follows set-points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Control {
     /// Positions (csp).
     Position {
-        /// Whether 60B1h carries the velocity of the set-point.
+        /// True if 60B1h carries the velocity of the set-point.
         velocity_offset: bool,
-        /// Whether 60B2h carries the torque of the sample.
+        /// True if 60B2h carries the torque of the sample.
         torque_offset: bool,
     },
-    /// Velocities of a position loop in the master (csv): `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit, of the
-    /// position and the set-point of the time when it was measured; the [module documentation](super#the-position-loop-in-the-master)
-    /// says which that is. With an integral and a derivative of the difference where there are such.
+    /// Velocities of a position loop in the master (csv): `v = gain·(x_set − x_actual) + feedforward·v_set`, within ±limit, with position
+    /// and set-point of the time of measurement, which the [module documentation](super#the-position-loop-in-the-master) defines. The
+    /// integral and the derivative of the difference are added if given.
     Velocity {
         /// Position gain K_v, integral and derivative.
         gains: PositionGains,
-        /// Share of the velocity of the set-point that goes straight on, 0 to 1.
+        /// Share of the set-point's velocity that is fed forward, 0 to 1.
         feedforward: f64,
-        /// Largest velocity that is commanded (m/s or rad/s).
+        /// Largest commanded velocity (m/s or rad/s).
         limit: f64,
-        /// Whether 60B2h carries the torque of the sample.
+        /// True if 60B2h carries the torque of the sample.
         torque_offset: bool,
     },
 }
 
-/// How a link is set up. Times are whole base ticks.
+/// Settings of a link. Times are whole base ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Base rate of the run.
@@ -46,40 +46,39 @@ pub struct Settings {
     pub bus_cycle: Divider,
     /// Cycle of the motion task.
     pub motion_cycle: Divider,
-    /// How the set-points between two samples are found.
+    /// Interpolation between two samples.
     pub interpolation: Mode,
-    /// How late a sample may come without being predicted (base ticks); adds to the delay. At most two cycles of the motion
-    /// task.
+    /// Tolerated lateness of a sample without a prediction (base ticks), at most two cycles of the motion task; adds to the delay.
     pub margin: u32,
-    /// Cycles of the motion task by which its motion is predicted, which makes the delay as much shorter: two and half of the samples
-    /// that the interpolation uses at most.
+    /// Cycles of the motion task by which its motion is predicted, which shortens the delay accordingly: at most two, and half of the
+    /// samples that the interpolation uses.
     pub run_ahead: u32,
-    /// What the drive is commanded.
+    /// Commands to the drive.
     pub control: Control,
-    /// How the drive is brought to power.
+    /// Sequence by which the drive is powered.
     pub sequencing: Sequencing,
-    /// How long the drive may be silent, or take for what it is told (base ticks).
+    /// Longest silence of the drive, and longest time to execute a command (base ticks).
     pub drive_timeout: u64,
-    /// Bus cycles from a command to the first answer that knows of it.
+    /// Bus cycles from a command to the first answer that reflects it.
     pub round_trip: u32,
-    /// How old the actual position is in the answer of a drive when the bus takes it (base ticks): a step of a drive that
-    /// measures at its steps.
+    /// Age of the actual position in the answer of a drive when the bus takes it (base ticks): a step of a drive that measures at its
+    /// steps.
     pub answer_age: u32,
-    /// Whether limit and home switches are closed where they are not actuated.
+    /// True if limit and home switches are closed while not actuated.
     pub reverse_switches: bool,
-    /// How the drive counts.
+    /// Units of the drive.
     pub units: Units,
-    /// Whether the actual velocity is made of differences of positions, for a drive that gives none.
+    /// True if the actual velocity is computed from differences of positions, for a drive that does not report one.
     pub velocity_from_differences: bool,
-    /// With how much velocity, acceleration and jerk the output is stopped, and a difference taken out beside the motion; the
-    /// snap is not used.
+    /// Velocity, acceleration and jerk with which the output is stopped, and a difference led to zero in addition to the motion; the snap
+    /// is not used.
     pub recovery: Limits,
-    /// Velocity that the axis can do (m/s or rad/s): the position command never moves faster. Samples with more than twice of it
-    /// are refused.
+    /// Velocity of which the axis is capable (m/s or rad/s): the position command never moves faster. Samples with more than twice that
+    /// velocity are refused.
     pub velocity_limit: f64,
 }
 
-/// A link that is set up, constant during a run.
+/// Checked settings of a link, constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
     pub(crate) settings: Settings,
@@ -87,15 +86,15 @@ pub struct Params {
     pub(crate) scale: Scale,
     /// Cycle of the motion task (s).
     pub(crate) cycle: f64,
-    /// From a command to the first answer that knows of it (base ticks).
+    /// Time from a command to the first answer that reflects it (base ticks).
     pub(crate) round_trip: u64,
-    /// How much earlier than it is received an actual position was to follow what was put out (base ticks).
+    /// Age, at its reception, of the set-point that an actual position should match (base ticks).
     pub(crate) reference_delay: u64,
 }
 
 impl Params {
     /// # Errors
-    /// [`FieldbusError`] names what is refused, with what would be accepted.
+    /// [`FieldbusError`] names the refused setting, with its bound.
     pub fn new(settings: Settings) -> Result<Self, FieldbusError> {
         let scale = settings.units.scale()?;
         let (bus_cycle, cycle) = (u64::from(settings.bus_cycle.ticks()), u64::from(settings.motion_cycle.ticks()));
@@ -131,7 +130,7 @@ impl Params {
             return Err(FieldbusError::RunAhead { ahead: settings.run_ahead, highest });
         }
         let timing = Timing { mode: settings.interpolation, cycle, margin: settings.margin.into(), ahead, tick };
-        // What the run will ask for, once: whatever is refused then is refused now.
+        // Plans once what the run will plan later, so that errors show now.
         Interval::new(timing.mode, cycle as f64 * tick, &[Sample::default(); 6])?;
         let moving = servobench_base::Setpoint { v: velocity_limit, ..Default::default() };
         Transition::plan(Order::Third, &moving, &Target::Velocity(0.0), &limits, Effort::Fast)?;
@@ -149,21 +148,21 @@ impl Params {
         Ok(Self { settings, stream, scale, cycle: cycle as f64 * tick, round_trip, reference_delay })
     }
 
-    /// The settings that it was made of.
+    /// The original settings.
     #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Whether the torque of samples goes out beside positions or velocities.
+    /// True if the torque of samples is sent as an offset to positions or velocities.
     pub(crate) const fn sends_torque(&self) -> bool {
         match self.settings.control {
             Control::Position { torque_offset, .. } | Control::Velocity { torque_offset, .. } => torque_offset,
         }
     }
 
-    /// By how many base ticks the set-point that is put out lies behind the sample of the motion task, always: what is put out
-    /// at tick t is the motion that the samples describe at t − delay.
+    /// Constant delay of the output set-point behind the sample of the motion task (base ticks): the output at tick t is the motion that
+    /// the samples describe at t − delay.
     #[must_use]
     pub const fn delay(&self) -> u64 {
         self.stream.timing.delay()

@@ -1,19 +1,19 @@
-//! Where the axis is, by a counter that wraps.
+//! Position of the axis, by a counter that wraps.
 use super::units::{Scale, reading};
 use servobench_base::Stateful;
 use servobench_cia402::Actuals;
 use servobench_cia402::counter::Unwrapped;
 use servobench_cia402::units::UnitError;
 
-/// Cycles that a difference spans: the coarser the counter, the longer it should be.
+/// Number of cycles over which a difference is taken: the coarser the counter, the longer it should be.
 const SPAN: usize = 4;
 
-/// A reading of the actual position and of what the drive's loops follow (counts).
+/// A reading of the actual position and of the position that the drive's loops follow (counts).
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 struct Reading {
     actual: i128,
     followed: i128,
-    /// When it was received (base ticks).
+    /// Time of reception (base ticks).
     at: u64,
 }
 
@@ -30,13 +30,13 @@ pub(crate) struct Position {
 }
 
 impl Position {
-    /// At rest where the counter shows, in `actuals` that were received `now`.
+    /// Position at rest at the reading of the counter, in `actuals` that were received at `now`.
     pub(crate) fn start(scale: &Scale, actuals: &Actuals, now: u64) -> Result<Self, UnitError> {
         let unwrapped = Unwrapped::new(scale.counter(), reading(scale.counter(), actuals))?;
         Ok(Self::at(unwrapped, scale, actuals, now))
     }
 
-    /// At rest near `counts`, where the counter shows so: after homing.
+    /// Position at rest near `counts`, consistent with the counter: after homing.
     pub(crate) fn near(scale: &Scale, counts: i64, actuals: &Actuals, now: u64) -> Result<Self, UnitError> {
         let counter = scale.counter();
         let mut unwrapped = Unwrapped::new(counter, counter.wrap(counts.into()))?.at(counts);
@@ -51,7 +51,7 @@ impl Position {
         Self { unwrapped, counts, readings, oldest: 0, counts_per_tick: 0.0, followed_per_tick: 0.0 }
     }
 
-    /// The next reading. Between frames that were lost a velocity is their mean.
+    /// Takes the next reading. Over lost frames a velocity is their mean.
     pub(crate) fn follow(&mut self, scale: &Scale, actuals: &Actuals, now: u64) -> Result<(), UnitError> {
         self.counts = self.unwrapped.follow(reading(scale.counter(), actuals))?;
         let followed = self.counts + scale.ahead(actuals);
@@ -71,8 +71,8 @@ impl Position {
         self.counts
     }
 
-    /// Velocity of what the drive's loops follow (counts per base tick); `None` where they follow no position, or one that the
-    /// axis does not leave by a count.
+    /// Velocity of the position that the drive's loops follow (counts per base tick); `None` if they follow no position, or one that always
+    /// equals the actual count.
     pub(crate) fn followed_per_tick(&self) -> Option<f64> {
         let follows = self.readings.iter().any(|reading| reading.actual != reading.followed);
         follows.then_some(self.followed_per_tick)

@@ -1,20 +1,20 @@
-//! How the master brings the drive to power and back.
+//! Sequence by which the master powers the drive and switches it off.
 //!
-//! Strict: one command per state of the power state machine, the next one when the statusword tells the next state, and a
-//! time-out for each that does not wait for the axis to come to rest. Simplified, for drives that want no sequence: of the statusword only the fault bit is looked at, and the
-//! controlword switches between 0006h and 000Fh.
+//! Strict: one command per state of the power state machine, the next one when the statusword shows the next state, each with a time-out,
+//! except while the axis comes to rest. Simplified, for drives that need no sequence: only the fault bit of the statusword is evaluated,
+//! and the controlword switches between 0006h and 000Fh.
 //!
-//! | what is wanted | strict | simplified |
+//! | request | strict | simplified |
 //! |---|---|---|
 //! | power | Shutdown, Switch on, Enable operation | 000Fh; 0006h for a cycle after a fault |
-//! | no power | Disable operation (605Ch says how it brakes), Shutdown | 0006h |
+//! | no power | Disable operation (605Ch defines the braking), Shutdown | 0006h |
 //! | quick stop | Quick stop where the drive function is enabled, Disable voltage elsewhere | 0002h |
-//! | fault reset | Fault reset until Fault is left or the time is over | the same, by the fault bit |
+//! | fault reset | Fault reset until Fault is left or the time-out | the same, by the fault bit |
 use servobench_base::Stateful;
 use servobench_cia402::{Command, Controlword, Next, PowerState, StatusBit, Statusword, keeping, towards};
 
 servobench_config::choices! {
-    /// How the master brings the drive to power.
+    /// Sequence by which the master powers the drive.
     pub enum Sequencing default Strict {
         /// state after state of the power state machine, each awaited
         Strict = "strict",
@@ -23,7 +23,7 @@ servobench_config::choices! {
     }
 }
 
-/// What is wanted of the drive.
+/// Request to the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
     Off,
@@ -31,22 +31,22 @@ pub(crate) enum Wanted {
     QuickStop,
 }
 
-/// What the sequencer remembers.
+/// State of the sequencer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub(crate) struct Sequencer {
-    /// The last state that the statusword told.
+    /// Last state in the statusword.
     state: PowerState,
     word: Controlword,
-    /// When that word was given first (base ticks).
+    /// Time at which that word was first sent (base ticks).
     told: u64,
-    /// Since when the drive is in that state and has been given that word (base ticks).
+    /// Time since which both the state and the word have been unchanged (base ticks).
     since: u64,
     resetting: bool,
     faulty: bool,
 }
 
 impl Sequencer {
-    /// Of a drive that was not received yet.
+    /// State for a drive that has not been received yet.
     pub(crate) const fn start(now: u64) -> Self {
         Self {
             state: PowerState::NotReadyToSwitchOn,
@@ -62,7 +62,7 @@ impl Sequencer {
         self.word
     }
 
-    /// Whether the drive function may be used: of what was told up to `known` the drive has received.
+    /// True if the drive function is enabled; the drive has received the commands up to `known`.
     pub(crate) fn is_enabled(&self, sequencing: Sequencing, known: u64) -> bool {
         let is_told = self.word.gives(Command::EnableOperation);
         match sequencing {
@@ -71,7 +71,7 @@ impl Sequencer {
         }
     }
 
-    /// Whether the drive may still drive current through the motor.
+    /// True if the drive may still drive current through the motor.
     pub(crate) fn is_powered(&self, sequencing: Sequencing) -> bool {
         match sequencing {
             Sequencing::Strict => self.state.is_drive_function_enabled(),
@@ -83,23 +83,23 @@ impl Sequencer {
         self.faulty
     }
 
-    /// A fault is to be reset, where there is one.
+    /// Requests the reset of a fault, if there is one.
     pub(crate) const fn reset(&mut self) {
         self.resetting = self.faulty;
     }
 
-    /// The drive has answered.
+    /// Takes the answer of the drive.
     pub(crate) fn receive(&mut self, statusword: Statusword, now: u64) {
         let state = statusword.state().unwrap_or(self.state);
         if state != self.state {
             (self.state, self.since) = (state, now);
         }
         self.faulty = statusword.has(StatusBit::Fault);
-        // What is reset is the state Fault: the reaction before it ends by itself.
+        // Only the state Fault is reset: the reaction before it ends by itself.
         self.resetting &= self.faulty;
     }
 
-    /// The next word. `false` when the drive has not done for `timeout` ticks what it was told.
+    /// Computes the next word. Returns `false` if the drive has not executed its command for `timeout` ticks.
     pub(crate) fn step(&mut self, sequencing: Sequencing, wanted: Wanted, timeout: u64, now: u64) -> bool {
         let (word, arrived) = match sequencing {
             Sequencing::Strict => self.strict(wanted),
@@ -118,7 +118,7 @@ impl Sequencer {
         arrived || waited <= timeout
     }
 
-    /// Whether the drive may be bringing the axis to rest, which takes as long as it takes.
+    /// True if the drive may be braking the axis, which has no time-out.
     fn brakes(&self, wanted: Wanted) -> bool {
         match self.state {
             PowerState::QuickStopActive | PowerState::FaultReactionActive => true,
@@ -127,7 +127,7 @@ impl Sequencer {
         }
     }
 
-    /// The word of the strict sequence, and whether nothing has to happen.
+    /// Word of the strict sequence, and true if no transition is awaited.
     fn strict(&self, wanted: Wanted) -> (Controlword, bool) {
         if self.faulty {
             let command = if self.resetting && self.state == PowerState::Fault {
@@ -148,7 +148,7 @@ impl Sequencer {
         match towards(self.state, goal) {
             Next::Arrived => (keeping(goal).map_or(self.word, Controlword::of), true),
             Next::Give(command) => (Controlword::of(command), false),
-            // Without power nobody waits for a drive that has not started yet.
+            // Without a power request, a drive that has not started yet is not awaited.
             Next::Wait | Next::Unreachable => (self.word, wanted != Wanted::On),
         }
     }

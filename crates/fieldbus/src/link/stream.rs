@@ -1,61 +1,61 @@
-//! The set-points of the motion task as the drive gets them.
+//! The set-points of the motion task on their way to the drive.
 use super::buffer::{Buffer, Reading, Taken, Timing};
 use super::course::{Course, Recovery};
 use crate::Interpolation;
 use servobench_base::{Setpoint, Stateful};
 use servobench_motion::interpolate::{Command, Sample};
 
-/// What a stream needs to know, constant during a run.
+/// Parameters of a stream, constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StreamParams {
     pub(crate) timing: Timing,
     pub(crate) recovery: Recovery,
-    /// What the output may move by in a base tick (m or rad).
+    /// Largest step of the output in a base tick (m or rad).
     pub(crate) highest_step: f64,
     /// Cycle of the bus (base ticks).
     pub(crate) bus_cycle: u64,
     /// Size of a count (m or rad).
     pub(crate) count: f64,
-    /// Velocity below which it stands still: a count per cycle of the motion task.
+    /// Velocity below which the motion counts as standstill: a count per cycle of the motion task.
     pub(crate) creep: f64,
 }
 
-/// A sample as it was read.
+/// A sample that was read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Arrival {
     pub(crate) sample: Sample,
-    /// When it was due (base ticks).
+    /// Due time (base ticks).
     pub(crate) due: u64,
-    /// Samples between it and the one before that were never read.
+    /// Number of unread samples between it and the previous one.
     pub(crate) missed: u64,
 }
 
-/// What the mailbox held for the stream.
+/// Content of the mailbox for the stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Post {
     /// Nothing new.
     Nothing,
-    /// Something torn.
+    /// A torn command.
     Torn,
     /// A sample.
     Sample(Arrival),
 }
 
-/// What is put out and where it comes from.
+/// Output and its source.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
 pub(crate) struct Stream {
     buffer: Buffer,
     course: Course,
     output: Command,
-    /// When that was put out (base ticks).
+    /// Time of that output (base ticks).
     at: u64,
-    /// What went wrong and is not over yet.
+    /// Present trouble of the interpolation.
     trouble: Option<Interpolation>,
     state: Interpolation,
     limited: bool,
 }
 
-/// A difference to the output from which no way leads to what is read.
+/// Failure to plan a transition from the output to the motion that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoWay;
 
@@ -74,28 +74,28 @@ impl Stream {
         self.state
     }
 
-    /// What was put out last.
+    /// Last output.
     pub(crate) const fn output(&self) -> &Command {
         &self.output
     }
 
-    /// When that was put out (base ticks).
+    /// Time of the last output (base ticks).
     pub(crate) const fn put_out_at(&self) -> u64 {
         self.at
     }
 
-    /// Whether that was held back by the velocity limit.
+    /// True if the velocity limit held back the last output.
     pub(crate) const fn is_limited(&self) -> bool {
         self.limited
     }
 
-    /// What is put out at `now`, not before the last step.
+    /// Output at `now`, not before the last step.
     pub(crate) fn at(&self, p: &StreamParams, now: u64) -> Command {
         self.course.at(|| self.buffer.at(&p.timing, now), now, p.timing.tick).unwrap_or(self.output)
     }
 
-    /// Whether it goes in the direction of `sign`, ±1: by the motion that is read, by two counts of recovery or by a stop from
-    /// there. Less than that is what an axis at rest on a switch is off by.
+    /// True if the stream moves in the direction of `sign`, ±1: by the motion that is read, by a recovery of more than two counts or by a
+    /// stop. Less than that is the error of an axis at rest on a switch.
     pub(crate) fn goes(&self, p: &StreamParams, sign: f64) -> bool {
         if self.state == Interpolation::Off {
             return false;
@@ -109,7 +109,7 @@ impl Stream {
         }
     }
 
-    /// Puts out what the axis does by itself.
+    /// Outputs the axis' own motion.
     pub(crate) fn switch_off(&mut self, own: Command, now: u64) {
         if self.state != Interpolation::Off {
             *self = Self::OFF;
@@ -119,10 +119,10 @@ impl Stream {
         self.at = now;
     }
 
-    /// Takes what has come and puts out what is due now.
+    /// Takes the samples that have come and computes the present output.
     ///
     /// # Errors
-    /// [`NoWay`]: then the output is on its way to standstill.
+    /// [`NoWay`]: the output then brakes to standstill.
     pub(crate) fn step(&mut self, p: &StreamParams, post: Post, now: u64) -> Result<(), NoWay> {
         let elapsed = now.saturating_sub(self.at);
         let expected = self.expected(p, elapsed);
@@ -143,7 +143,7 @@ impl Stream {
                 self.trouble = self.trouble.or(Some(Interpolation::Underflow));
                 self.course = Course::stop(expected, &p.recovery, now);
             } else if self.state == Interpolation::Off && (expected.setpoint.v != 0.0 || expected.torque != 0.0) {
-                // The axis moves, or is pushed, when the drive begins to follow.
+                // The axis moves, or has an effort, when the drive begins to follow.
                 self.course = Course::stop(expected, &p.recovery, now);
             }
         }
@@ -151,7 +151,7 @@ impl Stream {
         result.and(self.put_out(p, read, now, elapsed))
     }
 
-    /// The output as it would go on by itself.
+    /// The output continued by its own motion.
     fn expected(&mut self, p: &StreamParams, elapsed: u64) -> Command {
         if elapsed > 2 * p.bus_cycle {
             // The link stood still, and with it the drive, at the last target.
@@ -173,8 +173,8 @@ impl Stream {
     }
 
     fn join(&mut self, p: &StreamParams, output: Command, read: Command, now: u64) -> Result<(), NoWay> {
-        // What comes first are echoes of the actual position: what their noise makes of an acceleration is over with their interval, and
-        // led to zero by the jerk of the recovery it would carry the axis away.
+        // The first samples are echoes of the actual position: an acceleration from their noise is over with their interval, whereas
+        // leading it to zero by the jerk of the recovery would carry the axis away.
         let output = match self.state {
             Interpolation::Off | Interpolation::Wait => {
                 Command { setpoint: Setpoint { a: read.setpoint.a, ..output.setpoint }, ..output }
@@ -186,7 +186,7 @@ impl Stream {
         if course.is_some() { Ok(()) } else { Err(NoWay) }
     }
 
-    /// The output moves on, not farther than the axis can.
+    /// Advances the output, limited by the highest velocity.
     fn put_out(&mut self, p: &StreamParams, read: Option<Command>, now: u64, elapsed: u64) -> Result<(), NoWay> {
         self.course.settle(now, p.timing.tick);
         let due = self.course.at(|| read, now, p.timing.tick).unwrap_or(self.output);

@@ -1,10 +1,10 @@
-//! What the axis must be stopped for, and how.
+//! Faults that stop the axis, and the kind of stop.
 use super::sequencer::Wanted;
 use super::{Params, State};
 use crate::{Interpolation, LinkFault, Task};
 
 impl State {
-    /// Looks for what the axis must be stopped for.
+    /// Detects faults that stop the axis.
     pub(super) fn supervise(&mut self, p: &Params, external_fault: bool, now: u64) {
         let enabled = self.is_enabled(p);
         let silent = self.command.power && now.saturating_sub(self.received_at) > p.settings.drive_timeout;
@@ -17,19 +17,19 @@ impl State {
         } else {
             self.runs_into(p)
         };
-        // A halt does not hide what needs a quick stop.
+        // A halt does not hide a fault that needs a quick stop.
         if self.fault.is_none() || (self.halts() && found.is_some_and(|fault| !is_halt(fault))) {
             self.fault = found;
         }
     }
 
-    /// The limit switch that the axis is commanded into.
+    /// Fault of the limit switch into which the axis is commanded, if any.
     fn runs_into(&self, p: &Params) -> Option<LinkFault> {
         let switches = self.switches(p);
         let goes = |sign: f64| match self.command.task {
             Task::Follow(_) => self.stream.goes(&p.stream, sign),
             Task::Effort(effort) => self.ramp.state() != Interpolation::Off && sign * effort > 0.0,
-            // The drive itself keeps to its switches.
+            // The drive itself observes its switches.
             Task::Home { .. } | Task::Drive(_) => false,
         };
         if switches.negative_limit && goes(-1.0) {

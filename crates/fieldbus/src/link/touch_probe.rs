@@ -1,14 +1,14 @@
-//! The touch probe of the drive: asked for, armed, read.
+//! The touch probe of the drive: request, arming and reading.
 //!
-//! A question is put by the function (60B8h) after the drive has shown (60B9h) that the one before is taken back. What the drive says
-//! before it can know of what it was told belongs to an earlier question and is not looked at.
+//! A request is sent by the function (60B8h) after the drive has shown (60B9h) that the previous one is withdrawn. An answer sent before
+//! the drive can know of a request belongs to an earlier one and is ignored.
 use super::Params;
 use super::position::Position;
 use crate::{ProbeFeedback, TouchProbe};
 use servobench_base::Stateful;
 use servobench_cia402::{Actuals, touch_probe};
 
-/// What a link remembers of it.
+/// State of a link for the touch probe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub(super) struct Probe {
     number: u32,
@@ -17,19 +17,19 @@ pub(super) struct Probe {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 enum Phase {
-    /// Nothing is asked for.
+    /// No request.
     #[default]
     Off,
-    /// Taken back since this tick.
+    /// Withdrawn since this tick.
     Clearing(u64),
-    /// Asked for since this tick.
+    /// Requested since this tick.
     Armed(u64),
-    /// The axis was at so many counts.
+    /// The axis was at this position (counts).
     Latched(i128),
 }
 
 impl Probe {
-    /// One step, in which the drive was received last at `received`: the function for the drive.
+    /// Executes a step, with the drive last received at `received`; returns the function for the drive.
     pub(super) fn step(
         &mut self,
         p: &Params,

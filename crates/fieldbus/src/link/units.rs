@@ -1,32 +1,32 @@
-//! Axis units against the drive's.
+//! Conversion between axis units and the drive's units.
 use crate::FieldbusError;
 use servobench_base::{ParamError, finite, positive};
 use servobench_cia402::Actuals;
 use servobench_cia402::counter::Counter;
 
-/// How the drive counts.
+/// Units of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
-    /// So many position units of the drive …
+    /// Number of position units of the drive …
     pub drive_units: f64,
-    /// … are so much of the axis (m or rad); negative for a motor that is mounted the other way round. Such a drive has the switch
+    /// … in this travel of the axis (m or rad); negative for a motor that is mounted in the opposite direction. Such a drive has the switch
     /// of the axis' negative end at its input for the positive one.
     pub axis_units: f64,
     /// Velocity units of the drive in one of its position units per second (6096h).
     pub velocity_factor: f64,
     /// Rated torque or force (6076h; N·m or N), of which 6071h counts thousandths.
     pub rated_effort: f64,
-    /// Counter of the positions (607Ah, 6064h; above 32 bits the drive has objects of its own for the upper halves).
+    /// Counter of the positions (607Ah, 6064h; above 32 bits the drive has separate objects for the upper halves).
     pub counter: Counter,
 }
 
-/// The conversions, constant during a run.
+/// Conversions, constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     counter: Counter,
-    /// Whether the drive counts against the axis.
+    /// True if the drive counts against the axis.
     is_reversed: bool,
-    /// Counts per axis unit, a magnitude as all that follow.
+    /// Counts per axis unit, a magnitude like the following ones.
     counts: f64,
     /// Axis units per count.
     count: f64,
@@ -69,27 +69,27 @@ impl Scale {
         self.counter
     }
 
-    /// Nearest count; `None` beyond 2⁵³ counts, where not every count is a number of 64 bits any more.
+    /// Nearest count; `None` beyond 2⁵³ counts, where not every count is representable in 64 bits.
     pub(crate) fn counts(&self, x: f64) -> Option<i64> {
         Some(self.turned(whole(self.counts * x, 9_007_199_254_740_992.0)?))
     }
 
-    /// Whether the drive counts against the axis.
+    /// True if the drive counts against the axis.
     pub(crate) const fn is_reversed(&self) -> bool {
         self.is_reversed
     }
 
-    /// What is counted along the axis as the drive counts it. Rounded is before, so that a reversed motor does the same mirrored.
+    /// Converts counts along the axis to counts of the drive. Rounding comes first, so that a reversed motor moves exactly mirrored.
     const fn turned(&self, counted: i64) -> i64 {
         if self.is_reversed { -counted } else { counted }
     }
 
-    /// The same of a number.
+    /// Same conversion of a real number.
     const fn along(&self, value: f64) -> f64 {
         if self.is_reversed { -value } else { value }
     }
 
-    /// Position at a count, beyond 2⁵³ counts the nearest that a number of 64 bits can say.
+    /// Position at a count; beyond 2⁵³ counts the nearest representable number.
     pub(crate) const fn position(&self, counts: i128) -> f64 {
         self.along(self.count * counts as f64)
     }
@@ -99,14 +99,14 @@ impl Scale {
         self.count
     }
 
-    /// Counts from the actual position to the one that the drive follows, by the shorter way.
+    /// Counts from the actual position to the one that the drive follows, by the shorter direction.
     pub(crate) fn ahead(&self, actuals: &Actuals) -> i128 {
         let range = self.counter.range();
         let way = (followed(self.counter, actuals) - reading(self.counter, actuals)).rem_euclid(range);
         if way > range / 2 { way - range } else { way }
     }
 
-    /// Counts from the position in an object of 32 bits to that in another, by the shorter way.
+    /// Counts from the position in an object of 32 bits to that in another, by the shorter direction.
     pub(crate) fn away(&self, from: i32, to: i32) -> i128 {
         let range = self.counter.range().min(1 << i32::BITS);
         let way = (i128::from(to) - i128::from(from)).rem_euclid(range);
@@ -118,15 +118,15 @@ impl Scale {
         whole(self.velocity * v, i32::MAX.into()).and_then(|v| i32::try_from(self.turned(v)).ok())
     }
 
-    /// The nearest velocity that the drive's unit can express.
+    /// Nearest velocity in the drive's unit.
     pub(crate) fn nearest_velocity(&self, v: f64) -> i32 {
         #[expect(clippy::cast_possible_truncation, reason = "saturates, which is meant")]
         let nearest = self.along(libm::floor(self.velocity * v + 0.5)) as i32;
         nearest
     }
 
-    /// A magnitude of velocity, or of acceleration in velocity units per second: the nearest, at least 1 where it is not zero,
-    /// the largest there is beyond it.
+    /// Magnitude of a velocity, or of an acceleration in velocity units per second: the nearest, at least 1 if it is not zero, saturated at
+    /// the largest.
     pub(crate) fn rate(&self, rate: f64) -> u32 {
         let units = (self.velocity * rate).abs();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
@@ -134,7 +134,7 @@ impl Scale {
         if units > 0.0 { nearest.max(1) } else { 0 }
     }
 
-    /// The velocity in units of the drive, neither rounded nor bounded.
+    /// Velocity in units of the drive, neither rounded nor bounded.
     pub(crate) const fn drive_velocity_exactly(&self, v: f64) -> f64 {
         self.velocity * v
     }
@@ -143,7 +143,7 @@ impl Scale {
         self.along(self.velocity_unit * f64::from(v))
     }
 
-    /// Velocity at a difference of counts per second.
+    /// Velocity for a rate of counts per second.
     pub(crate) const fn velocity_of(&self, counts_per_second: f64) -> f64 {
         self.along(self.count * counts_per_second)
     }
@@ -152,8 +152,8 @@ impl Scale {
         self.thousandths_with(effort, &mut 0.0)
     }
 
-    /// The thousandths for `effort` and for what was left when the last one was rounded, `rest` (thousandths), which is then
-    /// what is left of this one: their mean is the effort, however coarse they are. What is left counts along the axis.
+    /// Thousandths for `effort` plus the rounding remainder of the last one, `rest` (thousandths), which is then updated: the mean is the
+    /// exact effort, however coarse the thousandths are. The remainder counts along the axis.
     pub(crate) fn thousandths_with(&self, effort: f64, rest: &mut f64) -> Option<i16> {
         let exact = self.thousandths * effort + *rest;
         let torque = whole(exact, i16::MAX.into())?;
@@ -161,7 +161,7 @@ impl Scale {
         i16::try_from(self.turned(torque)).ok()
     }
 
-    /// The thousandths for a limit: the nearest, at least 1, at most the largest there is.
+    /// Thousandths for a limit: the nearest, at least 1, saturated at the largest.
     pub(crate) fn max_torque(&self, limit: f64) -> u16 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, which is meant")]
         let nearest = libm::floor(self.thousandths * limit + 0.5) as u16;
@@ -173,17 +173,17 @@ impl Scale {
     }
 }
 
-/// The actual position as the counter shows it.
+/// Actual position as a reading of the counter.
 pub(crate) fn reading(counter: Counter, actuals: &Actuals) -> i128 {
     counter.reading_of([actuals.position, actuals.position_high])
 }
 
-/// What the loops of the drive follow, as the counter shows it.
+/// Position that the loops of the drive follow, as a reading of the counter.
 fn followed(counter: Counter, actuals: &Actuals) -> i128 {
     counter.reading_of([actuals.position_demand, actuals.position_demand_high])
 }
 
-/// The nearest whole number, a half upwards as in `cia402::units`; `None` beyond `highest` or for NaN.
+/// Nearest whole number, halves upwards as in `cia402::units`; `None` beyond `highest` or for NaN.
 fn whole(x: f64, highest: f64) -> Option<i64> {
     let nearest = libm::floor(x + 0.5);
     #[expect(clippy::cast_possible_truncation, reason = "at most 2⁵³")]

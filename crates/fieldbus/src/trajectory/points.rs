@@ -1,4 +1,4 @@
-//! A move as points in the units of a drive.
+//! Conversion of a move to points in the units of a drive.
 use alloc::vec::Vec;
 use core::fmt;
 use servobench_base::Setpoint;
@@ -7,7 +7,7 @@ use servobench_config::Choice as _;
 use thiserror::Error;
 
 servobench_config::choices! {
-    /// How the points of a table get into the buffer of the drive.
+    /// Transfer of the points of a table to the buffer of the drive.
     pub enum PointTransfer default MoveSegment {
         /// move segment command of the drive: eight bytes of a frame
         MoveSegment = "2010h",
@@ -21,7 +21,7 @@ servobench_config::choices! {
 /// Points that cannot be sent.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum Unsendable {
-    /// A point that the object does not hold.
+    /// A point that does not fit the object.
     #[error(
         "point {point} of the table: {what} {value} cannot be sent in a point of the trajectory buffer ({}), which holds \
          {bound}; {help}",
@@ -30,30 +30,30 @@ pub enum Unsendable {
     Point {
         /// Number of the point, from 1.
         point: usize,
-        /// Which of its values.
+        /// Name of the value.
         what: &'static str,
         /// The value.
         value: f64,
-        /// By which object or parameter.
+        /// Object or parameter of the transfer.
         by: PointTransfer,
-        /// What there is room for.
+        /// Bound of the value, in words.
         bound: &'static str,
-        /// What to do.
+        /// Remedy.
         help: Help,
     },
-    /// A sub-mode in which points have no times of their own, for points that have.
+    /// A sub-mode with constant time, for points that have individual times.
     #[error(
         "points by {} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got {code}: send the \
          points by 60C1h, or write another sub-mode",
         by.name()
     )]
     SubMode {
-        /// By which object or parameter.
+        /// Object or parameter of the transfer.
         by: PointTransfer,
         /// The sub-mode.
         code: i16,
     },
-    /// A point that the master sends too late, since those before fill the buffer or are under way, or are closer than its cycles.
+    /// A point that the master sends too late: earlier ones fill the buffer or are on their way, or the points are closer than its cycles.
     #[error(
         "point {point} of the table arrives after the drive has asked for it: with a delay of {delay} cycles the trajectory buffer runs \
          empty; {}",
@@ -64,12 +64,12 @@ pub enum Unsendable {
         point: usize,
         /// Cycles of the bus until a frame arrives.
         delay: u32,
-        /// The most with which no point is late; `None`: there is none.
+        /// Longest delay without a late point; `None` if every delay makes one late.
         longest: Option<u32>,
     },
 }
 
-/// How long the bus may take.
+/// Longest permissible delay of the bus.
 struct Longest(Option<u32>);
 
 impl fmt::Display for Longest {
@@ -82,18 +82,18 @@ impl fmt::Display for Longest {
     }
 }
 
-/// What lets points be sent.
+/// Remedy for points that cannot be sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Help {
-    /// Times that the object holds.
+    /// Times that fit the object.
     OtherTimes,
-    /// A time of the segments that the points have, or points with times of their own.
+    /// A segment time equal to that of the points, or points with individual times.
     SegmentTime,
     /// A coarser unit of the drive.
     CoarserUnit,
     /// More points, or a coarser unit of the drive.
     MorePoints,
-    /// A sub-mode with linear ways, or a table with velocities.
+    /// A sub-mode with linear segments, or a table with velocities.
     LinearWays,
 }
 
@@ -109,7 +109,7 @@ impl fmt::Display for Help {
     }
 }
 
-/// How points are sent, and what the drive is set to for it.
+/// Transfer of points, and the corresponding settings of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PointEncoding {
     transfer: PointTransfer,
@@ -118,10 +118,10 @@ pub struct PointEncoding {
 }
 
 impl PointEncoding {
-    /// Points by `transfer` to a drive that is in `sub_mode` (60C0h), with `period` (60C2h).
+    /// Encoding by `transfer` for a drive in `sub_mode` (60C0h), with `period` (60C2h).
     ///
     /// # Errors
-    /// [`Unsendable::SubMode`] where points with times of their own meet a sub-mode without.
+    /// [`Unsendable::SubMode`] for points with individual times in a sub-mode with constant time.
     pub const fn new(transfer: PointTransfer, sub_mode: SubMode, period: TimePeriod) -> Result<Self, Unsendable> {
         if !matches!(transfer, PointTransfer::DataRecord) && sub_mode.has_constant_time() {
             return Err(Unsendable::SubMode { by: transfer, code: sub_mode.code() });
@@ -129,27 +129,27 @@ impl PointEncoding {
         Ok(Self { transfer, sub_mode, period })
     }
 
-    /// By which object or parameter.
+    /// Object or parameter of the transfer.
     pub(super) const fn transfer(self) -> PointTransfer {
         self.transfer
     }
 
-    /// Time of every segment where the points have none of their own (µs).
+    /// Time of every segment if the points have no individual times (µs).
     pub(super) const fn constant_time(self) -> Option<u32> {
         if self.sub_mode.has_constant_time() { Some(self.period.microseconds()) } else { None }
     }
 
-    /// The same where the drive adapts it to the clock of the master, which therefore sends one point in each.
+    /// Same time if the drive adapts it to the clock of the master, which therefore sends one point in each.
     pub(super) const fn adapted_time(self) -> Option<u32> {
         if matches!(self.sub_mode, SubMode::LinearAdapted) { Some(self.period.microseconds()) } else { None }
     }
 
-    /// Whether positions are sent as ways from the point before.
+    /// True if positions are sent as distances from the previous point.
     const fn is_relative(self) -> bool {
         !matches!(self.transfer, PointTransfer::DataRecord)
     }
 
-    /// Whether the point at the end of a line, or of a cubic, is sent without a velocity.
+    /// True if the point at the end of a line, or of a cubic, is sent without a velocity.
     const fn is_sent_as_line(self, is_line: bool) -> bool {
         match self.transfer {
             PointTransfer::DataRecord => !matches!(self.sub_mode, SubMode::Cubic),
@@ -158,29 +158,30 @@ impl PointEncoding {
     }
 }
 
-/// Velocities of 2010h beyond it are sent in units a hundred times as coarse.
+/// Largest velocity of 2010h in fine units; higher ones are sent in units a hundred times as coarse.
 const FINE: f64 = 8_388_607.0;
 const COARSE: f64 = 100.0;
 
-/// A point of the table in counts, not rounded but for its position.
+/// A point of the table in counts, with only its position rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Exact {
     /// Time to the next point (s).
     time: f64,
     position: f64,
-    /// From the point before.
+    /// Distance from the previous point.
     way: f64,
     /// Velocity (0.1 counts/s).
     velocity: f64,
-    /// Velocity of the line that leads there; `None` where that is no line.
+    /// Velocity of the line that leads to the point; `None` if it is not a line.
     line: Option<f64>,
 }
 
-/// The points of a move that begins at `from` (m or rad): of its `polynomials`, each by its length (s) and the set-point at its
-/// beginning, and of the set-point at its `end`; positions of set-points count from `from`. `counts` are in a metre or radian.
+/// Points of a move that begins at `from` (m or rad): of its `polynomials`, each given by its length (s) and the set-point at its
+/// beginning, and of the set-point at its `end`; positions of set-points count from `from`. `counts` is the number of counts in a metre or
+/// radian.
 ///
 /// # Errors
-/// [`Unsendable::Point`] names the first point that cannot be sent, and why.
+/// [`Unsendable::Point`] names the first point that cannot be sent, and the reason.
 pub fn points(
     polynomials: impl IntoIterator<Item = (f64, Setpoint), IntoIter: Clone>,
     end: Setpoint,
@@ -290,7 +291,7 @@ mod tests {
         let expected = Point { position: -5, is_relative: true, velocity: Some(8_388_700), time: 10_000 };
         assert_eq!(coarse, expected);
         assert!(SegmentCommand::Point { counter: 1, point: coarse }.encode().is_some());
-        // What 24 bits do not hold, 32 do.
+        // A value too large for 24 bits may fit 32.
         let fine = point(1, serial(), &Exact { way: 1e7, velocity: 8_388_651.0, ..EXACT }).unwrap();
         assert_eq!((fine.position, fine.velocity), (10_000_000, Some(8_388_651)));
         assert!(message(serial(), Exact { way: 3e9, ..EXACT }).contains("(115h), which holds ±2147483647"));

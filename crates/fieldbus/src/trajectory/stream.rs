@@ -1,12 +1,11 @@
-//! Tables on their way, point by point.
+//! Point-by-point transfer of tables.
 //!
-//! Points with times of their own are sent until the buffer is nearly full, and followed from then on, or when all are there; the
-//! last one ends the move. By the serial interface the mode is set first (C8h), and op-code 17 starts the move.
+//! Points with individual times are sent until the buffer is nearly full, and followed from then on, or once all are there; the last one
+//! ends the move. Over the serial interface the mode is set first (C8h), and op-code 17 starts the move.
 //!
-//! In the sub-modes without times nothing ends a move but bit 4: behind the table its last position is sent again and again, and
-//! when the drive is on the way from one of them to the next, it is told to stop, and its buffer is emptied (2010h, 80h). In
-//! sub-mode 0 the drive is told to go first, since it forgets the points that came before; then they come by the clock of the
-//! master, one in each period (60C2h).
+//! In the sub-modes with constant time a move is ended only by bit 4: after the table its last position is repeated, and once the drive
+//! moves from one repetition to the next, bit 4 is cleared and the buffer emptied (2010h, 80h). In sub-mode 0 bit 4 is set first, since the
+//! drive discards the points that came before; then they are sent by the clock of the master, one in each period (60C2h).
 use super::points::{PointEncoding, PointTransfer, Unsendable};
 use super::words::SentPoint;
 use crate::{ProfileCommand, ProfileFeedback, TrajectoryPoint};
@@ -15,29 +14,29 @@ use servobench_base::Stateful;
 use servobench_cia402::interpolated::serial::Message;
 use servobench_cia402::interpolated::{CAPACITY, Point, SegmentCommand};
 
-/// Points that are in the buffer before they are followed, when there are so many.
+/// Number of points in the buffer before they are followed, if the table has that many.
 const AHEAD: usize = 16;
-/// For the rounding of times (s).
+/// Tolerance of times for rounding (s).
 const ROUNDING: f64 = 1e-9;
 
-/// How long the master's commands are under way.
+/// Delays of the master's commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// From one cycle of the motion task to the next (s).
+    /// Period of the motion task (s).
     pub task: f64,
-    /// From one cycle of the bus to the next (s).
+    /// Period of the bus (s).
     pub bus: f64,
-    /// From a cycle of the bus until its frame is at the drive (s).
+    /// Time from a cycle of the bus until its frame is at the drive (s).
     pub frame: f64,
 }
 
 impl Timing {
-    /// From a command to the cycle in which its answer is known (s). A step of the drive may have missed the frame that goes with it.
+    /// Time from a command to the cycle in which its answer is known (s). A step of the drive may have missed the frame that goes with it.
     fn answer(&self) -> f64 {
         2.0 * (self.frame + self.bus)
     }
 
-    /// The first cycle of the task from `t` on (s).
+    /// First cycle of the task from `t` on (s).
     fn first_cycle(&self, t: f64) -> f64 {
         libm::ceil((t - ROUNDING) / self.task) * self.task
     }
@@ -48,37 +47,37 @@ impl Timing {
 pub struct Stream {
     #[state(constant)]
     encoding: PointEncoding,
-    /// When each begins (s), and its points.
+    /// Start time (s) and points of each table.
     #[state(constant)]
     tables: Vec<(f64, Vec<Point>)>,
     table: usize,
-    /// Points of all tables that were sent, as the drive numbers them.
+    /// Number of sent points of all tables, as counted by the drive.
     number: u16,
-    /// Points of this table that have arrived, and the number that the drive told with them.
+    /// Number of arrived points of this table, and the drive's number with them.
     arrived: i64,
     seen: u16,
-    /// Points of this table that were sent, and last positions after it.
+    /// Number of sent points of this table, repetitions of the last one included.
     sent: usize,
-    /// When the next one is sent (s), where the master keeps the time.
+    /// Time at which the next one is sent (s), if the master keeps the time.
     due: f64,
     stage: Stage,
     message: Option<Message>,
-    /// In which of the last 64 cycles a point was sent; the last one is the lowest bit.
+    /// Cycles, of the last 64, in which a point was sent; the last one is the lowest bit.
     recent: u64,
     #[state(constant)]
     timing: Timing,
 }
 
-/// How far a table is.
+/// Stage of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 enum Stage {
-    /// The serial interface is to be told the mode.
+    /// The mode of the serial interface is to be set.
     Setting,
     /// Points are sent and wait.
     Filling,
-    /// The drive is told to follow them.
+    /// The drive is commanded to follow the points.
     Following {
-        /// Whether it was seen to.
+        /// True if the drive has been seen following them.
         was_active: bool,
     },
     /// The buffer is being emptied.
@@ -86,7 +85,7 @@ enum Stage {
 }
 
 impl Stream {
-    /// Tables, each by the time at which it begins (s) and its points, in this order.
+    /// Stream of tables, each given by its start time (s) and its points, in this order.
     #[must_use]
     pub fn new(encoding: PointEncoding, tables: Vec<(f64, Vec<Point>)>, timing: Timing) -> Self {
         let is_serial = matches!(encoding.transfer(), PointTransfer::Serial);
@@ -107,15 +106,16 @@ impl Stream {
         }
     }
 
-    /// When the drive begins the way of each table (s, by the clock of the master, without the delay of its frame), if nothing goes wrong.
+    /// Start of each table's trajectory in the drive (s, by the clock of the master, without the delay of its frame), if there are no
+    /// faults.
     ///
-    /// Before that the buffer is filled, in some sub-modes the axis goes to the first point, and the table before has come to its end.
+    /// Before that the buffer is filled, in some sub-modes the axis goes to the first point, and the previous table has ended.
     #[must_use]
     pub fn beginnings(&self) -> Vec<f64> {
         let timing = &self.timing;
         let Timing { task, frame, .. } = *timing;
         let constant = self.constant_time();
-        // The serial interface is told the mode before the first table, and the start behind each; no message waits for a frame.
+        // On the serial interface the mode comes before the first table, and the start after its points; messages do not wait for a frame.
         let (mut set, start_message) = if self.is_serial() { (task, task - frame) } else { (0.0, 0.0) };
         let mut free = f64::NEG_INFINITY;
         let begin = |(start, points): &(f64, Vec<Point>)| {
@@ -123,14 +123,14 @@ impl Stream {
             let filled = (points.len().min(AHEAD) as f64 - 1.0) * task + start_message;
             let begin = told
                 + match (self.encoding.adapted_time().is_some(), constant) {
-                    // Three points, and the way to the first one.
+                    // Three points, and the segment to the first one.
                     (true, Some(time)) => 3.0 * time,
                     (_, Some(time)) => filled + time,
                     (_, None) => filled,
                 };
             let length = points.iter().map(|point| f64::from(point.time) * 1e-6).sum::<f64>();
             let seen = timing.first_cycle(begin + length + timing.answer());
-            // Where nothing ends a move the buffer is emptied.
+            // Without an end in the table the buffer is emptied.
             let is_free = if constant.is_some() { timing.first_cycle(seen + timing.answer()) } else { seen };
             free = is_free + task;
             begin
@@ -138,16 +138,16 @@ impl Stream {
         self.tables.iter().map(begin).collect()
     }
 
-    /// The time of every segment where points have none of their own (s).
+    /// Time of every segment if points have no individual times (s).
     fn constant_time(&self) -> Option<f64> {
         self.encoding.constant_time().map(|time| f64::from(time) * 1e-6)
     }
 
-    /// Whether every point is there when the drive asks for it.
+    /// Checks that every point arrives before the drive needs it.
     ///
     /// # Errors
-    /// [`Unsendable::Late`] names the first one that is not, because more points are under way than the buffer has room for, or because they
-    /// follow each other faster than the master sends them.
+    /// [`Unsendable::Late`] names the first one that does not, because more points are on their way than the buffer has room for, or
+    /// because they follow each other faster than the master sends them.
     pub fn check(&self) -> Result<(), Unsendable> {
         let Some(point) = self.first_late(&self.timing) else { return Ok(()) };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cycles")]
@@ -160,23 +160,23 @@ impl Stream {
     }
 
     fn first_late(&self, timing: &Timing) -> Option<usize> {
-        // Points that come by the clock of the master come in time.
+        // Points sent by the clock of the master come in time.
         if self.encoding.adapted_time().is_some() {
             return None;
         }
         self.tables.iter().find_map(|(_, points)| self.first_late_of(points, timing))
     }
 
-    /// The first of `points` that is sent too late.
+    /// First of `points` that is sent too late.
     fn first_late_of(&self, points: &[Point], timing: &Timing) -> Option<usize> {
         let constant = self.constant_time();
-        // When the drive takes the point behind that of this number, which it takes at `due`: as it begins the way between both.
+        // Time at which the drive takes the point after number `index`, itself taken at `due`: when the segment between both begins.
         let after = |index: usize, due: f64| match (constant, index.checked_sub(1)) {
             (Some(time), _) => due + time,
             (None, Some(before)) => due + f64::from(points[before].time) * 1e-6,
             (None, None) => due,
         };
-        // Cycles in which they are sent; how many have been taken by the last answer, and when the next one is.
+        // Cycles in which the points are sent; number of points taken by the last answer, and the time of the next one.
         let mut sent: Vec<u32> = Vec::with_capacity(points.len());
         let (mut taken, mut due, mut begun) = (0, f64::INFINITY, None);
         let time_of = |cycle: u32| f64::from(cycle) * timing.task;
@@ -204,12 +204,12 @@ impl Stream {
         })
     }
 
-    /// What goes over the serial interface in this cycle, once.
+    /// Message for the serial interface in this cycle; returned once.
     pub const fn message(&mut self) -> Option<Message> {
         self.message.take()
     }
 
-    /// The command of a cycle at `now` (s) to a drive that has answered `drive`.
+    /// Command of a cycle at `now` (s) to a drive that has answered `drive`.
     pub fn cycle(&mut self, now: f64, drive: &ProfileFeedback) -> ProfileCommand {
         self.recent <<= 1;
         let point = match self.tables.get(self.table) {
@@ -223,7 +223,7 @@ impl Stream {
         ProfileCommand::Points { point, follow }
     }
 
-    /// A cycle of a table of so many points.
+    /// Executes a cycle of a table of `length` points.
     fn turn(&mut self, now: f64, drive: &ProfileFeedback, length: usize) -> Option<TrajectoryPoint> {
         let is_endless = self.encoding.constant_time().is_some();
         match self.stage {
@@ -270,25 +270,24 @@ impl Stream {
         }
     }
 
-    /// Whether as many points of so many are sent as are to wait.
+    /// True if enough points have been sent to begin, of a table of `length`.
     const fn is_ready(&self, length: usize) -> bool {
         self.sent >= AHEAD || self.sent >= length
     }
 
-    /// Has the drive follow the points from `now` on.
+    /// Makes the drive follow the points from `now` on.
     const fn follow(&mut self, now: f64) {
         (self.stage, self.due) = (Stage::Following { was_active: false }, now);
     }
 
-    /// To the next table.
+    /// Advances to the next table.
     const fn go_on(&mut self) {
         self.table += 1;
         (self.sent, self.stage) = (0, Stage::Filling);
         (self.arrived, self.seen) = (0, self.number);
     }
 
-    /// Points of this table that have left the buffer, by the answer of the drive. Where some were lost on their way, they have
-    /// to come first.
+    /// Points of this table that have left the buffer, by the answer of the drive. Lost ones have to arrive first.
     fn passed(&mut self, drive: &ProfileFeedback) -> usize {
         let number = told_number(drive);
         self.arrived += i64::from(number.wrapping_sub(self.seen).cast_signed());
@@ -297,7 +296,7 @@ impl Stream {
         usize::try_from(self.arrived).unwrap_or(0).saturating_sub(waiting)
     }
 
-    /// The next point, when it is time for it and the buffer has room.
+    /// Next point, if it is due and the buffer has room.
     fn next(&mut self, now: f64, drive: &ProfileFeedback) -> Option<TrajectoryPoint> {
         let number = self.number;
         let (_, points) = self.tables.get(self.table)?;
@@ -306,7 +305,7 @@ impl Stream {
             (None, Some(_)) => *points.last()?,
             (None, None) => return None,
         };
-        // What the drive has not told of is under way; or lost, where that is long ago.
+        // Points that the drive has not reported are on their way; or lost, if that is long ago.
         let under_way = u32::from(number.wrapping_sub(told_number(drive))).min(self.recent.count_ones());
         if u32::from(drive.buffer_free) <= under_way {
             return None;
@@ -335,7 +334,7 @@ impl Stream {
     }
 }
 
-/// Points that have arrived at the drive by its answer, as it numbers them (2012h).
+/// Number of points that have arrived at the drive by its answer, as counted by it (2012h).
 const fn told_number(drive: &ProfileFeedback) -> u16 {
     let [low, high, ..] = drive.buffer_status.to_le_bytes();
     u16::from_le_bytes([low, high])

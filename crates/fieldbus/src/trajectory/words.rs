@@ -1,4 +1,4 @@
-//! Points in the words in which they are sent, and what a drive makes of them.
+//! Encoding of points for sending, and their decoding like a drive.
 use super::points::{PointEncoding, PointTransfer};
 use alloc::vec::Vec;
 use servobench_cia402::InterpolationData;
@@ -6,7 +6,7 @@ use servobench_cia402::interpolated::serial::{Message, Record};
 use servobench_cia402::interpolated::{Point, SegmentCommand};
 use servobench_motion::pvt::Knot;
 
-/// A point as it is sent.
+/// An encoded point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SentPoint {
     /// The eight bytes of the move segment command (2010h).
@@ -18,7 +18,7 @@ pub enum SentPoint {
 }
 
 impl PointEncoding {
-    /// `point`, to which the drive gives `number`; `None` for one that cannot be sent so, which [`points`](super::points) would have
+    /// Encodes `point`, which gets the drive's `number`; `None` for one that cannot be sent so, which [`points`](super::points) would have
     /// refused.
     #[must_use]
     pub fn sent(self, point: Point, number: u16) -> Option<SentPoint> {
@@ -37,8 +37,8 @@ impl PointEncoding {
     }
 }
 
-/// The points that a drive follows to which `points` were sent when it stood at `from` (m or rad), of which it counts `counts` in a metre or
-/// radian; times count from the first point.
+/// Points as followed by a drive that received `points` while at `from` (m or rad) and has `counts` counts in a metre or radian; times
+/// count from the first point.
 #[must_use]
 pub fn followed(points: &[Point], from: f64, counts: f64) -> Vec<Knot> {
     let (mut position, mut microseconds) = (libm::round(from * counts), 0.0);

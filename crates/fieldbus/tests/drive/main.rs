@@ -1,4 +1,4 @@
-//! The link over a bus with the drive that it leads.
+//! The link over a bus with the drive that it controls.
 mod rig;
 
 use rig::{BUS, DELAY, MOTION, RATE, Rig};
@@ -11,10 +11,10 @@ use servobench_motion::interpolate::Sample;
 use servobench_motion::{Limits, Order, Profile};
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
-/// When the move begins (base ticks).
+/// Start of the move (base ticks).
 const START: u64 = 10 * MOTION;
 
-/// What targets in whole counts add to the acceleration of the drive's cubic (m/s²): a step of a count within a cycle of the bus
+/// Acceleration that targets in whole counts add to the drive's cubic (m/s²): a step of a count within a cycle of the bus
 /// and back, 6·count/T².
 const ROUNDING: f64 = 6.0 * 1e-6 / (1e-3 * 1e-3);
 
@@ -73,8 +73,8 @@ fn homing_and_a_move_from_there() {
     assert!((rig.axis.x - 1.0).abs() < 1e-9, "{}", rig.axis.x);
 }
 
-/// Once the drive has found its reference it counts from another zero. Whenever it is taken back about that time, nothing jumps by
-/// the distance between the two.
+/// A drive that has found its reference counts from another zero. If homing is cancelled about that time, nothing jumps by the distance
+/// between the two zeros.
 #[test]
 fn a_homing_that_is_taken_back_as_it_ends_moves_nothing() {
     let places = (0..900_u32).map(|place| 1e-3 + 37e-6 * f64::from(place));
@@ -132,7 +132,7 @@ fn faults_of_the_drive_are_reset_and_the_axis_goes_on_without_a_jump() {
     assert_eq!(rig.drive.power(), PowerState::Fault);
     rig.fault = None;
     rig.peaks = [0.0; 2];
-    // The motion task did not wait: the difference is taken out beside its motion.
+    // The motion task did not wait: the difference is removed during its motion.
     rig.run(MOTION, |tick| AxisCommand { reset: true, ..moving(tick) });
     rig.run(300 * MOTION, moving);
     assert_eq!((rig.feedback().fault, rig.feedback().power), (None, Power::On));
@@ -168,8 +168,8 @@ fn the_set_point_within_a_bus_cycle_is_where_the_drive_will_be() {
 }
 
 impl Rig {
-    /// The motion and the recovery beside it, both at their limits at worst; a predicted sample is off by j·(2T)³/6, and the way
-    /// back to the right one has 10/√3 of that over T² (quintic from rest to rest).
+    /// Checks the peaks: motion and recovery, both at their limits at worst; a predicted sample is off by j·(2T)³/6, and the return
+    /// to the right one has 10/√3 of that over T² (quintic from rest to rest).
     fn assert_recovered(&self) {
         let recovery = self.params.settings().recovery;
         let t = MOTION as f64 / f64::from(RATE);
@@ -180,8 +180,8 @@ impl Rig {
     }
 }
 
-/// Friction and a lag keep the axis from where the drive stops what it follows when it is homed. Oracle: the master counts from there,
-/// and neither the drive's demand nor the axis moves by more than the half count of rounding when csp takes over.
+/// Friction and lag keep the axis away from the demand at which the drive ends homing. Oracle: the master counts from that demand,
+/// and neither the demand nor the axis moves by more than the half count of rounding when csp takes over.
 #[test]
 fn homing_hands_over_what_the_drive_follows() {
     for behind in [-36.4e-6, 41.3e-6, 0.0, 2.49e-3] {
@@ -192,7 +192,7 @@ fn homing_hands_over_what_the_drive_follows() {
         rig.run(5 * MOTION + 7, home);
         let feedback = rig.feedback();
         assert_eq!((feedback.homing, feedback.fault), (Homing::Attained, None));
-        // By homing method 35 the reference is where the axis is.
+        // With homing method 35 the reference is the present position.
         assert!((feedback.position + 0.125).abs() < 1e-12, "{feedback:?}");
         assert!((feedback.following_error - behind).abs() <= 0.51e-6, "{feedback:?}");
         let (at, setpoint) = (rig.axis.x, feedback.demanded());

@@ -1,4 +1,4 @@
-//! A motion task, a link, a bus and a drive on an axis that does exactly what it is asked, tick by tick.
+//! A motion task, a link, a bus and a drive with an ideal axis, tick by tick.
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::counter::Counter;
 use servobench_cia402::{Commands, Controlword};
@@ -15,7 +15,7 @@ pub(crate) const RATE: u32 = 16_000;
 pub(crate) const MOTION: u64 = 320;
 pub(crate) const BUS: u64 = 16;
 pub(crate) const DRIVE: u64 = 4;
-/// Bus cycles that a frame is on its way.
+/// Delay of a frame (bus cycles).
 pub(crate) const DELAY: u32 = 1;
 
 const fn hz(hz: u32) -> Rate {
@@ -49,7 +49,7 @@ fn settings() -> Settings {
     }
 }
 
-/// All of it.
+/// Link, bus, drive and axis.
 pub(crate) struct Rig {
     pub(crate) params: Params,
     pub(crate) link: link::State,
@@ -62,7 +62,7 @@ pub(crate) struct Rig {
     pub(crate) fault: Option<u16>,
     frame: Option<Commands>,
     pub(crate) controlword: Controlword,
-    /// Where the axis is to be, by the encoder, and how far it is from there.
+    /// Set-point of the axis, by the encoder, and the distance of the axis from it.
     pub(crate) axis: Setpoint,
     pub(crate) behind: f64,
     pub(crate) tick: u64,
@@ -97,7 +97,7 @@ impl Rig {
         self.link.feedback(&self.params)
     }
 
-    /// Base ticks with a command for each cycle of the motion task.
+    /// Runs base ticks with a command for each cycle of the motion task.
     pub(crate) fn run(&mut self, ticks: u64, command: impl Fn(u64) -> AxisCommand) {
         for _ in 0..ticks {
             self.step(&command);
@@ -135,7 +135,7 @@ impl Rig {
         self.axis = match device::step(&self.drive_params, &mut self.drive, &inputs).demand {
             Demand::Position { setpoint, .. } | Demand::Velocity { setpoint, .. } => setpoint.after(period),
             Demand::Effort(_) => panic!("no effort was asked for"),
-            // Friction holds what is not driven.
+            // Friction holds an undriven axis.
             Demand::Off => Setpoint::at_rest(before.x),
         };
         let v = (self.axis.x - before.x) / period;

@@ -1,4 +1,4 @@
-//! Ahead of the samples: the delay is as many cycles shorter, and what the motion does meanwhile is an error.
+//! Running ahead of the samples: the delay is so many cycles shorter, and unpredicted changes of the motion are an error.
 use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_fieldbus::Interpolation;
@@ -11,7 +11,7 @@ const BEFORE: u64 = 12;
 /// Cycle of the motion task (s).
 const T: f64 = MOTION as f64 / RATE;
 
-/// Every interpolation with as many cycles as it can be ahead.
+/// Every interpolation with each number of cycles by which it can run ahead.
 fn all() -> impl Iterator<Item = (Mode, u32)> {
     let most = |mode: Mode| u32::try_from(mode.delay_samples().min(2)).unwrap();
     Mode::ALL.into_iter().flat_map(move |mode| (0..=most(mode)).map(move |ahead| (mode, ahead)))
@@ -26,7 +26,7 @@ fn time(tick: u64, delay: u64) -> f64 {
     (tick as f64 - delay as f64 - (BEFORE * MOTION) as f64) / RATE
 }
 
-/// Runs `motion` of the time since it began for so many cycles; the largest error to it, delayed, from `from` cycles of it on.
+/// Runs `motion`, a function of the time since its start, for `cycles`; the largest error to the delayed motion from the cycle `from` on.
 fn largest_error(rig: &mut Rig, cycles: u64, from: u64, motion: impl Fn(f64) -> Setpoint) -> f64 {
     let delay = rig.params.delay();
     let mut largest = 0.0_f64;
@@ -63,8 +63,8 @@ fn the_delay_is_as_many_cycles_shorter() {
     );
 }
 
-/// Oracle: a constant velocity, which every mode predicts, and a constant acceleration, which the parabola of a sample predicts. What is left is
-/// what a difference has to be to matter, a thousandth of a unit.
+/// Oracle: a constant velocity, which every mode predicts, and a constant acceleration, which the parabola of a sample predicts. The
+/// remaining difference is below the threshold of a correction, a thousandth of a unit.
 #[test]
 fn what_is_predicted_exactly_costs_nothing() {
     for (mode, ahead) in all() {
@@ -106,8 +106,8 @@ fn a_jerk_costs_a_sixth_of_its_cube_in_the_first_cycle() {
     }
 }
 
-/// A metre with jerk and snap limits: what is measured here stands in docs/fieldbus.md, as multiples of a·T² for modes that predict along a
-/// line and of j·T³/6 for the others.
+/// A metre with jerk and snap limits: the errors measured here are given in docs/fieldbus.md, as multiples of a·T² for modes that predict
+/// along a line and of j·T³/6 for the others.
 #[test]
 fn the_error_on_a_move_is_that_of_the_prediction() {
     let limits = Limits { velocity: 1.0, acceleration: 4.0, jerk: 40.0, snap: 1000.0 };
@@ -134,7 +134,7 @@ fn the_error_on_a_move_is_that_of_the_prediction() {
     }
 }
 
-/// Which buffered interval it is: as many as are predicted.
+/// The reported buffered interval has the number of predicted samples.
 #[test]
 fn states_say_how_many_samples_are_predicted() {
     use Interpolation::{Run1, Run2, Run3, Underflow};
@@ -161,7 +161,7 @@ fn states_say_how_many_samples_are_predicted() {
     }
 }
 
-/// A margin of a cycle gives the sample the time that it is predicted for.
+/// A margin of a cycle gives the sample the time by which it is predicted.
 #[test]
 fn a_margin_takes_the_prediction_back() {
     let profile =

@@ -1,4 +1,4 @@
-//! Nothing goes wrong: the output is the motion of the samples, a constant time later.
+//! Without faults the output is the motion of the samples, a constant time later.
 use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_fieldbus::Interpolation;
@@ -16,7 +16,7 @@ fn motion(cycle: u64) -> Setpoint {
     profile.at((cycle as f64 - BEFORE as f64) * MOTION as f64 / RATE)
 }
 
-/// What `mode` makes of the samples at `tick` − `delay`; the oracle is the interpolator, which knows nothing of ticks.
+/// Interpolation of the samples by `mode` at `tick` − `delay`; the oracle is the interpolator, which does not depend on ticks.
 fn expected(mode: Mode, tick: u64, delay: u64) -> Setpoint {
     let then = tick - delay;
     let mut interpolator = Interpolator::new(mode, MOTION as f64 / RATE).unwrap();
@@ -78,7 +78,7 @@ fn a_motion_task_as_fast_as_the_bus_is_followed_sample_by_sample() {
             assert_eq!(rig.feedback().interpolation, Interpolation::Run1);
         }
         if rig.tick > 1_000 * BUS {
-            // The start is taken out: what is put out now is the sample of the cycle before.
+            // The starting difference is removed: the output is now the sample of the cycle before.
             assert!((rig.setpoint().x - motion(rig.tick - 2 * BUS).x).abs() < 1e-15);
         }
     }

@@ -10,7 +10,7 @@ use servobench_motion::interpolate::Sample;
 const REST: AxisCommand = AxisCommand::of(REST_TASK);
 const REST_TASK: Task = Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 });
 
-/// Ten turns of the counter to one side, back, and ten to the other; the oracle is what the drive counts in 127 bits.
+/// Ten turns of the counter to one side, back, and ten to the other; the oracle is the drive's count in 127 bits.
 fn through_a_counter(counter: Counter, drive_units: f64, axis_units: f64) {
     const CYCLES: u64 = 400;
     let units = Units { drive_units, axis_units, velocity_factor: 1e-3, counter, ..settings().units };
@@ -33,7 +33,7 @@ fn through_a_counter(counter: Counter, drive_units: f64, axis_units: f64) {
         rig.cycle();
         let feedback = rig.feedback();
         assert_eq!(feedback.fault, None);
-        // What was heard is a cycle old. Three roundings.
+        // The received position is a cycle old. Three roundings.
         let axis = |counts: i128| counts as f64 * axis_units / drive_units;
         let expected = axis(counts[0]);
         assert!((feedback.position - expected).abs() <= 1e-15 * expected.abs(), "{} {expected}", feedback.position);
@@ -74,13 +74,13 @@ fn the_position_loop_of_the_master_lags_by_velocity_over_gain() {
         rig.run(5, |_| REST);
         rig.run(100, |cycle| follow(Sample { x: 0.002 * (cycle - 5) as f64, v: 0.1, a: 0.0, torque: 0.0 }));
         assert_eq!(rig.commands.mode, 9);
-        // What is heard is compared with what was put out a round trip before: two cycles.
+        // The received position is compared with the output a round trip before: two cycles.
         let error = rig.setpoint().x - 0.1 * 2.0 * BUS as f64 / RATE - rig.feedback().position;
         // The drive takes whole counts per cycle: 1 mm/s, of which the gain makes 50 µm.
         assert!((error - lag).abs() < 51e-6, "{error} for {lag}");
         assert!((f64::from(rig.commands.target_velocity) - 1e5).abs() < 1_001.0);
         assert!(!rig.state.is_limited());
-        // A step of 0.1 m asks for 2 m/s but for the limit.
+        // A step of 0.1 m requires 2 m/s without the limit.
         let x = rig.feedback().position + 0.1;
         rig.run(2, |_| follow(Sample { x, v: 0.0, a: 0.0, torque: 0.0 }));
         let mut limited = false;
@@ -156,7 +156,7 @@ fn a_torque_does_not_jump() {
     let mut last = 0;
     for (cycles, torque) in [(10, 5.0), (4, -5.0), (10, 5.0)] {
         for cycle in 0..cycles * MOTION / BUS {
-            // The last time nothing comes, and the torque ends with the motion.
+            // The last time no command comes, and the torque ends with the motion.
             if rig.tick.is_multiple_of(MOTION) && (torque > 0.0 || cycle == 0) {
                 rig.write(rig.tick, holding(torque));
             }
@@ -174,7 +174,7 @@ fn homing_is_started_by_bit_4_and_gives_the_position() {
     let home = AxisCommand::of(Task::Home { position: 0.25 });
     let mut rig = Rig::new(settings());
     rig.run(5, |_| REST);
-    // Twice: the second time the drive still shows that it was attained. Its answers are two cycles old, and the first one of
+    // Twice: the second time the drive still shows the earlier result. Its answers are two cycles old, and the first one of
     // the second time is left from the first time.
     let mut on_the_way = rig.answer;
     for _ in 0..2 {
@@ -199,7 +199,7 @@ fn homing_is_started_by_bit_4_and_gives_the_position() {
         assert!(busy >= HOMING, "{busy}");
         assert_eq!(rig.commands.home_offset, 250_000);
         assert!((rig.feedback().position - 0.25).abs() < 1e-12);
-        // On from there, without a jump.
+        // The motion continues from there, without a jump.
         rig.tick = rig.tick.next_multiple_of(MOTION);
         let at = follow(Sample { x: 0.25, ..Sample::default() });
         rig.run(5, |_| at);

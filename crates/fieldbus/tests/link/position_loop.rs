@@ -1,6 +1,6 @@
-//! csv: the master closes the position loop over a bus whose frames are on their way for some cycles.
+//! csv: the master closes the position loop over a bus that delays its frames by some cycles.
 //!
-//! The axis does what its drive asks for exactly; the bounds are those of the derivation in `link/position_loop.rs`.
+//! The axis is ideal; the bounds are those of the derivation in `link/position_loop.rs`.
 use crate::rig::{BUS, Drive, MOTION, RATE, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_cia402::{Actuals, Commands};
@@ -20,7 +20,7 @@ const GAIN: f64 = 60.0;
 /// A unit of position on the bus (m); one of velocity is as much per second.
 const UNIT: f64 = 1e-9;
 
-/// How an axis gets from one velocity to the next.
+/// Course of the axis from one velocity to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Between {
     /// In a line.
@@ -44,7 +44,7 @@ struct Loop {
     answer: Actuals,
     x: f64,
     tick: u64,
-    /// What was put out in each cycle.
+    /// Output of each cycle.
     put_out: Vec<Setpoint>,
     /// Cycles whose answers are lost.
     lost: std::ops::Range<u64>,
@@ -65,7 +65,7 @@ impl Loop {
             velocity_limit: 2.0,
             ..settings()
         };
-        // Of what is sent in a cycle, that of `delay` cycles before arrives.
+        // The command sent `delay` cycles before arrives.
         let empty = delay as usize;
         Self {
             params: Params::new(settings).unwrap(),
@@ -109,7 +109,7 @@ impl Loop {
         self.tick += BUS;
     }
 
-    /// A step of the drive: it measures, and the axis goes on.
+    /// Runs a step of the drive: it measures, then the axis moves.
     fn step(&mut self) {
         let position = counts(self.x);
         self.answer = Actuals { position, position_demand: position, ..self.drive.step(&self.commands) };
@@ -123,7 +123,7 @@ impl Loop {
         self.x += v * STEP as f64 / RATE;
     }
 
-    /// By how much the axis misses the set-point that it is due at now, so many cycles of the bus after it was put out.
+    /// Distance of the axis from the set-point that is due now, `delay` cycles of the bus after its output.
     fn error(&self, delay: u32) -> f64 {
         // A set-point is reached at the end of the cycle that begins when it arrives.
         let due = self.put_out.len().saturating_sub(1 + delay as usize);
@@ -161,7 +161,7 @@ fn errors(delay: u32, feedforward: f64, between: Between) -> [f64; 2] {
     [largest, cruising]
 }
 
-/// Largest jerk that is put out (m/s³): quintics between samples of the motion have more than it.
+/// Largest jerk of the output (m/s³): quintics between samples have more than the motion.
 fn jerk() -> f64 {
     let mut axis = Loop::new(0, GAIN, 1.0, Between::Line);
     let mut largest = 0.0_f64;
@@ -177,7 +177,7 @@ fn the_error_is_that_of_the_derivation_whatever_the_delay_of_the_bus() {
     let cycle = BUS as f64 / RATE;
     for delay in [0, 1, 2] {
         assert!(GAIN * f64::from(2 * delay + 2) * cycle < 1.0_f64.exp().recip(), "does not swing");
-        // Half a count of the position as it is heard, half a unit of velocity.
+        // Half a count of the received position, half a unit of velocity.
         let units = 0.5 * UNIT + 0.5 * UNIT / GAIN + 1e-14;
         let line = jerk() * cycle * cycle / 12.0 / GAIN;
         for (between, lag) in [(Between::Line, 0.0), (Between::Held, STEP as f64 / RATE / 2.0)] {

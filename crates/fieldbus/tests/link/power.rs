@@ -1,4 +1,4 @@
-//! The drive is brought to power, and stopped for what goes wrong.
+//! Powering the drive, and stopping it at faults.
 use crate::rig::{BUS, MOTION, Rig, follow, settings};
 use servobench_cia402::{PowerState, Statusword};
 use servobench_fieldbus::link::{Sequencing, Settings};
@@ -17,7 +17,7 @@ const OFF: AxisCommand = AxisCommand { power: false, ..REST };
 const RESET: AxisCommand = AxisCommand { reset: true, ..REST };
 
 impl Rig {
-    /// Cycles of the bus with one command; each controlword that was new, and each `Power`.
+    /// Runs cycles of the bus with one command; returns each new controlword and each new `Power`.
     fn words(&mut self, cycles: u32, command: AxisCommand) -> (Vec<u16>, Vec<Power>) {
         let (mut words, mut powers) = (Vec::new(), Vec::new());
         self.write(self.tick, command);
@@ -46,7 +46,7 @@ impl Rig {
     }
 }
 
-/// Oracle: 0006h, 0007h, 000Fh and back by 0007h, 0006h, as manuals print it.
+/// Oracle: 0006h, 0007h, 000Fh and back by 0007h, 0006h, as printed in manuals.
 #[test]
 fn strict_sequencing_gives_one_command_per_state() {
     let mut rig = Rig::new(settings());
@@ -86,7 +86,7 @@ fn a_fault_of_the_drive_waits_for_the_edge_of_a_reset() {
     let (words, powers) = rig.words(20, RESET);
     assert_eq!(words, [0x0080, 0x0006, 0x0007, 0x000F]);
     assert_eq!(powers, [Power::Off, Power::Switching, Power::On]);
-    // The same level again is no edge, for a fault that is over at once neither.
+    // The same level again is not an edge, not even for a fault that is over at once.
     rig.drive.fault = true;
     rig.words(1, RESET);
     rig.drive.fault = false;
@@ -136,7 +136,7 @@ fn braking_takes_as_long_as_it_takes() {
     assert_eq!(rig.words(20, OFF), (vec![0x0007, 0x0006], vec![Power::Switching, Power::Off]));
     assert_eq!(rig.fault(), None);
 
-    // Reset while the quick stop brakes: the drive goes on to power when it is over.
+    // Reset while the quick stop brakes: the drive returns to power when it is over.
     rig.words(20, REST);
     rig.drive.rolls = true;
     rig.external_fault = true;
@@ -172,7 +172,7 @@ fn a_silent_drive_is_told_to_stop_quickly() {
     assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveTimeout)));
     assert_eq!(rig.tick - BUS - (silent - BUS), 1_600 + BUS);
     assert_eq!(rig.commands.controlword.bits(), 0x0002);
-    // It is heard again: nothing happens before a reset.
+    // The drive is heard again: nothing happens before a reset.
     rig.words(20, REST);
     assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::DriveTimeout)));
     rig.words(20, RESET);
@@ -204,7 +204,7 @@ fn an_answer_to_an_earlier_word_is_no_answer() {
                 rig.cycle();
             }
         };
-        // Off and on again before the drive can have said that it is off.
+        // Off and on again before the drive can have reported off.
         words(&mut rig, cycles, OFF);
         words(&mut rig, 30, REST);
         assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On), "{cycles}");
@@ -229,7 +229,7 @@ fn the_external_fault_stops_quickly_for_as_long_as_it_is_there() {
     assert_eq!((rig.fault(), rig.feedback().power), (None, Power::On));
 }
 
-/// The axis moves at 0.1 m/s in the direction of `sign` for so many cycles of the motion task, from where it is.
+/// Moves the axis at 0.1 m/s in the direction of `sign` for `cycles` of the motion task, from its present position.
 fn moves(rig: &mut Rig, sign: f64, cycles: u64) {
     let (x, start) = (rig.feedback().position, rig.tick / MOTION);
     rig.run(cycles, |cycle| at(x + sign * 0.1 * 0.02 * (cycle - start) as f64, sign * 0.1));
@@ -240,7 +240,7 @@ fn a_limit_switch_halts_what_moves_into_it_and_nothing_else() {
     let wired = |closed: u32, reverse: bool| if reverse { closed ^ 0b111 } else { closed };
     for (sign, bit, fault) in [(-1.0, 0b001, LinkFault::NegativeLimit), (1.0, 0b010, LinkFault::PositiveLimit)] {
         for reverse_switches in [false, true] {
-            // Lines: what starts abruptly must not swing back.
+            // Linear interpolation: an abrupt start must not swing back.
             let interpolation = servobench_motion::interpolate::Mode::Linear;
             let mut rig = Rig::new(Settings { reverse_switches, interpolation, ..settings() });
             rig.drive.actuals.digital_inputs = wired(0, reverse_switches);
@@ -274,7 +274,7 @@ fn a_limit_switch_halts_what_moves_into_it_and_nothing_else() {
             moves(&mut rig, sign, 20);
             assert_eq!(rig.fault(), Some(Fault::Link(fault)));
 
-            // A halt does not hide what needs a quick stop.
+            // A halt does not mask a fault that needs a quick stop.
             rig.external_fault = true;
             rig.run(1, |_| at(x, 0.0));
             assert_eq!(rig.fault(), Some(Fault::Link(LinkFault::External)));

@@ -1,4 +1,4 @@
-//! Motion tasks, buses and drives gone mad, and sane ones over a bad bus.
+//! Motion tasks, buses and drives at random, and orderly ones over a bad bus.
 use crate::rig::{BUS, MOTION, RATE, Rig, follow, sample, settings};
 use servobench_base::{Setpoint, Tick};
 use servobench_fieldbus::bus::{self, BusFault, BusFaultKind};
@@ -13,12 +13,12 @@ fn sweep_size(usual: u64) -> u64 {
     std::env::var("SERVOBENCH_SWEEP").map_or(usual, |size| size.parse().expect("SERVOBENCH_SWEEP is a whole number"))
 }
 
-/// What a program gone mad asks for.
+/// Commands and settings of a random program.
 trait Mad {
-    /// Of either sign, over `decades` below and above one.
+    /// A number of either sign, over `decades` below and above one.
     fn magnitude(&mut self, decades: f64) -> f64;
 
-    /// Mostly something that could be meant.
+    /// A number, mostly a sensible one.
     fn value(&mut self) -> f64;
 
     fn task(&mut self) -> Task;
@@ -92,7 +92,7 @@ fn no_command_makes_the_output_jump_or_end_in_no_number() {
         let mut rig = Rig::new(settings);
         let mut due = 0;
         let (mut last, mut at, mut furthest) = (rig.setpoint_now(), 0, 0.0_f64);
-        // One kind of task at a time gets somewhere.
+        // One kind of task for a while, so that it has an effect.
         let patience = 1 + random.below(30);
         for cycle in 0..LIFE {
             if rig.tick >= due {
@@ -133,8 +133,8 @@ fn no_command_makes_the_output_jump_or_end_in_no_number() {
             assert!(feedback.position.is_finite() && feedback.velocity.is_finite() && feedback.effort.is_finite());
             let follows = mode == rig.commands.mode && matches!(mode, 8 | 9);
             if follows && before != Interpolation::Off && after != Interpolation::Off {
-                // The output is what is read and a difference to it: it rounds as the farthest sample does, and as the farthest
-                // that a polynomial swings by twice the velocity limit at its ends.
+                // The output is the reading plus a difference: it rounds as the farthest sample does, and as the farthest
+                // swing of a polynomial with twice the velocity limit at its ends.
                 let swing = 2.0 * settings.velocity_limit * MOTION as f64 / RATE;
                 let bound = settings.velocity_limit * (now - at) as f64 / RATE + 1e-15 * (furthest + swing);
                 assert!((x - last).abs() <= bound, "life {life}, cycle {cycle}: {last} to {x}, {bound} allowed");
@@ -142,7 +142,7 @@ fn no_command_makes_the_output_jump_or_end_in_no_number() {
             (last, at) = (x, now);
         }
     }
-    // Or the test would not have been where it matters.
+    // Otherwise the test would not cover the states that matter.
     assert!(seen.iter().all(|times| *times > 10), "{seen:?}");
 }
 

@@ -1,4 +1,4 @@
-//! A motion task, a link and a drive that does what it is told, tick by tick.
+//! A motion task, a link and an ideal drive, tick by tick.
 use core::cmp::Ordering;
 use servobench_base::{Rate, Setpoint, Tick};
 use servobench_cia402::counter::Counter;
@@ -50,7 +50,7 @@ pub(crate) fn settings() -> Settings {
     }
 }
 
-/// A drive that is where it is told to be, one cycle later.
+/// An ideal drive: it is at its target one cycle later.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own")]
 pub(crate) struct Drive {
@@ -58,11 +58,11 @@ pub(crate) struct Drive {
     pub(crate) memory: PowerMemory,
     pub(crate) counter: Counter,
     pub(crate) fault: bool,
-    /// Whether it does what the controlword says.
+    /// True if the drive ignores the controlword.
     pub(crate) deaf: bool,
-    /// Whether the axis has not come to rest when it is braked.
+    /// True if the axis does not come to rest when it is braked.
     pub(crate) rolls: bool,
-    /// Counts by which the axis moves in a cycle in which nothing holds it.
+    /// Counts by which an undriven axis moves in a cycle.
     pub(crate) coasts: i128,
     /// Torque that its loops need while it follows positions.
     pub(crate) holding_torque: i16,
@@ -70,7 +70,7 @@ pub(crate) struct Drive {
     pub(crate) counts: i128,
     /// Cycles since the start of homing, which takes `HOMING` and moves by 37 counts in each.
     pub(crate) homing: u32,
-    /// Whether bit 4 was set.
+    /// True if bit 4 was set.
     pub(crate) asked: bool,
     pub(crate) actuals: Actuals,
 }
@@ -116,7 +116,7 @@ impl Drive {
         if outputs.drive == DriveFunction::Follow {
             match Mode::from_code(commands.mode) {
                 Some(Mode::CyclicSynchronousPosition) => {
-                    // The nearest position that the counter shows so.
+                    // The nearest position with this reading of the counter.
                     let range = self.counter.range();
                     let shown = [commands.target_position, commands.target_position_high];
                     let way = (self.counter.reading_of(shown) - self.counts).rem_euclid(range);
@@ -149,7 +149,7 @@ impl Drive {
         self.actuals
     }
 
-    /// Bits 10 and 12 of the statusword. What was attained before is shown until bit 4 rises.
+    /// Bits 10 and 12 of the statusword. An earlier result is shown until bit 4 rises.
     fn home(&mut self, commands: &Commands) -> (bool, bool) {
         let asked = commands.controlword.has(ControlBit::ModeSpecific4);
         if asked && !self.asked {
@@ -168,7 +168,7 @@ impl Drive {
     }
 }
 
-/// All of it.
+/// Motion task, link and drive.
 pub(crate) struct Rig {
     pub(crate) params: Params,
     pub(crate) state: State,
@@ -176,7 +176,7 @@ pub(crate) struct Rig {
     pub(crate) drive: Drive,
     pub(crate) tick: u64,
     pub(crate) commands: Commands,
-    /// What came from the drive in the last cycle.
+    /// Answer of the drive in the last cycle.
     pub(crate) answer: Option<Actuals>,
     pub(crate) external_fault: bool,
 }
@@ -195,12 +195,12 @@ impl Rig {
         }
     }
 
-    /// The motion task's cycle that is due at `due` leaves its command.
+    /// Writes the command of the motion task's cycle that is due at `due`.
     pub(crate) fn write(&mut self, due: u64, command: AxisCommand) {
         self.mailbox.write(Tick(due), command);
     }
 
-    /// A cycle of the bus. The drive answers in the next one.
+    /// Runs a cycle of the bus. The drive answers in the next one.
     pub(crate) fn cycle(&mut self) -> Commands {
         let input = Input {
             tick: Tick(self.tick),
@@ -214,7 +214,7 @@ impl Rig {
         self.commands
     }
 
-    /// Cycles of the motion task in which it comes in time.
+    /// Runs cycles of the motion task whose commands come in time.
     pub(crate) fn run(&mut self, cycles: u64, command: impl Fn(u64) -> AxisCommand) {
         for _ in 0..cycles * MOTION / BUS {
             if self.tick.is_multiple_of(MOTION) {

@@ -1,4 +1,4 @@
-//! What is put out while the drive does not follow is what the axis does: nothing jumps when the drive follows again.
+//! While the drive does not follow, the output tracks the axis: nothing jumps when the drive follows again.
 use crate::rig::{BUS, MOTION, Rig, follow, settings};
 use servobench_fieldbus::link::{Control, PositionGains, Settings};
 use servobench_fieldbus::{AxisCommand, Interpolation, Power, Task};
@@ -13,8 +13,8 @@ fn rested(x: f64) -> Sample {
     Sample { x, ..Sample::default() }
 }
 
-/// A powered axis that stands, loses power, is pushed to 0.5 m/s and gets power again while it coasts, under a motion task that is where
-/// the axis is while it has no power. Where the axis was in every cycle from then on; it ends within `off_target` (m).
+/// A powered axis at standstill loses power, is pushed to 0.5 m/s and gets power again while it coasts, under a motion task that tracks the
+/// axis while the power is off. Returns the positions of all cycles from then on; the last is within `off_target` (m) of the target.
 fn coasting(control: Control, off_target: f64, mut look: impl FnMut(&Rig)) -> Vec<i128> {
     // The rig answers in the next cycle.
     let mut rig = Rig::new(Settings { control, round_trip: 1, velocity_limit: 1.0, ..settings() });
@@ -47,7 +47,7 @@ fn differences(values: &[i128]) -> Vec<i128> {
     values.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
-/// Oracle: second differences. What is put out changes its velocity by no more than the recovery has acceleration, and two roundings to
+/// Oracle: second differences. The velocity of the output changes by no more than the acceleration of the recovery and two roundings to
 /// whole counts.
 #[test]
 fn an_axis_that_coasts_is_taken_over_at_its_velocity() {
@@ -67,12 +67,12 @@ fn an_axis_that_coasts_is_taken_over_at_its_velocity() {
     println!("{steepest} counts per square of a cycle");
     assert!(steepest <= RECOVERY + 2, "{steepest}");
     assert_eq!((velocities[0], *velocities.last().unwrap()), (COASTS, 0));
-    // It stopped and went back to where the motion task was when the power came: 0.5²/(2·5) m at least, and what its jerk costs.
+    // It stopped and returned to the motion task's position at power on: 0.5²/(2·5) m at least, and more by the jerk limit.
     let back = at.iter().max().unwrap() - at.last().unwrap();
     assert!((25_000..60_000).contains(&back), "{back}");
 }
 
-/// Without the offset the frame has none; the positions are the same.
+/// Without the velocity offset the frame has none; the positions are the same.
 #[test]
 fn positions_alone_carry_the_velocity_too() {
     let csp = Control::Position { velocity_offset: false, torque_offset: false };
@@ -96,8 +96,8 @@ fn a_velocity_is_commanded_from_that_of_the_axis_on() {
     assert!(steepest <= RECOVERY + 2, "{steepest}");
 }
 
-/// An acceleration that is the noise of an encoder is not carried on when the link begins to read: ±2 counts of noise at cycles of
-/// 1 ms, led to zero by 50 m/s³, took an axis that stands 220 mm away with cubic interpolation.
+/// The acceleration of encoder noise is not extrapolated when the link begins to read samples: ±2 counts of noise at cycles of
+/// 1 ms, led to zero by 50 m/s³, moved an axis at standstill by 220 mm with cubic interpolation.
 #[test]
 fn noise_before_power_does_not_carry_the_axis_away() {
     let hz = |hz| servobench_base::Rate::new(hz).unwrap();
@@ -127,7 +127,7 @@ fn noise_before_power_does_not_carry_the_axis_away() {
     }
 }
 
-/// Less than a count per cycle of the motion task is no motion: it would be carried on for ever.
+/// A velocity below a count per cycle of the motion task counts as standstill: it would be extrapolated for ever.
 #[test]
 fn an_axis_that_hardly_moves_is_taken_to_stand() {
     let mut rig = Rig::new(settings());
@@ -157,7 +157,7 @@ fn efforts_begin_with_the_one_that_the_drive_makes() {
         rig.cycle();
         assert_eq!(rig.drive.actuals.torque, 300, "cycle {}", rig.tick / BUS);
     }
-    // Back to positions: what was demanded fades beside them in a cycle of the motion task.
+    // Back to positions: the earlier torque demand fades in a cycle of the motion task.
     let mut offsets = Vec::new();
     for _ in 0..3 * MOTION / BUS {
         if rig.tick.is_multiple_of(MOTION) {
@@ -172,7 +172,7 @@ fn efforts_begin_with_the_one_that_the_drive_makes() {
     let steps = offsets.windows(2).map(|pair| (pair[1] - pair[0]).abs()).max();
     let cycles = f64::from(u32::try_from(MOTION / BUS).unwrap());
     assert!(f64::from(steps.unwrap()) <= 300.0 / cycles + 1.0, "{offsets:?}");
-    // What the loops of the drive make of positions is not sent beside them.
+    // The torque of the drive's own loops is not sent along with positions.
     assert_eq!(rig.drive.actuals.torque, 300);
     assert_eq!(rig.commands.torque_offset, 0);
 }

@@ -52,7 +52,7 @@ impl Watched {
         state
     }
 
-    /// Up to tick `end`; `written` says which tick of the motion is written at a tick, if any.
+    /// Runs up to tick `end`; `written` returns the tick of the motion whose sample is written at a tick, if any.
     fn run(&mut self, end: u64, written: impl Fn(u64) -> Option<u64>) {
         while self.rig.tick < end {
             if let Some(due) = written(self.rig.tick) {
@@ -66,10 +66,9 @@ impl Watched {
         self.run(end, in_time);
     }
 
-    /// What is read has at most the acceleration of the motion and what a wrong prediction adds to it, e below; the recovery
-    /// adds its own.
+    /// Checks that the acceleration is at most that of the motion, of a wrong prediction by e, below, and of the recovery.
     ///
-    /// A sample predicted two steps ahead is off by e = j·(2T)³/6; the polynomial that leads back to the right one has at most
+    /// A sample predicted two steps ahead is off by e = j·(2T)³/6; the polynomial that returns to the right one has at most
     /// 10·e/√3/T² more acceleration (quintic from rest to rest).
     fn assert_bounded(&self) {
         let t = MOTION as f64 / RATE;
@@ -82,14 +81,14 @@ impl Watched {
         assert!(self.rig.state.fault().is_none() && !self.rig.state.is_limited());
     }
 
-    /// The differences of a motion exceed none of its derivatives, but for what the quintic makes of a snap that switches
+    /// Checks that differences exceed the derivatives of the motion by no more than the error of the quintic at a snap that switches
     /// within its interval: 2·snap·T²/8 at most, the remainder of a line through two points.
     fn assert_undisturbed(&self) {
         let t = MOTION as f64 / RATE;
         assert!(self.acceleration < LIMITS.acceleration + LIMITS.snap * t * t / 4.0, "{}", self.acceleration);
     }
 
-    /// Nothing is left of the trouble.
+    /// Checks that the trouble has no lasting effect.
     fn assert_arrived(&self) {
         assert_eq!(self.states.last(), Some(&Run1));
         assert!((self.last[0].x - 1.0).abs() < 1e-12, "{}", self.last[0].x);
@@ -120,7 +119,7 @@ fn a_late_sample_is_predicted_for_as_long_as_it_is_late() {
     {
         let mut axis = Watched::new(settings());
         let late_one = MIDDLE * MOTION;
-        // The one behind it waits for it.
+        // The next cycle waits for it.
         axis.run(END, |tick| match tick {
             tick if tick == late_one + late => Some(late_one),
             tick if tick == late_one => None,

@@ -1,4 +1,4 @@
-//! Counters of up to 64 bits: counts are whole whatever the width; what numbers of 64 bits cannot say is refused.
+//! Counters of up to 64 bits: counts are exact for any width; positions that an `f64` cannot represent are refused.
 use crate::rig::{BUS, Rig, follow, settings};
 use servobench_cia402::counter::Counter;
 use servobench_fieldbus::link::{Settings, Units};
@@ -16,8 +16,8 @@ fn rig(counter: Counter) -> Rig {
 const OFF: AxisCommand =
     AxisCommand { power: false, ..AxisCommand::of(Task::Follow(Sample { x: 0.0, v: 0.0, a: 0.0, torque: 0.0 })) };
 
-/// Oracle: the counts of the drive. Without power the target is where the axis will be, count by count, through 2⁵³, the ends of the counter
-/// and 2⁶³ itself; the velocity by differences is that of whole counts.
+/// Oracle: the counts of the drive. Without power the target is the next position of the axis, to the count, through 2⁵³, the ends of the
+/// counter and 2⁶³ itself; the velocity by differences is that of whole counts.
 #[test]
 fn no_count_is_lost_beyond_what_a_number_of_64_bits_can_say() {
     for bits in [33, 40, 53, 54, 63, 64] {
@@ -44,8 +44,8 @@ fn no_count_is_lost_beyond_what_a_number_of_64_bits_can_say() {
     }
 }
 
-/// Oracle: rounding. A position of 2⁶³ µm is a number of 64 bits that is off by half of its last digit, 2¹⁰ counts; so it stays across the end of
-/// a signed counter of 64 bits.
+/// Oracle: rounding. A position of 2⁶³ µm is an `f64` that is off by half of its last digit, 2¹⁰ counts; this holds across the end of a
+/// signed counter of 64 bits.
 #[test]
 fn a_position_beyond_2_to_the_53_is_the_nearest_number() {
     let counter = Counter::signed(64).unwrap();
@@ -67,7 +67,7 @@ fn a_position_beyond_2_to_the_53_is_the_nearest_number() {
     assert!(rig.drive.counts > counter.highest(), "it went through the end");
 }
 
-/// Where not every count is a number any more, there are no set-points: refused, not rounded.
+/// Set-points at which an `f64` cannot represent every count are refused, not rounded.
 #[test]
 fn set_points_end_at_2_to_the_53_counts() {
     let counter = Counter::signed(64).unwrap();

@@ -3,7 +3,7 @@ use super::*;
 const TICK: f64 = 1.0 / 16e3;
 const P: PositionGains = PositionGains::proportional(60.0);
 
-/// Largest gain (1/s) with which a loop over cycles of `cycle` (s) is stable, whose position is `delay` (s) old.
+/// Largest stable gain (1/s) of a loop over cycles of `cycle` (s), with a position that is `delay` (s) old.
 fn ultimate_gain(cycle: f64, delay: f64) -> f64 {
     2.0 / cycle * libm::tan(core::f64::consts::FRAC_PI_4 * cycle / delay)
 }
@@ -40,8 +40,8 @@ fn before_the_first_set_point_the_axis_is_on_the_line_to_it() {
     assert_eq!(position_loop.error().to_bits(), 0.0_f64.to_bits());
 }
 
-/// Largest gain (1/s) of the loop with integral time and derivative, of a position that is `r` cycles of `cycle` (s) old: where the
-/// phase of everything but the gain is −π, by the frequency response.
+/// Largest stable gain (1/s) of the loop with integral time and derivative, with a position that is `r` cycles of `cycle` (s) old: at the
+/// frequency where the response without the gain has the phase −π.
 fn ultimate_gain_with(cycle: f64, r: usize, integral_time: Option<f64>, derivative: Option<Derivative>) -> f64 {
     // Complex numbers as pairs.
     let times = |(a, b): (f64, f64), (c, d): (f64, f64)| (a * c - b * d, a * d + b * c);
@@ -66,7 +66,7 @@ fn ultimate_gain_with(cycle: f64, r: usize, integral_time: Option<f64>, derivati
         let late = (r as f64 * angle).sin_cos();
         times(times(c, plant), (late.1, -late.0))
     };
-    // The first angle at which it crosses the negative real axis upwards.
+    // The first angle at which the response crosses the negative real axis upwards.
     let (mut low, step) = (1e-6, 1e-5);
     let mut before = response(low);
     loop {
@@ -79,8 +79,7 @@ fn ultimate_gain_with(cycle: f64, r: usize, integral_time: Option<f64>, derivati
     }
 }
 
-/// Largest errors of the loop, run by its own code with an axis that does what it is told, around two fifths and at the end of so many
-/// cycles.
+/// Largest errors of the loop, run by its own code with an ideal axis, from a tenth to a half and in the second half of the run.
 fn errors(r: usize, gains: PositionGains) -> [f64; 2] {
     let law = Law { gains, feedforward: 1.0, limit: f64::INFINITY };
     let mut position_loop = PositionLoop::OPEN;
@@ -107,8 +106,8 @@ fn errors(r: usize, gains: PositionGains) -> [f64; 2] {
     largest
 }
 
-/// Oracles: the frequency response, whose phase is −π at the boundary, against the loop itself, which grows above and fades below; the closed
-/// form for the integral against both.
+/// Oracles: the frequency response, whose phase is −π at the boundary, against the loop itself, which grows above and fades below; the
+/// closed form for the integral against both.
 #[test]
 fn integral_and_derivative_move_the_boundary_to_where_the_frequency_response_says() {
     let cycle = 1e-3;
@@ -185,8 +184,8 @@ fn the_integral_takes_out_a_velocity_that_the_axis_misses() {
     }
 }
 
-/// Oracle: the linear loop that is let go at the limit with an empty integral. Overshoot from ε₀ = limit/K without delay, by the same
-/// closed form; an integral that had wound up for a second would overshoot by many times of it.
+/// Oracle: the linear loop released at the limit with an empty integral. Overshoot from ε₀ = limit/K without delay, by the same closed
+/// form; an integral that had wound up for a second would overshoot many times as much.
 #[test]
 fn at_the_velocity_limit_the_integral_stands() {
     let (gain, time, limit, cycle) = (20.0, 0.5, 0.2, 1e-4);
@@ -217,7 +216,7 @@ fn at_the_velocity_limit_the_integral_stands() {
     assert!((overshoot / expected - 1.0).abs() < 0.02, "{overshoot} {expected}");
 }
 
-/// Oracle: the filtered difference of a ramp, T_d times its slope with the lag of the filter; after lost frames too.
+/// Oracle: the filtered difference of a ramp, T_d times its slope with the lag of the filter; also after lost frames.
 #[test]
 fn the_derivative_is_that_of_the_filtered_error() {
     let derivative = Derivative { time: 5e-3, filter: 2e-3 };
@@ -234,15 +233,14 @@ fn the_derivative_is_that_of_the_filtered_error() {
             received += 1;
         }
     }
-    // Fifty time constants later nothing is left of the beginning.
+    // Fifty time constants later the initial transient has decayed.
     assert!((position_loop.derivative - 0.3 * 5e-3).abs() < 1e-12, "{} after {received}", position_loop.derivative);
     let law = Law { gains, feedforward: 0.0, limit: 10.0 };
     let (v, _) = position_loop.velocity(&law, 0.0, 1e-3);
     assert!((v - 60.0 * (position_loop.error() + 0.3 * 5e-3)).abs() < 1e-12, "{v}");
 }
 
-/// Oracle: the recursion of the characteristic equation grows above the gain and
-/// fades below it.
+/// Oracle: the recursion of the characteristic equation grows above the gain and fades below it.
 #[test]
 fn the_ultimate_gain_is_where_the_recursion_neither_grows_nor_fades() {
     for r in [1_usize, 2, 3, 7, 31] {
