@@ -21,7 +21,7 @@ fn accesses(bencher: Bencher<'_, '_>, mut access: impl FnMut(&mut Dictionary, u3
     });
 }
 
-/// What a drive pays at every step to see whether its parameters have changed.
+/// Cost per step of the drive's check for changed parameters.
 #[divan::bench]
 fn generation(bencher: Bencher<'_, '_>) {
     accesses(bencher, |dictionary, _| {
@@ -36,7 +36,7 @@ fn parameter(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// What a drive pays for every frame.
+/// Cost per frame.
 #[divan::bench]
 fn mirror(bencher: Bencher<'_, '_>) {
     accesses(bencher, |dictionary, number| {
@@ -47,7 +47,7 @@ fn mirror(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// What a drive pays after a write.
+/// Cost after a write.
 #[divan::bench]
 fn power_params(bencher: Bencher<'_, '_>) {
     accesses(bencher, |dictionary, _| {
@@ -70,7 +70,7 @@ fn sdo_write(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// The slowest one: the product of all factors is formed.
+/// The slowest write, which forms the product of all factors.
 #[divan::bench]
 fn sdo_write_of_a_factor(bencher: Bencher<'_, '_>) {
     accesses(bencher, |dictionary, number| {

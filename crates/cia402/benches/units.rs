@@ -1,7 +1,7 @@
 //! Cost of a conversion of units: `cargo bench -p servobench-cia402 --bench units`.
 //!
-//! The axis of each is an encoder of 20 bits, a gear of 7:2 and a screw of 5 mm in µm, over the positions of a move; `wide` is
-//! one whose reduced fraction is so large that a product needs more than 64 bits.
+//! Each axis has an encoder of 20 bits, a gear of 7:2 and a screw of 5 mm in µm, over the positions of a move; `wide` has
+//! a reduced fraction so large that a product needs more than 64 bits.
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use servobench_cia402::modulo::{Direction, PositionRange};
@@ -13,7 +13,7 @@ fn main() {
 
 /// Conversions of one measurement.
 const CONVERSIONS: u32 = 10_000;
-/// Increments from one to the next.
+/// Increments from one conversion to the next.
 const STEP: i64 = 1_237;
 
 fn scaling(gear_ratio: [u32; 2]) -> Option<Scaling> {
@@ -26,7 +26,7 @@ fn scaling(gear_ratio: [u32; 2]) -> Option<Scaling> {
     factors.scaling(AxisUnit::Metre(Ratio::new(1, 1_000_000).ok()?)).ok()
 }
 
-/// Each conversion begins when the one before is done, as a tick waits for what it reads: latency, not throughput.
+/// Each conversion begins when the one before is done, as a tick waits for its inputs: latency, not throughput.
 fn conversions(bencher: Bencher<'_, '_>, gear: [u32; 2], convert: impl Fn(&Scaling, i64) -> i64) {
     let Some(scaling) = scaling(gear) else { return };
     bencher.counter(ItemsCount::new(CONVERSIONS)).bench_local(|| {
@@ -38,7 +38,7 @@ fn conversions(bencher: Bencher<'_, '_>, gear: [u32; 2], convert: impl Fn(&Scali
 const GEAR: [u32; 2] = [7, 2];
 const WIDE: [u32; 2] = [4_294_967_291, 4_294_967_279];
 
-/// What the measurement itself costs.
+/// Cost of the measurement itself.
 #[divan::bench]
 fn nothing(bencher: Bencher<'_, '_>) {
     conversions(bencher, GEAR, |_, count| black_box(count));

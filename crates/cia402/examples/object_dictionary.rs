@@ -45,7 +45,7 @@ fn data_sheet<'a>(name: &'a str, date: &'a str, time: &'a str) -> Eds<'a> {
 /// One access.
 struct Request {
     object: Object,
-    /// What is written; nothing for a read.
+    /// Bytes to write; `None` for a read.
     bytes: Option<Vec<u8>>,
 }
 

@@ -1,4 +1,4 @@
-//! What the master tells the drive (6040h).
+//! Commands of the master to the drive (6040h).
 //!
 //! | command | bits 7, 3–0 | transitions |
 //! |---|---|---|
@@ -21,7 +21,7 @@ pub enum ControlBit {
     SwitchOn,
     /// Part of the commands.
     EnableVoltage,
-    /// Cleared to ask for a quick stop; part of the commands.
+    /// Cleared to request a quick stop; part of the commands.
     QuickStop,
     /// Part of the commands.
     EnableOperation,
@@ -33,7 +33,7 @@ pub enum ControlBit {
     ModeSpecific6,
     /// Its rising edge resets a fault.
     FaultReset,
-    /// Interrupts the motion as 605Dh says, in Operation enabled.
+    /// Interrupts the motion as defined by 605Dh, in Operation enabled.
     Halt,
     /// Meaning by mode of operation: change on set-point.
     ModeSpecific9,
@@ -57,22 +57,22 @@ impl ControlBit {
     }
 }
 
-/// What a controlword can ask of the power state machine.
+/// Command of a controlword to the power state machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// To Ready to switch on.
+    /// Moves to Ready to switch on.
     Shutdown,
-    /// To Switched on.
+    /// Moves to Switched on.
     SwitchOn,
-    /// To Switch on disabled, without power at once.
+    /// Moves to Switch on disabled, without power at once.
     DisableVoltage,
-    /// To Quick stop active, or to Switch on disabled from where the axis is not powered.
+    /// Moves to Quick stop active, or to Switch on disabled if the axis is not powered.
     QuickStop,
-    /// Back to Switched on.
+    /// Moves back to Switched on.
     DisableOperation,
-    /// To Operation enabled.
+    /// Moves to Operation enabled.
     EnableOperation,
-    /// Out of Fault.
+    /// Leaves Fault.
     FaultReset,
 }
 
@@ -127,26 +127,26 @@ impl Controlword {
         Self(command.coding().1)
     }
 
-    /// The word as it came over the bus.
+    /// A word received from the bus.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits)
     }
 
-    /// The word as it goes over the bus.
+    /// The word as sent over the bus.
     #[must_use]
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// Whether the word has the bits of `command`; a fault reset also needs a word before it with bit 7 cleared.
+    /// True if the word has the bits of `command`; a fault reset also needs a previous word with bit 7 cleared.
     #[must_use]
     pub const fn gives(self, command: Command) -> bool {
         let (mask, value) = command.coding();
         self.0 & mask == value
     }
 
-    /// Whether `bit` is set.
+    /// True if `bit` is set.
     #[must_use]
     pub const fn has(self, bit: ControlBit) -> bool {
         self.0 & bit.mask() != 0

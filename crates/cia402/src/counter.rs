@@ -1,19 +1,18 @@
 //! Position counters that wrap.
 //!
-//! A counter of N bits shows the position modulo 2^N. Of the ways between two readings the shortest is taken,
+//! A counter of N bits shows the position modulo 2^N. Of the distances between two readings the shortest is taken,
 //!
 //! ```text
 //! step = ((to − from + 2^(N−1)) mod 2^N) − 2^(N−1),        position += step,
 //! ```
 //!
-//! so no count is lost over any number of turns as long as every true step is shorter than half the range. A step of
-//! half the range has two directions and is refused. A longer one looks like a shorter one the other way and cannot be
-//! seen.
+//! so no count is lost over any number of turns as long as every true step is shorter than half the range. A step of half the range has two
+//! directions and is refused. A longer one looks like a shorter one in the opposite direction and cannot be detected.
 //!
 //! # Over the bus
 //!
-//! The objects of CiA 402 that hold positions have 32 bits. What a wider counter shows takes two words: the lower half in the object,
-//! the upper half in one of the manufacturer ([`Counter::words`]).
+//! The position objects of CiA 402 have 32 bits. The reading of a wider counter takes two words: the lower half in the object, the upper
+//! half in a manufacturer-specific one ([`Counter::words`]).
 //!
 //! ```
 //! use servobench_cia402::counter::{Counter, Unwrapped};
@@ -74,7 +73,7 @@ impl Counter {
         self.lowest() + self.range() - 1
     }
 
-    /// What the counter shows at a position (counts).
+    /// Reading of the counter at a position (counts).
     #[must_use]
     pub const fn wrap(self, position: i128) -> i128 {
         // The range is a power of two: its low bits are the remainder, of negative positions too.
@@ -82,8 +81,8 @@ impl Counter {
         if remainder > self.highest() { remainder - self.range() } else { remainder }
     }
 
-    /// What the counter shows at a position (counts) as words of 32 bits, the lower one first, as an unsigned counter uses them too. The
-    /// upper one of a counter of 32 bits or fewer is 0.
+    /// Reading of the counter at a position (counts) as words of 32 bits, the lower one first; the words are those of an unsigned counter
+    /// too. The upper one of a counter of 32 bits or fewer is 0.
     ///
     /// ```
     /// use servobench_cia402::counter::Counter;
@@ -100,7 +99,7 @@ impl Counter {
         [low, if self.bits > 32 { high } else { 0 }]
     }
 
-    /// The reading in [`words`](Self::words).
+    /// Reading from [`words`](Self::words).
     #[must_use]
     pub const fn reading_of(self, [low, high]: [i32; 2]) -> i128 {
         match (self.bits > 32, self.signed) {
@@ -111,12 +110,12 @@ impl Counter {
         }
     }
 
-    /// The shortest way from one reading to another, from −2^(N−1) to 2^(N−1) − 1 counts.
+    /// Shortest distance from one reading to another, from −2^(N−1) to 2^(N−1) − 1 counts.
     const fn way(self, from: i128, to: i128) -> i128 {
         Self { bits: self.bits, signed: true }.wrap(to - from)
     }
 
-    /// The position nearest to `position` at which the counter shows what it shows at `target`.
+    /// Position nearest to `position` with the same reading as `target`.
     #[must_use]
     pub const fn nearest(self, target: i128, position: i128) -> i128 {
         position + self.way(position, target)
@@ -132,7 +131,7 @@ impl Counter {
     }
 }
 
-/// The absolute position behind a counter.
+/// Absolute position, unwrapped from a counter.
 ///
 /// 2⁶³ readings of the widest counter, each half the range further, stay within the 127 bits of the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
@@ -143,26 +142,26 @@ pub struct Unwrapped {
 }
 
 impl Unwrapped {
-    /// Starts at the position that the counter shows.
+    /// Starts at the position of the reading.
     ///
     /// # Errors
-    /// [`UnitError::OutsideCounter`] if the counter cannot show the reading.
+    /// [`UnitError::OutsideCounter`] if the reading is outside the range of the counter.
     pub fn new(counter: Counter, reading: impl Into<i128>) -> Result<Self, UnitError> {
         let reading = counter.reading(reading.into())?;
         Ok(Self { counter, reading, position: reading })
     }
 
-    /// The same at another position (counts), known from homing or from before.
+    /// Same counter at another position (counts), known from homing or from before.
     #[must_use]
     pub fn at(self, position: i64) -> Self {
         Self { position: position.into(), ..self }
     }
 
-    /// The position (counts) at the next reading.
+    /// Position (counts) at the next reading.
     ///
     /// # Errors
-    /// [`UnitError::OutsideCounter`] if the counter cannot show it, [`UnitError::StepTooLong`] if the direction is not
-    /// known. Nothing has changed then.
+    /// [`UnitError::OutsideCounter`] if the reading is outside the range of the counter, [`UnitError::StepTooLong`] if the direction is
+    /// ambiguous. Nothing changes then.
     pub fn follow(&mut self, reading: impl Into<i128>) -> Result<i128, UnitError> {
         let reading = self.counter.reading(reading.into())?;
         let step = self.counter.way(self.reading, reading);

@@ -1,35 +1,36 @@
-//! Why an axis is not available: the error codes that the drive (603Fh) and the link to it give, and the error register (1001h).
+//! Error codes of the drive (603Fh) and of the link to it, and the error register (1001h).
 //!
-//! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), and those of CiA 301 (table 26) for communication
-//! and for what is outside. For a motor phase that is open there is no code of its own: 3321h, an interrupted armature circuit, is the one
-//! of the output voltage (33xxh); drives use codes of their own beside it (Kollmorgen S300 2380h, ABB ACS580 3381h). Neither has one for a limit switch or for what the link finds: FF00h to FFFFh are the device's own.
+//! Codes of IEC 61800-7-201 (CiA 402-2, error codes of the emergency message), and those of CiA 301 (table 26) for communication and
+//! external errors. There is no specific code for an open motor phase: 3321h, an interrupted armature circuit, is that of the output
+//! voltage (33xxh); drives also use device-specific codes (Kollmorgen S300 2380h, ABB ACS580 3381h). Neither standard has a code for a
+//! limit switch or for faults found by the link: FF00h to FFFFh are device-specific.
 use core::fmt;
 
-/// Declares the error codes: number, who gives it, text, when.
+/// Declares the error codes: number, source, text, condition.
 macro_rules! error_codes {
     ($($name:ident = $code:literal, $source:expr, $text:literal, $when:literal;)*) => {
-        /// Why an axis is not available.
+        /// Error that makes an axis unavailable.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[repr(u16)]
         pub enum ErrorCode { $(#[doc = concat!($when, ".")] $name = $code,)* }
 
         impl ErrorCode {
-            /// Every code that the drive and the link give.
+            /// Every code of the drive and the link.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Text, in the words of the standard where it has one.
+            /// Text, in the words of the standard if it has one.
             #[must_use]
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $text,)* }
             }
 
-            /// When it is given.
+            /// Condition of the error, in words.
             #[must_use]
             pub const fn when(self) -> &'static str {
                 match self { $(Self::$name => $when,)* }
             }
 
-            /// Who gives it.
+            /// Source of the error.
             #[must_use]
             pub const fn source(self) -> Source {
                 match self { $(Self::$name => $source,)* }
@@ -38,15 +39,15 @@ macro_rules! error_codes {
     };
 }
 
-/// Who gives an error code.
+/// Source of an error code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Source {
-    /// The drive, which goes into its fault reaction and tells it as 603Fh.
+    /// The drive, which begins its fault reaction and reports the code as 603Fh.
     Drive {
         /// The error register (1001h) while the error is present.
         register: u8,
     },
-    /// The link between motion task and drive, which knows it for itself.
+    /// The link between motion task and drive, which keeps the code to itself.
     Link,
 }
 
@@ -106,24 +107,24 @@ error_codes! {
 }
 
 impl ErrorCode {
-    /// Its number.
+    /// Number of the error.
     #[must_use]
     pub const fn code(self) -> u16 {
         self as u16
     }
 
-    /// The error with this code; `None` for 0, no error, and for what neither drive nor link give by themselves.
+    /// The error with this code; `None` for 0, no error, and for codes that neither drive nor link produce.
     #[must_use]
     pub fn from_code(code: u16) -> Option<Self> {
         Self::ALL.iter().copied().find(|error| error.code() == code)
     }
 
-    /// The error register (1001h) of a drive that tells `code` (603Fh).
+    /// Error register (1001h) of a drive that reports `code` (603Fh).
     #[must_use]
     pub fn register(code: u16) -> u8 {
         match Self::from_code(code).map(Self::source) {
             Some(Source::Drive { register }) => register,
-            // From outside: what class of error it is only its sender knows.
+            // An external code: only its sender knows its class.
             _ if code != 0 => GENERIC,
             _ => 0,
         }
@@ -147,7 +148,8 @@ mod tests {
         assert_eq!(ErrorCode::FollowingError.to_string(), "following error (8611h)");
     }
 
-    /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 3 for temperature (4xxxh), bit 4 for communication, bit 5 for what the profile has.
+    /// CiA 301, 1001h: bit 0 with every error, bit 2 for voltage (3xxxh), bit 3 for temperature (4xxxh), bit 4 for communication, bit 5
+    /// for errors of the profile.
     #[test]
     fn the_register_tells_the_class() {
         for (code, register) in [

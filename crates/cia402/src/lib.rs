@@ -1,6 +1,6 @@
-//! The drive profile CiA 402 (IEC 61800-7-201) as both sides see it, the master and the drive.
+//! The drive profile CiA 402 (IEC 61800-7-201), for both sides: the master and the drive.
 //!
-//! `no_std`, no heap. Objects are cited by their index, as in 6041h. A master leads the drive to Operation enabled:
+//! `no_std`, no heap. Objects are cited by their index, as in 6041h. A master brings the drive to Operation enabled:
 //!
 //! ```
 //! use servobench_cia402::{
@@ -16,7 +16,7 @@
 //!
 //! let outputs = step(&params, &mut memory, Controlword::of(Command::QuickStop), inputs);
 //! assert_ne!(outputs.drive, DriveFunction::Follow);
-//! // What the master reads.
+//! // The word for the master.
 //! let word = Statusword::from_bits(outputs.statusword.bits());
 //! assert_eq!(word.state(), Some(PowerState::QuickStopActive));
 //! ```

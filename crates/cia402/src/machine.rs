@@ -1,12 +1,12 @@
-//! The power state machine of the drive (IEC 61800-7-201): one transition per step at most.
+//! The power state machine of the drive (IEC 61800-7-201): at most one transition per step.
 //!
-//! Order of precedence: a fault (13) goes before everything else. No two other transitions can be due at once, because
-//! the commands of one state have different bits.
+//! Order of precedence: a fault (13) comes before everything else. No two other transitions can be due at once, because the commands of one
+//! state have different bits.
 //!
 //! While the drive is not remote, the last controlword that was processed keeps its effect.
 //!
-//! A stop that Shutdown or Disable operation asks for brakes in Operation enabled; the transition is taken at
-//! standstill. A master that takes the command back before has the axis follow its set-points again.
+//! A stop by Shutdown or Disable operation brakes in Operation enabled; the transition is taken at standstill. If the master withdraws the
+//! command before, the axis follows its set-points again.
 use crate::controlword::{Command, ControlBit, Controlword};
 use crate::option_code::{
     Deceleration, DisableOperationOption, FaultReactionOption, HaltOption, QuickStopOption, ShutdownOption,
@@ -16,7 +16,7 @@ use crate::statusword::{StatusBit, Statusword};
 use crate::transitions::{Cause, Causes, Transition, set_off};
 use servobench_base::Stateful;
 
-/// The option codes of a drive; those of [`Default`] are the profile's.
+/// Option codes of a drive; [`Default`] has the defaults of the profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PowerParams {
     /// 605Ah.
@@ -31,14 +31,14 @@ pub struct PowerParams {
     pub fault_reaction: FaultReactionOption,
 }
 
-/// What the machine remembers from step to step; [`Default`] is the drive after power-on (transition 0).
+/// State of the machine from step to step; [`Default`] is the drive after power-on (transition 0).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct PowerMemory {
     /// State of the drive.
     state: PowerState,
-    /// Last controlword that was processed.
+    /// Last processed controlword.
     controlword: Controlword,
-    /// Whether the axis was powered before the last transition: the fault reaction does not power one that was not.
+    /// True if the axis was powered before the last transition: the fault reaction does not power an unpowered one.
     was_powered: bool,
 }
 
@@ -50,7 +50,7 @@ impl PowerMemory {
     }
 }
 
-/// What the drive knows of itself at a step.
+/// Inputs from the drive at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own, and most are bits of the statusword")]
 pub struct PowerInputs {
@@ -58,7 +58,7 @@ pub struct PowerInputs {
     pub initialised: bool,
     /// A fault is present.
     pub fault: bool,
-    /// The axis stands still: what is braked has stopped.
+    /// The axis stands still: braking is over.
     pub standstill: bool,
     /// The controlword is processed (bit 9).
     pub remote: bool,
@@ -66,16 +66,16 @@ pub struct PowerInputs {
     pub main_voltage: bool,
     /// A warning is present (bit 7).
     pub warning: bool,
-    /// The mode of operation says that the target is reached (bit 10).
+    /// The mode of operation reports that the target is reached (bit 10).
     pub target_reached: bool,
-    /// The drive limits something (bit 11).
+    /// A limit of the drive is active (bit 11).
     pub internal_limit: bool,
 }
 
-/// What the power stage is used for.
+/// Use of the power stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DriveFunction {
-    /// For nothing: the motor carries no current.
+    /// None: the motor carries no current.
     Disabled,
     /// The axis follows the set-points of the mode of operation.
     Follow,
@@ -83,18 +83,18 @@ pub enum DriveFunction {
     Brake(Deceleration),
 }
 
-/// What a step says.
+/// Outputs of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PowerOutputs {
     /// Word for the master (6041h), with the state after the step.
     pub statusword: Statusword,
-    /// What the power stage is used for from now on.
+    /// Use of the power stage from now on.
     pub drive: DriveFunction,
     /// Transition that was taken.
     pub transition: Option<&'static Transition>,
 }
 
-/// Takes the transition that is due, if any.
+/// Takes the pending transition, if any.
 #[inline]
 pub fn step(
     params: &PowerParams,
@@ -117,7 +117,7 @@ pub fn step(
     PowerOutputs { statusword: statusword(memory.state, inputs), drive: drive_function(params, *memory), transition }
 }
 
-/// All that decides what is due.
+/// Everything that determines the pending transition.
 struct Moment<'a> {
     params: &'a PowerParams,
     memory: PowerMemory,
@@ -125,7 +125,7 @@ struct Moment<'a> {
 }
 
 impl Moment<'_> {
-    /// What could set a transition off; a fault reset does when its bit has risen.
+    /// Causes that are present; a fault reset is one when its bit has risen.
     #[inline]
     fn given(&self, resets: bool) -> Causes {
         let quick_stop = self.params.quick_stop;
@@ -139,7 +139,7 @@ impl Moment<'_> {
             .with(Cause::FaultReactionCompleted, !self.memory.was_powered || self.has_stopped(reaction))
     }
 
-    /// The transition to be taken.
+    /// Transition to be taken.
     #[inline]
     fn due(&self, given: Causes) -> Option<&'static Transition> {
         let fault = Causes::NONE.with(Cause::Fault, self.inputs.fault);
@@ -148,7 +148,7 @@ impl Moment<'_> {
             .or_else(|| set_off(self.memory.state, given).find(|transition| self.is_allowed(transition.number)))
     }
 
-    /// The column "condition" of the table.
+    /// Checks the column "condition" of the table.
     fn is_allowed(&self, number: u8) -> bool {
         match number {
             5 => self.has_stopped(self.params.disable_operation.deceleration()),
@@ -159,7 +159,7 @@ impl Moment<'_> {
         }
     }
 
-    /// Whether nothing is left to brake: what is switched off at once is not waited for.
+    /// True if braking is over; a stop by switching off is not awaited.
     fn has_stopped(&self, deceleration: Option<Deceleration>) -> bool {
         deceleration.is_none() || self.inputs.standstill
     }

@@ -1,7 +1,7 @@
 //! Modes of operation (6060h, 6061h).
 
 use servobench_base::Stateful;
-/// A mode of operation that this profile describes here.
+/// A supported mode of operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 #[repr(i8)]
 pub enum Mode {
@@ -11,7 +11,7 @@ pub enum Mode {
     ProfileVelocity = 3,
     /// The drive ramps to each target torque (tq).
     ProfileTorque = 4,
-    /// The drive looks for its reference (hm).
+    /// The drive searches for its reference (hm).
     Homing = 6,
     /// The drive interpolates between the points of a buffer (ip).
     InterpolatedPosition = 7,
@@ -36,7 +36,7 @@ impl Mode {
         Self::CyclicSynchronousTorque,
     ];
 
-    /// The mode with this code; `None` for what is not supported, which a drive does not switch to.
+    /// The mode with this code; `None` for unsupported ones, to which a drive does not switch.
     #[must_use]
     pub fn from_code(code: i8) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.code() == code)
@@ -48,7 +48,7 @@ impl Mode {
         self as i8
     }
 
-    /// The abbreviation of the profile.
+    /// Abbreviation in the profile.
     #[must_use]
     pub const fn abbreviation(self) -> &'static str {
         match self {

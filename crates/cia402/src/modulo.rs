@@ -1,8 +1,8 @@
-//! Modulo axes: positions within a range, and the way to a target.
+//! Modulo axes: positions within a range, and the distance to a target.
 //!
-//! A position beyond the position range limit (607Bh) goes on at its other end. Both ends are positions of the range, as
-//! they are of the whole range of 32 bits that is the default, so after `length = max − min + 1` positions the axis is
-//! where it was. In integers, for positions `from` and `to` of the range:
+//! A position beyond the position range limit (607Bh) continues at its other end. Both ends belong to the range, as in the default range,
+//! that of 32 bits, so after `length = max − min + 1` positions the axis is back at the start. In integers, for positions `from` and `to`
+//! of the range:
 //!
 //! ```text
 //! way = (to − from) mod length, in [0, length)       positive direction
@@ -10,8 +10,8 @@
 //!       the shorter one of both, positive if equal   shortest way
 //! ```
 //!
-//! The positioning option code (60F2h, IEC 61800-7-201) chooses by its bits 7 and 6, the rotary axis direction option. Its
-//! first choice, 00b, takes the way as on a linear axis: it can be longer than the range.
+//! The positioning option code (60F2h, IEC 61800-7-201) selects the direction by its bits 7 and 6, the rotary axis direction option. The
+//! first option, 00b, moves as on a linear axis: the distance can exceed the range.
 //!
 //! ```
 //! use servobench_cia402::modulo::{Direction, PositionRange};
@@ -23,43 +23,43 @@
 //! ```
 use thiserror::Error;
 
-/// Bits of 60F2h that are taken: the rotary axis direction option.
+/// Bits of 60F2h that are supported: the rotary axis direction option.
 pub(crate) const POSITIONING_OPTION_BITS: u32 = 0b1100_0000;
 
-/// How a modulo axis gets to its target.
+/// Direction of a modulo axis to its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// With increasing position; not at all where the target is the position.
+    /// With increasing position; no motion if the target is the position.
     Positive,
-    /// With decreasing position; not at all where the target is the position.
+    /// With decreasing position; no motion if the target is the position.
     Negative,
-    /// The shorter way, with increasing position if both are equal.
+    /// The shorter direction, with increasing position if both are equal.
     Shortest,
 }
 
-/// The rotary axis direction option of the positioning option code.
+/// Rotary axis direction option of the positioning option code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u16)]
 pub enum RotaryAxisOption {
-    /// As on a linear axis: a target beyond the range is so many turns away.
+    /// Like on a linear axis: a target beyond the range is reached over several turns.
     #[default]
     Linear = 0b00,
     /// With decreasing position.
     Negative = 0b01,
     /// With increasing position.
     Positive = 0b10,
-    /// The shorter way.
+    /// The shorter direction.
     Shortest = 0b11,
 }
 
 impl RotaryAxisOption {
-    /// 60F2h with this option and nothing else.
+    /// 60F2h with this option only.
     #[must_use]
     pub const fn code(self) -> u16 {
         (self as u16) << 6
     }
 
-    /// The direction on a modulo axis; `None` as on a linear one.
+    /// Direction on a modulo axis; `None` to move as on a linear one.
     #[must_use]
     pub const fn direction(self) -> Option<Direction> {
         match self {
@@ -70,7 +70,7 @@ impl RotaryAxisOption {
         }
     }
 
-    /// The option in bits 7 and 6 of 60F2h.
+    /// Option in bits 7 and 6 of 60F2h.
     #[must_use]
     pub const fn of_code(positioning_option_code: u16) -> Self {
         match (positioning_option_code >> 6) & 0b11 {
@@ -82,7 +82,7 @@ impl RotaryAxisOption {
     }
 }
 
-/// A range whose end comes before its begin, or is it.
+/// A range whose end is not above its beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("max position range limit (607Bh:02h) must be above {min}, the min position range limit, got {max}")]
 pub struct EmptyRange {
@@ -92,7 +92,7 @@ pub struct EmptyRange {
     pub max: i32,
 }
 
-/// The positions that an axis has (607Bh).
+/// Range of the positions of an axis (607Bh).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PositionRange {
     min: i32,
@@ -100,14 +100,14 @@ pub struct PositionRange {
 }
 
 impl Default for PositionRange {
-    /// All of 32 bits.
+    /// The full range of 32 bits.
     fn default() -> Self {
         Self { min: i32::MIN, max: i32::MAX }
     }
 }
 
 impl PositionRange {
-    /// The range from one position to another, both in it.
+    /// Range from one position to another, both included.
     ///
     /// # Errors
     /// [`EmptyRange`] unless the second one is above the first.
@@ -133,14 +133,14 @@ impl PositionRange {
         self.max as i64 - self.min as i64 + 1
     }
 
-    /// Where an axis is that ran to a position without end.
+    /// Position in the range for an unwrapped position.
     #[must_use]
     pub const fn wrap(self, position: i64) -> i32 {
         let (min, length) = (self.min as i64, self.length());
         let wrapped = if min <= position && position <= self.max as i64 {
             position
         } else {
-            // A difference that overflows is that of a position with its turns taken off.
+            // If the difference overflows, whole turns are removed from the position first.
             let difference = match position.checked_sub(min) {
                 Some(difference) => difference,
                 None => position % length - min,
@@ -153,7 +153,7 @@ impl PositionRange {
         }
     }
 
-    /// The signed distance from one position to another, each wrapped into the range first; less than one turn.
+    /// Signed distance from one position to another, each wrapped into the range first; less than one turn.
     #[must_use]
     pub const fn way(self, from: i64, to: i64, direction: Direction) -> i64 {
         let difference = self.wrap(to) as i64 - self.wrap(from) as i64;

@@ -1,11 +1,11 @@
-//! The object dictionary: what a master may read and write, one table for the drive, the documents and the exports.
+//! The object dictionary of a master: one table for the drive, the documents and the exports.
 //!
-//! Names, types and defaults are those of IEC 61800-7-201 (CiA 402-2) and, below 2000h, of CiA 301; ranges are narrower
-//! where a value could not be meant: a scale, an acceleration, a speed, a limit or a window of zero, an option code, a mode or a
-//! homing method that the drive does not know. 2010h to 2012h are those of Copley's drives.
+//! Names, types and defaults are those of IEC 61800-7-201 (CiA 402-2) and, below 2000h, of CiA 301; ranges are narrower to exclude
+//! senseless values: a scale, an acceleration, a speed, a limit or a window of zero, and an option code, a mode or a homing method that the
+//! drive does not support. 2010h to 2012h are those of Copley's drives.
 //!
-//! The master's side takes any index, any value and any bytes, and says with an [`SdoError`](crate::SdoError) what it does not take. The
-//! drive's side reads by a [`Parameter`] and writes its own values by a [`Signal`], each a place found at compile time.
+//! The master's side takes any index, any value and any bytes, and refuses with an [`SdoError`](crate::SdoError). The drive's side reads by
+//! a [`Parameter`] and writes its own values by a [`Signal`], each a place found at compile time.
 //!
 //! ```
 //! use servobench_cia402::objects::{self, Dictionary, Value, signal};

@@ -1,10 +1,10 @@
-//! How the drive function ends: the option codes (605Ah to 605Eh).
+//! Option codes for the end of the drive function (605Ah to 605Eh).
 //!
-//! Codes below zero are the manufacturer's, those above the listed ones reserved: both are refused.
+//! Codes below zero are manufacturer-specific, those above the listed ones reserved: both are refused.
 use servobench_base::Stateful;
 use thiserror::Error;
 
-/// How the axis is braked.
+/// Braking of the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub enum Deceleration {
     /// On the slow-down ramp, the deceleration of the mode of operation (6084h).
@@ -17,7 +17,7 @@ pub enum Deceleration {
     VoltageLimit,
 }
 
-/// An option code that the object does not take.
+/// An option code that the object refuses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{name} ({object:04X}h) must be one of {accepted:?}, got {value}")]
 pub struct OptionCodeError {
@@ -31,7 +31,7 @@ pub struct OptionCodeError {
     pub accepted: &'static [i16],
 }
 
-/// Declares the enum of an option code: its object, its default and, per code, how the axis is braked.
+/// Declares the enum of an option code: its object, its default and, per code, the braking of the axis.
 macro_rules! option_code {
     (
         $(#[$doc:meta])*
@@ -47,7 +47,7 @@ macro_rules! option_code {
             /// Every value that the object takes.
             pub const CODES: &[i16] = &[$($code),*];
 
-            /// How the axis is braked; `None` switches the power stage off at once.
+            /// Braking of the axis; `None` switches the power stage off at once.
             #[must_use]
             pub const fn deceleration(self) -> Option<Deceleration> {
                 match self { $(Self::$variant => $deceleration,)* }
@@ -80,7 +80,7 @@ macro_rules! option_code {
 }
 
 option_code! {
-    /// Quick stop option code (605Ah): how transition 11 brakes, and whether transition 12 follows by itself.
+    /// Quick stop option code (605Ah): braking of transition 11, and the automatic transition 12.
     QuickStopOption: 0x605A, "quick stop option code", default QuickStopRamp;
     /// The power stage is switched off at once.
     Disable = 0 => None,
@@ -103,7 +103,7 @@ option_code! {
 }
 
 impl QuickStopOption {
-    /// Whether the axis is held in Quick stop active, from where transition 16 leads back.
+    /// True if the axis is held in Quick stop active, from which transition 16 leads back.
     #[must_use]
     pub const fn stays(self) -> bool {
         self.code() >= 5
@@ -111,7 +111,7 @@ impl QuickStopOption {
 }
 
 option_code! {
-    /// Shutdown option code (605Bh): how transition 8 brakes.
+    /// Shutdown option code (605Bh): braking of transition 8.
     ShutdownOption: 0x605B, "shutdown option code", default Disable;
     /// The power stage is switched off at once.
     Disable = 0 => None,
@@ -120,7 +120,7 @@ option_code! {
 }
 
 option_code! {
-    /// Disable operation option code (605Ch): how transition 5 brakes.
+    /// Disable operation option code (605Ch): braking of transition 5.
     DisableOperationOption: 0x605C, "disable operation option code", default SlowDownRamp;
     /// The power stage is switched off at once.
     Disable = 0 => None,
@@ -129,7 +129,7 @@ option_code! {
 }
 
 option_code! {
-    /// Halt option code (605Dh): how bit 8 of the controlword brakes; the axis stays in Operation enabled.
+    /// Halt option code (605Dh): braking by bit 8 of the controlword; the axis stays in Operation enabled.
     HaltOption: 0x605D, "halt option code", default SlowDownRamp;
     /// Then held.
     SlowDownRamp = 1 => Some(Deceleration::SlowDownRamp),
@@ -142,7 +142,7 @@ option_code! {
 }
 
 option_code! {
-    /// Fault reaction option code (605Eh): how the axis is braked between transitions 13 and 14.
+    /// Fault reaction option code (605Eh): braking of the axis between transitions 13 and 14.
     FaultReactionOption: 0x605E, "fault reaction option code", default QuickStopRamp;
     /// The power stage is switched off at once.
     Disable = 0 => None,

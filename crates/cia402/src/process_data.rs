@@ -1,30 +1,30 @@
-//! Process data: what goes over the bus with every frame, in the drive's own units.
+//! Process data: the contents of each frame on the bus, in the drive's own units.
 //!
-//! Positions, velocities and accelerations are in the user units that the [factor group](crate::units) defines, torques
-//! in thousandths of the rated torque (6076h).
+//! Positions, velocities and accelerations are in the user units of the [factor group](crate::units), torques in thousandths of the rated
+//! torque (6076h).
 use crate::{Controlword, Statusword};
 use servobench_base::Stateful;
 
-/// What the master sends.
+/// Data from the master.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Commands {
     /// 6040h.
     pub controlword: Controlword,
-    /// Mode of operation that is asked for (6060h).
+    /// Requested mode of operation (6060h).
     pub mode: i8,
     /// 607Ah; with a position counter of more than 32 bits its lower half.
     pub target_position: i32,
-    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    /// Upper half of the target position, in a manufacturer-specific object; 0 with 32 bits or fewer.
     pub target_position_high: i32,
     /// 60FFh.
     pub target_velocity: i32,
     /// 6071h.
     pub target_torque: i16,
-    /// Added to the target position of the cyclic synchronous position (60B0h); the sum wraps as positions do.
+    /// Offset of the target position in cyclic synchronous position (60B0h); the sum wraps like positions.
     pub position_offset: i32,
-    /// Added to the velocity that the position loop asks for (60B1h).
+    /// Offset of the velocity from the position loop (60B1h).
     pub velocity_offset: i32,
-    /// Added to the torque that the velocity loop asks for (60B2h).
+    /// Offset of the torque from the velocity loop (60B2h).
     pub torque_offset: i16,
     /// 6081h.
     pub profile_velocity: u32,
@@ -32,11 +32,11 @@ pub struct Commands {
     pub profile_acceleration: u32,
     /// 6084h.
     pub profile_deceleration: u32,
-    /// Position that the reference gets when it is found (607Ch).
+    /// Position of the reference (607Ch).
     pub home_offset: i32,
-    /// A point for the trajectory buffer, or a command to it (2010h); sent when there is one.
+    /// A point for the trajectory buffer, or a command to it (2010h); sent only if there is one.
     pub trajectory_point: Option<[u8; 8]>,
-    /// What is written to the interpolation data record (60C1h); sent when there is something.
+    /// Write to the interpolation data record (60C1h); sent only if there is one.
     pub interpolation_data: Option<InterpolationData>,
     /// Touch probe function (60B8h).
     pub touch_probe_function: u16,
@@ -46,7 +46,7 @@ pub struct Commands {
     pub max_torque: Option<u16>,
 }
 
-/// A point in the interpolation data record (60C1h). What the sub-mode (60C0h) does not use is not mapped and not written.
+/// A point in the interpolation data record (60C1h). Values that the sub-mode (60C0h) does not use are not mapped and not written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Stateful)]
 pub struct InterpolationData {
     /// Position (60C1h.1, counts).
@@ -57,21 +57,21 @@ pub struct InterpolationData {
     pub velocity: Option<i32>,
 }
 
-/// What the drive sends.
+/// Data from the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Stateful)]
 pub struct Actuals {
     /// 6041h.
     pub statusword: Statusword,
-    /// Mode of operation that is active (6061h).
+    /// Active mode of operation (6061h).
     pub mode: i8,
     /// 6064h; with a position counter of more than 32 bits its lower half.
     pub position: i32,
-    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    /// Upper half of the position, in a manufacturer-specific object; 0 with 32 bits or fewer.
     pub position_high: i32,
-    /// What the position loop follows (6062h); the actual position where there is no position loop. With a position counter of
-    /// more than 32 bits its lower half.
+    /// Position that the position loop follows (6062h), or the actual position without one. With a position counter of more than 32 bits
+    /// its lower half.
     pub position_demand: i32,
-    /// Its upper half, in an object of the manufacturer; 0 with 32 bits or fewer.
+    /// Upper half of that position, in a manufacturer-specific object; 0 with 32 bits or fewer.
     pub position_demand_high: i32,
     /// 606Ch.
     pub velocity: i32,

@@ -1,4 +1,4 @@
-//! Why an access to the object dictionary is refused: the abort codes of CiA 301 (table 22) with the reason.
+//! Refused accesses to the object dictionary: the abort codes of CiA 301 (table 22) with the reason.
 //!
 //! The same codes end an SDO transfer over EtherCAT (ETG.1000.6, table 41).
 use crate::objects::{DataType, Value};
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Declares the abort codes with their texts.
 macro_rules! abort_codes {
     ($($name:ident = $code:literal, $text:literal;)*) => {
-        /// What goes over the bus to end a transfer.
+        /// Code that ends a transfer on the bus.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[repr(u32)]
         pub enum AbortCode {
@@ -18,7 +18,7 @@ macro_rules! abort_codes {
         }
 
         impl AbortCode {
-            /// Every code that the dictionary gives.
+            /// Every code that the dictionary returns.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// Text in the words of the standard.
@@ -45,7 +45,7 @@ abort_codes! {
 }
 
 impl AbortCode {
-    /// The code as it goes over the bus.
+    /// The code as sent over the bus.
     #[must_use]
     pub const fn bits(self) -> u32 {
         self as u32
@@ -59,59 +59,59 @@ impl fmt::Display for AbortCode {
     }
 }
 
-/// An access that is refused: the object, the value, what would be taken. Nothing has changed.
+/// A refused access: the object, the value, and the accepted values. Nothing has changed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum SdoError {
-    /// An index that the drive does not have.
+    /// An index that does not exist in the drive.
     #[error("there is no object {index:04X}h: take one of the drive's object dictionary")]
     NoObject {
-        /// Index as asked for.
+        /// Rejected index.
         index: u16,
     },
-    /// A sub-index that the object does not have.
+    /// A sub-index that does not exist in the object.
     #[error("there is no {object}: `{name}` has sub-indices up to {highest:02X}h")]
     NoSubindex {
-        /// As asked for.
+        /// Rejected object.
         object: Object,
         /// Name of the object.
         name: &'static str,
-        /// Highest sub-index that it has.
+        /// Highest sub-index of the object.
         highest: u8,
     },
-    /// A read of what is only written.
+    /// A read of a write-only object.
     #[error("`{name}` ({object}) is write only: keep what was written")]
     WriteOnly {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
     },
-    /// A string that is read as a number.
+    /// A string read as a number.
     #[error("`{name}` ({object}) is a string, not a number: upload its bytes")]
     NoNumber {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
     },
-    /// A write of what is only read.
+    /// A write of a read-only object.
     #[error("`{name}` ({object}) is read only: it tells what the drive does")]
     ReadOnly {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
     },
-    /// So many bytes for another type.
+    /// A wrong number of bytes for the type.
     #[error("`{name}` ({object}) is of type {}, {} byte long, got {length} byte", data_type.name(), data_type.size())]
     Length {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
-        /// Its type.
+        /// Type of the object.
         data_type: DataType,
-        /// Number of bytes that came.
+        /// Number of bytes received.
         length: usize,
     },
     /// A value of another type.
@@ -119,11 +119,11 @@ pub enum SdoError {
     Type {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
-        /// Its type.
+        /// Type of the object.
         data_type: DataType,
-        /// Value that came.
+        /// Rejected value.
         value: Value,
     },
     /// A value above the range.
@@ -131,11 +131,11 @@ pub enum SdoError {
     TooHigh {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// Rejected value.
         value: i128,
-        /// Largest value that it takes.
+        /// Largest accepted value.
         highest: i128,
     },
     /// A value below the range.
@@ -143,72 +143,72 @@ pub enum SdoError {
     TooLow {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// Rejected value.
         value: i128,
-        /// Smallest value that it takes.
+        /// Smallest accepted value.
         lowest: i128,
     },
-    /// A value that is none of those with a meaning.
+    /// A value that is not defined.
     #[error("`{name}` ({object}) must be one of {accepted:?}, got {value}")]
     NotListed {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// Rejected value.
         value: Value,
-        /// Values that it takes.
+        /// Accepted values.
         accepted: &'static [i64],
     },
-    /// Bits without a meaning.
+    /// Reserved bits.
     #[error("`{name}` ({object}) must have no bits but {bits:#x}, got {:#x}: clear the others", value.number())]
     ReservedBits {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// Rejected value.
         value: Value,
-        /// Bits that have a meaning.
+        /// Bits that are defined.
         bits: u32,
     },
-    /// A window whose ends would change places.
+    /// A window whose ends would cross.
     #[error("`{name}` ({object}) must be {side} {bound}, the other end, got {value}: write the other end first")]
     CrossedBounds {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// Rejected value.
         value: Value,
-        /// On which side of the other end it has to be.
+        /// Required side of the other end.
         side: Side,
         /// Value of the other end.
         bound: i32,
     },
-    /// A factor that does not go with the others.
+    /// A factor that is inconsistent with the others.
     #[error("{object} = {value} does not go with the other objects of the factor group: {reason}")]
     FactorGroup {
         /// The object.
         object: Object,
         /// Rejected value.
         value: Value,
-        /// What is wrong with their product.
+        /// Error of their product.
         reason: UnitError,
     },
-    /// A write that has to wait.
+    /// A write that is refused in the present state.
     #[error("`{name}` ({object}) cannot be written in {state}: disable operation first")]
     State {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
         /// State of the drive.
         state: PowerState,
     },
-    /// A write that would change a motion under way.
+    /// A write that would change an active motion.
     #[error(
         "`{name}` ({object}) cannot be written while a motion of {} is under way: wait for its end, or take bit 4 of the \
          controlword back",
@@ -217,9 +217,9 @@ pub enum SdoError {
     UnderWay {
         /// The object.
         object: Object,
-        /// Its name.
+        /// Name of the object.
         name: &'static str,
-        /// The mode that makes the motion.
+        /// Mode that generates the motion.
         mode: Mode,
     },
 }
@@ -227,9 +227,9 @@ pub enum SdoError {
 /// A side of a bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// Less than it.
+    /// Less than the bound.
     Below,
-    /// Greater than it.
+    /// Greater than the bound.
     Above,
 }
 
@@ -243,7 +243,7 @@ impl fmt::Display for Side {
 }
 
 impl SdoError {
-    /// The code that ends the transfer.
+    /// Code that ends the transfer.
     #[must_use]
     pub const fn abort_code(&self) -> AbortCode {
         match self {

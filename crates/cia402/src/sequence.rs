@@ -1,11 +1,11 @@
-//! How a master leads a drive from state to state.
+//! Command sequences by which a master moves a drive from state to state.
 //!
-//! The shortest way through the [table of transitions](crate::TRANSITIONS), found when the crate is compiled. Faults are no
-//! way anywhere, so a drive is not led to Fault, to Fault reaction active, or back to Not ready to switch on.
+//! Shortest paths through the [table of transitions](crate::TRANSITIONS), computed at compile time. No path uses a fault, so a drive is not
+//! moved to Fault, to Fault reaction active, or back to Not ready to switch on.
 //!
-//! One command per state: what is [`next`](towards) is given until the statusword tells another state. Quick stop active
-//! is left for Operation enabled by the command for it; where the option code 605Ah = 0 to 4 does not allow that, the drive
-//! goes on to Switch on disabled by itself, from where the way is known as well.
+//! One command per state: the [next one](towards) is sent until the statusword shows another state. The command for Operation enabled
+//! leaves Quick stop active; if the option code 605Ah = 0 to 4 does not allow that, the drive continues to Switch on disabled by itself,
+//! from which there is a path as well.
 //!
 //! ```
 //! use servobench_cia402::{Command, Next, PowerState, towards};
@@ -18,26 +18,26 @@ use crate::controlword::Command;
 use crate::state::PowerState;
 use crate::transitions::{Cause, TRANSITIONS};
 
-/// What a master does next to lead a drive to a state.
+/// Next step of a master that moves a drive to a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Next {
-    /// Nothing: the drive is there.
+    /// Nothing: the drive has reached the state.
     Arrived,
     /// Gives a command. A fault reset is given by the rising edge of its bit.
     Give(Command),
-    /// Waits: the drive goes on by itself.
+    /// Waits: the drive continues by itself.
     Wait,
-    /// Nothing that a master does leads there.
+    /// No command of a master leads there.
     Unreachable,
 }
 
-/// What comes next on the way from `state` to `goal`.
+/// Next step on the path from `state` to `goal`.
 #[must_use]
 pub const fn towards(state: PowerState, goal: PowerState) -> Next {
     WAYS[goal as usize][state as usize]
 }
 
-/// The command that keeps the drive in a state; `None` where it does not depend on the master.
+/// Command that keeps the drive in a state; `None` if that does not depend on the master.
 #[must_use]
 pub const fn keeping(state: PowerState) -> Option<Command> {
     match state {
@@ -52,7 +52,7 @@ pub const fn keeping(state: PowerState) -> Option<Command> {
 
 const STATES: usize = PowerState::ALL.len();
 
-/// Per goal and state.
+/// Next steps per goal and state.
 const WAYS: [[Next; STATES]; STATES] = {
     let mut ways = [[Next::Unreachable; STATES]; STATES];
     let mut goal = 0;
@@ -63,7 +63,7 @@ const WAYS: [[Next; STATES]; STATES] = {
     ways
 };
 
-/// Per state; by the shortest distances, which `STATES` rounds over all transitions settle (Bellman & Ford).
+/// Next steps per state; by the shortest distances, which `STATES` rounds over all transitions settle (Bellman & Ford).
 const fn ways_to(goal: usize) -> [Next; STATES] {
     let (mut ways, mut distances) = ([Next::Unreachable; STATES], [STATES; STATES]);
     (ways[goal], distances[goal]) = (Next::Arrived, 0);
@@ -90,8 +90,8 @@ const fn ways_to(goal: usize) -> [Next; STATES] {
     ways
 }
 
-/// What a master does for a transition with these causes: it waits where only the drive decides. Of several commands it is
-/// the last, Disable voltage, which means the same in every state.
+/// Step of a master for a transition with these causes: it waits if only the drive decides. Of several commands the last one is taken,
+/// Disable voltage, which has the same effect in every state.
 const fn taken_by(causes: &[Cause]) -> Option<Next> {
     let (mut next, mut place) = (None, 0);
     while place < causes.len() {

@@ -2,7 +2,7 @@
 use core::fmt;
 use servobench_base::Stateful;
 
-/// A state of the power drive system, as the statusword (6041h) tells it.
+/// A state of the power drive system, as in the statusword (6041h).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub enum PowerState {
     /// Initialisation and self-test; nothing is commanded yet.
@@ -52,7 +52,7 @@ impl PowerState {
         }
     }
 
-    /// Whether the drive function is enabled, so that the power stage may drive current through the motor.
+    /// True if the drive function is enabled, so that the power stage may drive current through the motor.
     #[must_use]
     pub const fn is_drive_function_enabled(self) -> bool {
         matches!(self, Self::OperationEnabled | Self::QuickStopActive | Self::FaultReactionActive)

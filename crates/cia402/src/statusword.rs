@@ -1,4 +1,4 @@
-//! What the drive tells the master (6041h).
+//! Status of the drive for the master (6041h).
 //!
 //! | state | mask | bits 6, 5, 3–0 |
 //! |---|---|---|
@@ -27,7 +27,7 @@ pub enum StatusBit {
     Fault,
     /// The high-level power is applied.
     VoltageEnabled,
-    /// Cleared while the drive reacts on a quick stop request; part of the state.
+    /// Cleared while the drive reacts to a quick stop request; part of the state.
     QuickStop,
     /// Part of the state.
     SwitchOnDisabled,
@@ -39,7 +39,7 @@ pub enum StatusBit {
     Remote,
     /// The set-point is reached, or the axis has stopped after a halt.
     TargetReached,
-    /// A limit inside the drive binds.
+    /// A limit inside the drive is active.
     InternalLimitActive,
     /// Meaning by mode of operation: set-point acknowledge, speed, homing attained, drive follows the command value.
     ModeSpecific12,
@@ -57,35 +57,35 @@ impl StatusBit {
     }
 }
 
-/// The statusword (6041h): a state and the bits beside it. Any sixteen bits may arrive.
+/// The statusword (6041h): a state and further bits. Any sixteen bits may arrive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Stateful)]
 pub struct Statusword(u16);
 
-/// Bits 6 and 3–0: they tell a state by which bit 5 is not given.
+/// Bits 6 and 3–0: they define a state that leaves bit 5 open.
 const MASK_WITHOUT_QUICK_STOP: u16 = 0x004F;
 /// Bits 6, 5 and 3–0.
 const MASK_WITH_QUICK_STOP: u16 = 0x006F;
 
 impl Statusword {
-    /// The word of a state with every bit beside it cleared; so is bit 5 where the state leaves it open.
+    /// The word of a state with every other bit cleared, and bit 5 if the state leaves it open.
     #[must_use]
     pub const fn of(state: PowerState) -> Self {
         Self(coding(state).1)
     }
 
-    /// The word as it came over the bus.
+    /// A word received from the bus.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits)
     }
 
-    /// The word as it goes over the bus.
+    /// The word as sent over the bus.
     #[must_use]
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// State that the word tells; `None` when no state has these bits.
+    /// State of the word; `None` if no state has these bits.
     #[must_use]
     pub fn state(self) -> Option<PowerState> {
         PowerState::ALL.into_iter().find(|state| {
@@ -94,7 +94,7 @@ impl Statusword {
         })
     }
 
-    /// Whether `bit` is set.
+    /// True if `bit` is set.
     #[must_use]
     pub const fn has(self, bit: StatusBit) -> bool {
         self.0 & bit.mask() != 0

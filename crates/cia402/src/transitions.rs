@@ -1,19 +1,19 @@
-//! The transitions of the power state machine (IEC 61800-7-201, finite state automaton): one table, from which the machine
-//! steps, the tests test and `docs/cia402.md` is written.
+//! The transitions of the power state machine (IEC 61800-7-201, finite state automaton): the one table on which the machine runs, which the
+//! tests cover and from which `docs/cia402.md` is generated.
 use crate::controlword::{Command, Controlword};
 use crate::state::PowerState::{
     self, Fault, FaultReactionActive, NotReadyToSwitchOn, OperationEnabled, QuickStopActive, ReadyToSwitchOn,
     SwitchOnDisabled, SwitchedOn,
 };
 
-/// What sets a transition off.
+/// Cause of a transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// The drive is powered on or its application reset.
     Start,
     /// The self-test is over.
     Initialised,
-    /// The master asks for it.
+    /// The master commands it.
     Command(Command),
     /// The quick stop is over and its option code does not hold the axis.
     QuickStopCompleted,
@@ -38,20 +38,20 @@ impl Cause {
     }
 }
 
-/// An arrow of the state diagram.
+/// A transition of the state diagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// Number in the standard.
     pub number: u8,
-    /// States that it leads out of; none for the start.
+    /// States that the transition leaves; none for the start.
     pub from: &'static [PowerState],
-    /// State that it leads to.
+    /// State that the transition enters.
     pub to: PowerState,
-    /// What sets it off, any of them.
+    /// Causes, any of which triggers the transition.
     pub causes: &'static [Cause],
-    /// Beside its cause, what it waits for or asks of an option code; empty for nothing.
+    /// Condition in addition to the cause, such as a state of the axis or an option code; empty for none.
     pub condition: &'static str,
-    /// What the drive does.
+    /// Action of the drive.
     pub action: &'static str,
 }
 
@@ -195,7 +195,7 @@ pub const TRANSITIONS: [Transition; 17] = [
     },
 ];
 
-/// Several causes at once, a bit each: the drive asks at each of its cycles.
+/// Several causes at once, a bit each: the drive evaluates them in each of its cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Causes(u16);
 
@@ -206,7 +206,7 @@ impl Causes {
         Self(self.0 | (is_given as u16) << cause.place())
     }
 
-    /// The commands that a controlword gives.
+    /// Commands of a controlword.
     pub(crate) const fn of(word: Controlword) -> Self {
         // Bits 7 and 3 to 0 decide.
         const GIVEN: [Causes; 32] = {
@@ -251,7 +251,7 @@ impl Cause {
     }
 }
 
-/// The transitions that lead out of `state` and that one of `given` sets off, by number.
+/// Transitions out of `state` that are triggered by one of `given`, by number.
 pub(crate) fn set_off(state: PowerState, given: Causes) -> impl Iterator<Item = &'static Transition> {
     let mut left = LEAVING[state as usize];
     core::iter::from_fn(move || {
@@ -266,7 +266,7 @@ pub(crate) fn set_off(state: PowerState, given: Causes) -> impl Iterator<Item = 
     })
 }
 
-/// The causes of each transition.
+/// Causes of each transition.
 const CAUSES: [Causes; TRANSITIONS.len()] = {
     let mut causes = [Causes::NONE; TRANSITIONS.len()];
     let mut number = 0;
@@ -281,7 +281,7 @@ const CAUSES: [Causes; TRANSITIONS.len()] = {
     causes
 };
 
-/// Per state, a bit for each transition that leads out of it.
+/// Per state, a bit for each transition that leaves it.
 const LEAVING: [u32; PowerState::ALL.len()] = {
     let mut leaving = [0; PowerState::ALL.len()];
     let mut number = 0;

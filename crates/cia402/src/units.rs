@@ -1,4 +1,4 @@
-//! The factor group: increments of the encoder against the units of the axis.
+//! The factor group: conversion between increments of the encoder and units of the axis.
 //!
 //! IEC 61800-7-201 (CiA 402-2), with each object a fraction of its sub-indices 01h and 02h:
 //!
@@ -7,13 +7,12 @@
 //! velocity = increments per second·feed constant/(position encoder resolution·gear ratio)·velocity factor (6096h)
 //! ```
 //!
-//! and both with the sign of the polarity (607Eh). Set-points go the other way. The product is one reduced fraction of
-//! integers, [`Ratio`], so a conversion is exact up to the one rounding to a whole number of counts. That rounding is
-//! to the nearest, a half upwards: a position that is moved by a whole number of units is rounded as before, on both
-//! sides of zero.
+//! and both with the sign of the polarity (607Eh). Set-points are converted inversely. The product is one reduced fraction of integers,
+//! [`Ratio`], so a conversion is exact up to the one rounding to a whole number of counts. That rounding is to the nearest, a half upwards:
+//! a position that is shifted by a whole number of units is rounded as before, on both sides of zero.
 //!
-//! A position that is converted is always less than one count off. Increments of a position that are converted one
-//! after the other add their roundings up.
+//! A converted position is always less than one count off. Increments of a position that are converted one after the other accumulate their
+//! roundings.
 //!
 //! ```
 //! use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio};

@@ -1,7 +1,7 @@
-//! Modulo axes against walking: one position after the other, as far as it takes.
+//! Modulo axes against a walk by single steps.
 use servobench_cia402::modulo::{Direction, PositionRange, RotaryAxisOption};
 
-/// Where a step by one leads.
+/// Position after a step by one.
 fn walk(range: PositionRange, position: i32, step: i32) -> i32 {
     match position.checked_add(step) {
         Some(next) if (range.min()..=range.max()).contains(&next) => next,

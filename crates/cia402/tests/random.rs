@@ -1,14 +1,14 @@
-//! A master, a plant and a supervision gone mad for a million cycles.
+//! A random master, plant and supervision over a million cycles.
 use servobench_cia402::{
     Controlword, DisableOperationOption, DriveFunction, FaultReactionOption, HaltOption, PowerInputs, PowerMemory,
     PowerParams, QuickStopOption, ShutdownOption, TRANSITIONS, step,
 };
 use servobench_testkit::Random;
 
-/// Words that lead somewhere: of random words alone hardly one in a thousand sequences gets to Operation enabled.
+/// Words with an effect: with random words alone, hardly one in a thousand sequences reaches Operation enabled.
 const SENSIBLE: [u16; 7] = [0x0000, 0x0002, 0x0006, 0x0007, 0x000F, 0x0080, 0x010F];
 const CYCLES: u64 = 1_000_000;
-/// Cycles after which the drive starts anew, with other option codes.
+/// Cycles after which the drive restarts with other option codes.
 const LIFE: u64 = 1_000;
 
 #[test]
@@ -36,7 +36,7 @@ fn no_controlword_leads_out_of_the_diagram_or_powers_an_axis_that_is_not_enabled
         assert!(!is_powered || powered || number == Some(4), "cycle {cycle}: powered by transition {number:?}");
         drive = outputs.drive;
     }
-    // All but the start, or the test would not have been where it matters.
+    // Every transition but the start; otherwise the test would not cover those that matter.
     assert!(taken[1..].iter().all(|times| *times > 100), "{taken:?}");
 }
 

@@ -60,7 +60,7 @@ fn the_page_lists_every_error_code() {
     hold("objects.md", "error codes", &table);
 }
 
-/// Holds a section of a page against what it is made of, or writes it.
+/// Compares a section of a page with its source, or writes it.
 fn hold(page: &str, section: &str, table: &str) {
     // Several tests may write to one page.
     static PAGES: std::sync::Mutex<()> = std::sync::Mutex::new(());

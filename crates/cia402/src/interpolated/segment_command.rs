@@ -4,23 +4,22 @@
 //! |---|---|
 //! | bit 7 clear, bits 0–2 integrity counter, bits 3–6 format 0 | time (ms), position (24 bits), velocity (24 bits, 0.1 counts/s) |
 //! | format 1 | the same, velocity in 10 counts/s |
-//! | formats 2, 3 | as 0 and 1, the position relative to the point before |
-//! | format 4 | position (32 bits), from which the next relative point counts; no point of its own |
+//! | formats 2, 3 | like 0 and 1, with the position relative to the previous point |
+//! | format 4 | position (32 bits), from which the next relative point counts; not a point itself |
 //! | format 5 | time (ms), position (32 bits); the approach is linear |
 //! | format 6 | the same, relative |
 //! | 80h | clear the buffer and abort the move |
-//! | 81h | byte 1: remove so many of the points that were added last |
+//! | 81h | byte 1: number of points to remove, the last added first |
 //! | 82h | byte 1: clear the latched errors whose bits are set |
 //! | 83h | number the next segment 0 |
 //! | 84h | nothing |
 //!
-//! The integrity counter is that of the next segment's number, its lowest three bits. Source: Copley Controls, *CANopen
-//! Programmer's Manual*, 95-00271-000 rev. 7 (2012), pp. 214–215, "IP move segment command"; format 6 and command 84h from later
-//! editions.
+//! The integrity counter is the lowest three bits of the segment's number. Source: Copley Controls, *CANopen Programmer's Manual*,
+//! 95-00271-000 rev. 7 (2012), pp. 214–215, "IP move segment command"; format 6 and command 84h from later editions.
 use super::Point;
 use thiserror::Error;
 
-/// What 2010h says.
+/// Content of 2010h.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SegmentCommand {
     /// Add a point whose time is whole milliseconds.
@@ -30,7 +29,7 @@ pub enum SegmentCommand {
         /// The point.
         point: Point,
     },
-    /// Let the next relative point count from here.
+    /// Set the base of the next relative point.
     Base {
         /// The lowest three bits of the segment's number.
         counter: u8,
@@ -39,7 +38,7 @@ pub enum SegmentCommand {
     },
     /// Empty the buffer, abort the move.
     Clear,
-    /// Remove so many of the points that were added last.
+    /// Remove this number of points, the last added first.
     Remove(u8),
     /// Clear the latched errors whose bits are set.
     ClearErrors(u8),
@@ -49,10 +48,10 @@ pub enum SegmentCommand {
     NoOperation,
 }
 
-/// Eight bytes that are no command.
+/// Eight bytes that are not a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SegmentError {
-    /// A format that is reserved.
+    /// A reserved format.
     #[error("byte 0 of the move segment command is {byte:#04x}: format {format} is reserved, formats 0 to 6 are known")]
     Format {
         /// Byte 0.
@@ -60,7 +59,7 @@ pub enum SegmentError {
         /// Its bits 3 to 6.
         format: u8,
     },
-    /// A command that is reserved.
+    /// A reserved command.
     #[error(
         "byte 0 of the move segment command is {byte:#04x}: command {command} is reserved, commands 0 to 4 are known"
     )]
@@ -72,14 +71,14 @@ pub enum SegmentError {
     },
 }
 
-/// Coarse velocities are so many fine ones.
+/// Number of fine velocity units in a coarse one.
 const COARSE: i32 = 100;
 
 impl SegmentCommand {
-    /// What `bytes` say.
+    /// Decodes `bytes`.
     ///
     /// # Errors
-    /// [`SegmentError`] for what is reserved.
+    /// [`SegmentError`] for reserved formats and commands.
     pub fn decode(bytes: [u8; 8]) -> Result<Self, SegmentError> {
         let [byte, one, two, three, four, five, six, seven] = bytes;
         let (format, counter) = (byte >> 3 & 0xF, byte & 7);
@@ -107,8 +106,8 @@ impl SegmentCommand {
         Ok(Self::Point { counter, point: Point { position, is_relative, velocity, time } })
     }
 
-    /// The eight bytes; `None` for a point that none of the formats can hold: its time is not 0 to 255 whole milliseconds, or
-    /// its position or velocity, with a point that has one, does not fit into 24 bits.
+    /// Encodes the command; `None` for a point that fits none of the formats: its time is not 0 to 255 whole milliseconds, or its position
+    /// or velocity, for a point with a velocity, does not fit into 24 bits.
     #[must_use]
     pub fn encode(self) -> Option<[u8; 8]> {
         let command = |code: u8, data: u8| Some([0x80 | code, data, 0, 0, 0, 0, 0, 0]);

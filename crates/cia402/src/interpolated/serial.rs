@@ -1,12 +1,11 @@
-//! Points by the serial interface of a drive: parameter 115h of the trajectory buffer, a word of 16 bits and up to two values
-//! of 32.
+//! Points over the serial interface of a drive: parameter 115h of the trajectory buffer, a word of 16 bits and up to two values of 32.
 //!
 //! | bits of the word | point (bit 15 clear) | command (bit 15 set) |
 //! |---|---|---|
 //! | 0–7 | time to the next point (ms), 0 at the end | number of points to remove |
 //! | 8 | reserved | 0: clear the buffer, 1: remove points |
 //! | 9–11, 13–14 | reserved | reserved |
-//! | 12 | position relative to the point before | reserved |
+//! | 12 | position relative to the previous point | reserved |
 //!
 //! The values behind the word of a point are its position (counts) and, unless it is approached linearly, its velocity
 //! (0.1 counts/s). Before a move the trajectory mode (C8h) is written; op-code 17 starts the move.
@@ -16,9 +15,9 @@ use super::Point;
 use servobench_base::Stateful;
 use thiserror::Error;
 
-/// The trajectory buffer's parameter.
+/// Parameter of the trajectory buffer.
 pub const TRAJECTORY_BUFFER: u16 = 0x115;
-/// The trajectory mode's parameter.
+/// Parameter of the trajectory mode.
 pub const TRAJECTORY_MODE: u16 = 0xC8;
 /// Trajectory mode PVT.
 pub const PVT: u16 = 3;
@@ -30,18 +29,18 @@ const REMOVE: u16 = 1 << 8;
 const RELATIVE: u16 = 1 << 12;
 const COMMAND: u16 = 1 << 15;
 
-/// What a master writes to the trajectory buffer.
+/// Content of a write to the trajectory buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Record {
     /// Add a point.
     Point(Point),
     /// Abort the move and clear the buffer.
     Clear,
-    /// Remove so many of the points that were added last.
+    /// Remove this number of points, the last added first.
     Remove(u8),
 }
 
-/// What is written to a parameter: a word and the values behind it.
+/// Content of a write to a parameter: a word and the values behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Stateful)]
 pub struct Words {
     word: u16,
@@ -54,39 +53,39 @@ pub struct Words {
 pub enum Message {
     /// Writes a parameter.
     Write {
-        /// Which one.
+        /// Parameter.
         parameter: u16,
-        /// What.
+        /// Content.
         words: Words,
     },
     /// Gives a command.
     Command {
-        /// Its op-code.
+        /// Op-code.
         op_code: u8,
     },
 }
 
-/// Words that are no record.
+/// Words that are not a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum RecordError {
-    /// A word with a meaning that is not defined.
+    /// A word with reserved bits.
     #[error("bits {bits:#06x} of the word {word:#06x} are reserved: send them as zero")]
     ReservedBits {
         /// The word as received.
         word: u16,
-        /// The reserved bits that are set.
+        /// Reserved bits that are set.
         bits: u16,
     },
     /// Values behind a command.
     #[error("`values` must be none behind a command, got {values}: send the command as a word of its own")]
     BehindCommand {
-        /// How many.
+        /// Number of values.
         values: usize,
     },
-    /// A number of values that no point has.
+    /// A wrong number of values for a point.
     #[error("`values` must be 1 or 2, got {values}: send the position and, for a cubic approach, the velocity")]
     OfPoint {
-        /// How many.
+        /// Number of values.
         values: usize,
     },
 }
@@ -97,13 +96,13 @@ impl Words {
         Self { word, values: [0; 2], count: 0 }
     }
 
-    /// The word of 16 bits that comes first.
+    /// First word, of 16 bits.
     #[must_use]
     pub const fn word(&self) -> u16 {
         self.word
     }
 
-    /// The values that follow it.
+    /// Values behind the word.
     #[must_use]
     pub fn values(&self) -> &[i32] {
         &self.values[..self.count]
@@ -116,7 +115,7 @@ impl Message {
     /// Starts the move.
     pub const START_MOVE: Self = Self::Command { op_code: START_MOVE };
 
-    /// Writes `record` to the trajectory buffer; `None` where [`Record::encode`] has no words for it.
+    /// Writes `record` to the trajectory buffer; `None` if [`Record::encode`] cannot encode it.
     #[must_use]
     pub fn of(record: Record) -> Option<Self> {
         record.encode().map(|words| Self::Write { parameter: TRAJECTORY_BUFFER, words })
@@ -124,7 +123,7 @@ impl Message {
 }
 
 impl Record {
-    /// The words to write; `None` for a point whose time is not 0 to 255 whole milliseconds.
+    /// Encodes the record; `None` for a point whose time is not 0 to 255 whole milliseconds.
     #[must_use]
     pub fn encode(self) -> Option<Words> {
         Some(match self {
@@ -138,7 +137,7 @@ impl Record {
         })
     }
 
-    /// The record that `word` and the `values` behind it stand for.
+    /// Decodes `word` and the `values` behind it.
     ///
     /// # Errors
     /// [`RecordError`] names the reserved bits that are set, or a number of values that does not belong to the word.

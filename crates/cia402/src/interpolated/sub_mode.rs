@@ -1,16 +1,16 @@
-//! How a drive goes from point to point: sub-mode (60C0h) and time period (60C2h).
+//! Interpolation of a drive between points: sub-mode (60C0h) and time period (60C2h).
 //!
 //! | 60C0h | between points | time of a segment | write that adds the point |
 //! |---|---|---|---|
 //! | 0 | linear | 60C2h, adapted | position, 60C1h.1 |
 //! | −1 | linear | 60C2h | position, 60C1h.1 |
-//! | −2 | linear | of each point, 60C1h.2 (ms) | time, 60C1h.2 |
-//! | −3 | cubic | of each point, 60C1h.2 (ms) | velocity, 60C1h.3 (0.1 counts/s) |
+//! | −2 | linear | individual, 60C1h.2 (ms) | time, 60C1h.2 |
+//! | −3 | cubic | individual, 60C1h.2 (ms) | velocity, 60C1h.3 (0.1 counts/s) |
 //!
 //! Source: Copley Controls, *PVT Trajectory Calculations*, rev. 00 (2020), "Standard DS402 objects".
 use thiserror::Error;
 
-/// How the drive interpolates (60C0h).
+/// Interpolation of the drive (60C0h).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(i16)]
 pub enum SubMode {
@@ -18,14 +18,14 @@ pub enum SubMode {
     LinearAdapted = 0,
     /// Linear in a constant time.
     Linear = -1,
-    /// Linear in a time of its own for each point.
+    /// Linear in an individual time for each point.
     LinearTimed = -2,
-    /// Cubic in a time of its own for each point.
+    /// Cubic in an individual time for each point.
     Cubic = -3,
 }
 
 impl SubMode {
-    /// Every sub-mode, downwards from the standard's.
+    /// Every sub-mode, in falling order of the codes.
     pub const ALL: [Self; 4] = [Self::LinearAdapted, Self::Linear, Self::LinearTimed, Self::Cubic];
 
     /// The sub-mode with this code.
@@ -42,13 +42,13 @@ impl SubMode {
         self as i16
     }
 
-    /// Whether every segment lasts as long as 60C2h says.
+    /// True if every segment lasts for the time of 60C2h.
     #[must_use]
     pub const fn has_constant_time(self) -> bool {
         matches!(self, Self::LinearAdapted | Self::Linear)
     }
 
-    /// Sub-index of 60C1h by whose write the point is added.
+    /// Sub-index of 60C1h whose write adds the point.
     #[must_use]
     pub const fn last_sub_index(self) -> u8 {
         match self {
@@ -59,7 +59,7 @@ impl SubMode {
     }
 }
 
-/// Time between two points in the sub-modes with a constant one (60C2h).
+/// Time between two points in the sub-modes with constant time (60C2h).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TimePeriod {
     microseconds: u32,
@@ -69,7 +69,7 @@ impl TimePeriod {
     /// `units` (60C2h.1) of 10^`index` s (60C2h.2).
     ///
     /// # Errors
-    /// [`SettingError::TimePeriod`] for no units at all, and for an index that is not −3 to −6.
+    /// [`SettingError::TimePeriod`] for zero units, and for an index that is not −3 to −6.
     pub fn new(units: u8, index: i8) -> Result<Self, SettingError> {
         let unit = match index {
             -3 => 1000,
@@ -91,7 +91,7 @@ impl TimePeriod {
     }
 }
 
-/// A value that one of these objects does not take.
+/// A value that one of these objects refuses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SettingError {
     /// 60C0h does not take this value.

@@ -1,4 +1,4 @@
-//! The values of the objects.
+//! Values of the objects.
 use super::entry::{Admitted, Entry};
 use super::place::{Found, PLACES, Parameter, Signal, find, parameter as p, signal};
 use super::table::OBJECTS;
@@ -13,13 +13,13 @@ use crate::{
 
 /// Every value of the object dictionary.
 ///
-/// What the master writes is refused unless its object takes it, so the values of parameters are always in range. The drive
-/// reads its parameters again when [`generation`](Self::generation) has changed.
+/// A write of the master is refused unless its object takes the value, so the values of parameters are always in range. The drive reads its
+/// parameters again when [`generation`](Self::generation) has changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dictionary {
-    /// The bits of each value.
+    /// Bits of each value.
     bits: [u64; PLACES],
-    /// Whether the master has written each of them.
+    /// True for each value that the master has written.
     is_written: [bool; PLACES],
     generation: u32,
 }
@@ -31,7 +31,7 @@ impl Default for Dictionary {
 }
 
 impl Dictionary {
-    /// The values after power-on.
+    /// Values after power-on.
     #[must_use]
     pub const fn new() -> Self {
         const DEFAULTS: [u64; PLACES] = {
@@ -51,10 +51,10 @@ impl Dictionary {
         Self { bits: DEFAULTS, is_written: [false; PLACES], generation: 0 }
     }
 
-    /// What the master reads.
+    /// Reads a value for the master.
     ///
     /// # Errors
-    /// [`SdoError`] if there is no such object, it is write only or a string, of which [`upload`](Self::upload) has the bytes.
+    /// [`SdoError`] if the object does not exist, is write-only, or is a string, whose bytes [`upload`](Self::upload) returns.
     pub fn read(&self, object: Object) -> Result<Value, SdoError> {
         match find(object)? {
             Found::HighestSubindex(highest) => Ok(Value::Unsigned8(highest)),
@@ -64,10 +64,10 @@ impl Dictionary {
         }
     }
 
-    /// What the master writes, with the drive in this state.
+    /// Writes a value of the master, with the drive in `state`.
     ///
     /// # Errors
-    /// [`SdoError`] says what is not taken, and why; nothing has changed then.
+    /// [`SdoError`] with the refused value and the reason; nothing changes then.
     pub fn write(&mut self, object: Object, value: Value, state: PowerState) -> Result<(), SdoError> {
         let (entry, place) = writable(object)?;
         let (name, data_type) = (entry.name, entry.data_type);
@@ -77,10 +77,10 @@ impl Dictionary {
         self.store(object, entry, place, value, state)
     }
 
-    /// The bytes of a number, the lowest first, or of a string.
+    /// Bytes of a number, the lowest first, or of a string.
     ///
     /// # Errors
-    /// [`SdoError`] if there is no such object or it is write only.
+    /// [`SdoError`] if the object does not exist or is write-only.
     pub fn upload(&self, object: Object) -> Result<Bytes, SdoError> {
         if let Found::Text(known) = find(object)? {
             return Ok(Bytes::of(known.text().unwrap_or_default().as_bytes()));
@@ -104,10 +104,10 @@ impl Dictionary {
         self.store(object, entry, place, value, state)
     }
 
-    /// [`write`](Self::write) of a number, as the type of the object has it.
+    /// [`write`](Self::write) of a number, converted to the type of the object.
     ///
     /// # Errors
-    /// As [`write`](Self::write); [`SdoError::TooHigh`] and [`SdoError::TooLow`] for what the type does not hold, too.
+    /// As [`write`](Self::write); also [`SdoError::TooHigh`] and [`SdoError::TooLow`] for numbers outside the range of the type.
     pub fn write_number(&mut self, object: Object, number: i64, state: PowerState) -> Result<(), SdoError> {
         let (entry, place) = writable(object)?;
         let bounds = [entry.data_type.lowest(), entry.data_type.highest()];
@@ -135,9 +135,9 @@ impl Dictionary {
         Ok(())
     }
 
-    /// Whether the axis is in a motion that a mode makes by itself, as far as the statusword (6041h) and the mode (6061h) tell
-    /// that went to the master last: a search of homing that is neither over (bits 12, 13) nor at rest (bit 10), points of
-    /// interpolated position that are followed (bit 12).
+    /// True if the axis is in a motion that `mode` generates itself, by the statusword (6041h) and the mode (6061h) last sent to the
+    /// master: a search of homing that is neither over (bits 12, 13) nor at rest (bit 10), or points of interpolated position being
+    /// followed (bit 12).
     fn is_under_way(&self, mode: Mode, state: PowerState) -> bool {
         let statusword = Statusword::from_bits(self.signal(signal::STATUSWORD));
         let says = |bit| statusword.has(bit);
@@ -154,11 +154,11 @@ impl Dictionary {
             }
     }
 
-    /// What the drive itself has the object hold from power-on, as far as the object takes it. It is none of the master's
-    /// writes: the generation stays.
+    /// Sets the value that the object has in this drive from power-on, if the object takes it. It is not a write of the master: the
+    /// generation stays.
     ///
     /// # Errors
-    /// [`SdoError`] if there is no such object that a master writes, or it does not take the value.
+    /// [`SdoError`] if the object does not exist or is read-only for the master, or refuses the value.
     pub fn preset(&mut self, object: Object, value: Value) -> Result<(), SdoError> {
         let (entry, place) = writable(object)?;
         let (name, data_type) = (entry.name, entry.data_type);
@@ -170,7 +170,7 @@ impl Dictionary {
         Ok(())
     }
 
-    /// Whether the master has written the object since power-on, or since the drive preset it.
+    /// True if the master has written the object since power-on, or since the drive preset it.
     #[must_use]
     pub fn is_written(&self, object: Object) -> bool {
         matches!(find(object), Ok(Found::Entry(_, place)) if self.is_written[place])
@@ -186,7 +186,7 @@ impl Dictionary {
         Ok(())
     }
 
-    /// Whether the value, stored already, goes with those of the objects that it belongs to.
+    /// Checks the value, which is already stored, against those of related objects.
     fn fits_the_others(&self, object: Object, name: &'static str, value: Value) -> Result<(), SdoError> {
         let apart = |min: i32, max: i32| match object.subindex {
             _ if min < max => Ok(()),
@@ -205,30 +205,30 @@ impl Dictionary {
         }
     }
 
-    /// How often the master has written, modulo 2³².
+    /// Number of writes of the master, modulo 2³².
     #[must_use]
     pub const fn generation(&self) -> u32 {
         self.generation
     }
 
-    /// A parameter, in constant time.
+    /// Value of a parameter, in constant time.
     #[must_use]
     pub fn get<T: Stored>(&self, parameter: Parameter<T>) -> T {
         T::of_bits(self.bits[parameter.place])
     }
 
-    /// A signal, in constant time.
+    /// Value of a signal, in constant time.
     #[must_use]
     pub fn signal<T: Stored>(&self, signal: Signal<T>) -> T {
         T::of_bits(self.bits[signal.place])
     }
 
-    /// Sets a signal, in constant time. Its change is none of the master's writes: the generation stays.
+    /// Sets a signal, in constant time. It is not a write of the master: the generation stays.
     pub fn set<T: Stored>(&mut self, signal: Signal<T>, value: T) {
         self.bits[signal.place] = value.value().bits();
     }
 
-    /// Takes over what came and goes as process data, so that the master reads the same by SDO.
+    /// Copies the received and the sent process data, so that the master reads the same by SDO.
     ///
     /// Profile velocity, accelerations and home offset are parameters: the master writes them.
     pub fn mirror(&mut self, commands: &Commands, actuals: &Actuals) {
@@ -265,7 +265,7 @@ impl Dictionary {
         self.set(signal::TOUCH_PROBE_NEGATIVE_EDGE, negative);
     }
 
-    /// The option codes (605Ah to 605Eh).
+    /// Option codes (605Ah to 605Eh).
     #[must_use]
     pub fn power_params(&self) -> PowerParams {
         PowerParams {
@@ -278,17 +278,17 @@ impl Dictionary {
     }
 
     fn option<T: Default>(&self, code: Parameter<i16>, option: impl Fn(i16) -> Result<T, OptionCodeError>) -> T {
-        // The object takes no other code: a test holds its range against the codes that there are.
+        // The object takes no other code: a test checks its range against the existing codes.
         option(self.get(code)).unwrap_or_default()
     }
 
-    /// The mode of operation that is asked for (6060h); `None` as long as none was.
+    /// Requested mode of operation (6060h); `None` before the first request.
     #[must_use]
     pub fn mode(&self) -> Option<Mode> {
         Mode::from_code(self.get(p::MODES_OF_OPERATION))
     }
 
-    /// The factor group (608Fh, 6091h, 6092h, 6096h, 607Eh).
+    /// Factor group (608Fh, 6091h, 6092h, 6096h, 607Eh).
     #[must_use]
     pub fn factor_group(&self) -> FactorGroup {
         FactorGroup {
@@ -300,16 +300,16 @@ impl Dictionary {
         }
     }
 
-    /// The position range limit (607Bh).
+    /// Position range limit (607Bh).
     #[must_use]
     pub fn position_range(&self) -> PositionRange {
         let (min, max) = (self.get(p::MIN_POSITION_RANGE_LIMIT), self.get(p::MAX_POSITION_RANGE_LIMIT));
-        // Never empty: what would make it so was refused.
+        // Never empty: a write that would make it so was refused.
         PositionRange::new(min, max).unwrap_or_default()
     }
 }
 
-/// What a master reads, as it goes over the bus.
+/// Bytes of a value, as sent over the bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bytes {
     bytes: [u8; LONGEST],
@@ -334,7 +334,7 @@ impl AsRef<[u8]> for Bytes {
     }
 }
 
-/// The entry that a master may write.
+/// Entry that a master may write.
 fn writable(object: Object) -> Result<(&'static Entry, usize), SdoError> {
     match find(object)? {
         Found::Entry(entry, place) if entry.access.is_written() => Ok((entry, place)),
@@ -344,7 +344,7 @@ fn writable(object: Object) -> Result<(&'static Entry, usize), SdoError> {
     }
 }
 
-/// Refuses what the entry does not take.
+/// Refuses values that the entry does not take.
 fn admit(object: Object, entry: &'static Entry, value: Value) -> Result<(), SdoError> {
     let (name, number) = (entry.name, value.number());
     match entry.admitted {

@@ -7,19 +7,18 @@ use super::value::DataType;
 use crate::units::Object;
 use core::fmt::{self, Display, Formatter};
 
-/// What the file says of itself.
+/// Description of the file in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileInfo<'a> {
-    /// Its name, such as `drive.eds`.
+    /// File name, such as `drive.eds`.
     pub name: &'a str,
-    /// Day of its making, `mm-dd-yyyy`.
+    /// Date of creation, `mm-dd-yyyy`.
     pub date: &'a str,
-    /// Time of its making, `hh:mmAM` or `hh:mmPM`.
+    /// Time of creation, `hh:mmAM` or `hh:mmPM`.
     pub time: &'a str,
 }
 
-/// The electronic data sheet of the drive, to be written where text goes: ASCII, lines that a line feed ends, as CiA 306-1
-/// has them.
+/// The electronic data sheet of the drive, as displayable text: ASCII, with lines ended by a line feed, as in CiA 306-1.
 ///
 /// ```
 /// use servobench_cia402::objects::{Eds, FileInfo};
@@ -29,10 +28,10 @@ pub struct FileInfo<'a> {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Eds<'a> {
-    /// What the file says of itself.
+    /// Description of the file.
     pub file: FileInfo<'a>,
-    /// Values to configure the drive with. Those that it does not have after power-on are added as `ParameterValue`, as a
-    /// device configuration file (DCF) has them.
+    /// Values for the configuration of the drive. Those that differ from the values after power-on are added as `ParameterValue`, as in a
+    /// device configuration file (DCF).
     pub configured: Option<&'a Dictionary>,
 }
 
@@ -69,12 +68,12 @@ impl Display for Eds<'_> {
 /// Data type of a string (CiA 301, table 44).
 const VISIBLE_STRING: u16 = 9;
 
-/// Whether the index is in the manufacturer-specific profile area.
+/// True if the index is in the manufacturer-specific profile area.
 fn is_manufacturers(index: u16) -> bool {
     (0x2000..0x6000).contains(&index)
 }
 
-/// One list of indices.
+/// Writes one list of indices.
 fn list(f: &mut Formatter<'_>, name: &str, belongs: impl Fn(u16) -> bool) -> fmt::Result {
     let listed = || OBJECTS.iter().map(|object| object.index).filter(|index| belongs(*index));
     writeln!(f, "[{name}]\nSupportedObjects={}", listed().count())?;
@@ -85,7 +84,7 @@ fn list(f: &mut Formatter<'_>, name: &str, belongs: impl Fn(u16) -> bool) -> fmt
 }
 
 impl Eds<'_> {
-    /// The section of an object and those of its sub-indices.
+    /// Writes the section of an object and those of its sub-indices.
     fn sections(&self, f: &mut Formatter<'_>, object: &ObjectDescription) -> fmt::Result {
         let (index, name) = (object.index, object.name);
         let (object_type, entries) = match object.contents {
@@ -110,14 +109,14 @@ impl Eds<'_> {
         writeln!(f, "AccessType=const\nDefaultValue={}\nPDOMapping=0\n", entries.len())?;
         for (subindex, entry) in (1..).zip(entries) {
             writeln!(f, "[{index:04X}sub{subindex:X}]")?;
-            // Readers find entries by name too: several of one name get a number.
+            // Readers also find entries by name: several of one name get a number.
             let alike = entries.iter().filter(|other| other.name == entry.name).count();
             self.variable(f, Object { index, subindex }, entry, (alike > 1).then_some(subindex))?;
         }
         Ok(())
     }
 
-    /// The keys of a section that describes a value.
+    /// Writes the keys of a section that describes a value.
     fn variable(&self, f: &mut Formatter<'_>, object: Object, entry: &Entry, number: Option<u8>) -> fmt::Result {
         write!(f, "ParameterName={}", entry.name)?;
         if let Some(number) = number {

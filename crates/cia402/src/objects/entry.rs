@@ -1,41 +1,41 @@
-//! What the table says of an object.
+//! Description of an object in the table.
 use super::value::{DataType, Value};
 use crate::Mode;
 
-/// Who may read and write an entry.
+/// Access of the master to an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Access {
-    /// The master reads it; it never changes.
+    /// Constant: read only, and never changes.
     Constant,
-    /// The master reads it.
+    /// Read by the master.
     ReadOnly,
-    /// The master reads and writes it.
+    /// Read and written by the master.
     ReadWrite,
-    /// The master writes it.
+    /// Written by the master.
     WriteOnly,
 }
 
-/// Which process data an entry may be mapped into.
+/// Process data into which an entry may be mapped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Mapping {
     /// None.
     No,
-    /// What the drive receives (RPDO).
+    /// Data that the drive receives (RPDO).
     Receive,
-    /// What the drive transmits (TPDO).
+    /// Data that the drive transmits (TPDO).
     Transmit,
 }
 
-/// The values that an entry takes.
+/// Values that an entry takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Admitted {
-    /// Every one of its type.
+    /// Every value of the type.
     Any,
     /// From the first to the second one.
     Range(i64, i64),
-    /// These.
+    /// These values.
     OneOf(&'static [i64]),
-    /// Those without other bits than these.
+    /// Values without other bits than these.
     Bits(u32),
 }
 
@@ -44,21 +44,21 @@ pub enum Admitted {
 pub struct Entry {
     /// Name in the standard; for a variable that of the object.
     pub name: &'static str,
-    /// Its type.
+    /// Data type.
     pub data_type: DataType,
-    /// Who may read and write it.
+    /// Access of the master.
     pub access: Access,
-    /// Which process data it may be mapped into.
+    /// Process data into which the entry may be mapped.
     pub mapping: Mapping,
     /// Value after power-on.
     pub default: i64,
-    /// The values that it takes.
+    /// Values that the entry takes.
     pub admitted: Admitted,
-    /// Its unit; empty without one.
+    /// Unit; empty without one.
     pub unit: &'static str,
-    /// Whether it may be written only while the drive function is disabled.
+    /// True if the entry may be written only while the drive function is disabled.
     pub disabled_only: bool,
-    /// The mode whose motion goes by it: while that is under way it may not be written.
+    /// Mode whose motion depends on the entry: during that motion the entry may not be written.
     pub governs: Option<Mode>,
 }
 
@@ -69,20 +69,20 @@ pub enum Contents {
     Variable(Entry),
     /// A string that never changes (VISIBLE_STRING), at sub-index 00h.
     Text(&'static str),
-    /// Several of one kind, from sub-index 01h on; 00h tells how many.
+    /// Several of one kind, from sub-index 01h on; 00h has their number.
     Array(&'static [Entry]),
-    /// Several of different kinds, from sub-index 01h on; 00h tells how many.
+    /// Several of different kinds, from sub-index 01h on; 00h has their number.
     Record(&'static [Entry]),
 }
 
-/// One object.
+/// An object of the dictionary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ObjectDescription {
     /// Index, such as 6041h.
     pub index: u16,
     /// Name in the standard.
     pub name: &'static str,
-    /// What it holds.
+    /// Contents.
     pub contents: Contents,
 }
 
@@ -90,7 +90,7 @@ pub struct ObjectDescription {
 pub(super) const HIGHEST_SUBINDEX: &str = "Highest sub-index supported";
 
 impl ObjectDescription {
-    /// Its numbers: one at sub-index 00h, or several from 01h on; none of a string.
+    /// Numbers of the object: one at sub-index 00h, or several from 01h on; none for a string.
     #[must_use]
     pub const fn entries(&self) -> &[Entry] {
         match &self.contents {
@@ -100,7 +100,7 @@ impl ObjectDescription {
         }
     }
 
-    /// Its string, if it is one.
+    /// String of the object, if it is one.
     #[must_use]
     pub const fn text(&self) -> Option<&'static str> {
         if let Contents::Text(text) = self.contents { Some(text) } else { None }
@@ -124,13 +124,13 @@ impl ObjectDescription {
 }
 
 impl Access {
-    /// Whether the master may read it.
+    /// True if the master may read the entry.
     #[must_use]
     pub const fn is_read(self) -> bool {
         !matches!(self, Self::WriteOnly)
     }
 
-    /// Whether the master may write it.
+    /// True if the master may write the entry.
     #[must_use]
     pub const fn is_written(self) -> bool {
         matches!(self, Self::ReadWrite | Self::WriteOnly)
@@ -167,7 +167,7 @@ impl Entry {
         self.data_type.value(self.default.cast_unsigned())
     }
 
-    /// Bounds that the range of the entry sets, if it sets any.
+    /// Bounds of the entry, if its values form a range.
     #[must_use]
     pub const fn range(&self) -> Option<(i64, i64)> {
         if let Admitted::Range(lowest, highest) = self.admitted { Some((lowest, highest)) } else { None }

@@ -1,14 +1,14 @@
-//! The object dictionary as JSON: the table and the present values.
+//! The object dictionary as JSON: the table with the present values.
 use super::dictionary::Dictionary;
 use super::entry::{Admitted, Contents, Entry};
 use super::table::OBJECTS;
 use crate::units::Object;
 use core::fmt::{self, Display, Formatter};
 
-/// The object dictionary as a JSON array with one object for each entry, to be written where text goes.
+/// The object dictionary as a JSON array with one object for each entry, as displayable text.
 ///
-/// `index` and `subindex` are numbers; `range` has two numbers, `accepted` several, `bits` a mask, and none of
-/// the three stands for every value of the type. `value` is null for what is only written.
+/// `index` and `subindex` are numbers; `range` has two numbers, `accepted` several, `bits` a mask, and without these three the entry takes
+/// every value of its type. `value` is null for a write-only entry.
 #[derive(Debug, Clone, Copy)]
 pub struct Json<'a>(pub &'a Dictionary);
 
@@ -42,7 +42,7 @@ impl Display for Json<'_> {
     }
 }
 
-/// What the table says of an entry. No name, no unit and no string has a character that JSON escapes.
+/// Writes the description of an entry. No name, no unit and no string has a character that JSON escapes.
 fn description(f: &mut Formatter<'_>, entry: &Entry) -> fmt::Result {
     let Entry { name, data_type, access, mapping, unit, disabled_only, .. } = *entry;
     let (data_type, access, mapping) = (data_type.name(), access.abbreviation(), mapping.abbreviation());
@@ -54,7 +54,7 @@ fn description(f: &mut Formatter<'_>, entry: &Entry) -> fmt::Result {
     match entry.admitted {
         Admitted::Any => Ok(()),
         Admitted::Range(lowest, highest) => write!(f, ", \"range\": [{lowest}, {highest}]"),
-        // A slice of numbers is written alike by Rust and JSON.
+        // Rust and JSON write a slice of numbers alike.
         Admitted::OneOf(accepted) => write!(f, ", \"accepted\": {accepted:?}"),
         Admitted::Bits(bits) => write!(f, ", \"bits\": {bits}"),
     }

@@ -1,4 +1,4 @@
-//! The process data objects (PDO) of a drive on CANopen: each kind of mode has the pair that CiA 402 gives it.
+//! The process data objects (PDO) of a drive on CANopen: the pairs that CiA 402 defines for the kinds of modes.
 //!
 //! | PDO | received | transmitted |
 //! |---|---|---|
@@ -8,22 +8,22 @@
 //! | 4 | and target velocity | and velocity |
 //! | 5 | and target torque | and torque |
 //!
-//! The mapping is static. PDO 1 to 4 have the identifiers of the predefined connection set (CiA 301, section 7.3.5), the fifth
-//! pair has none there and is not valid until it gets one.
+//! The mapping is static. PDO 1 to 4 have the identifiers of the predefined connection set (CiA 301, section 7.3.5); the fifth pair has
+//! none there and is not valid until it gets one.
 use super::entry::{Entry, ObjectDescription};
 use super::table::{constant, parameter, record};
 use super::value::DataType::{self, Integer8, Integer16, Integer32, Unsigned8, Unsigned16, Unsigned32};
 
-/// Node-ID of the drive: that of a device alone with its master. A data sheet leaves it open.
+/// Node-ID of the drive: that of a single device with its master. A data sheet leaves it open.
 pub const NODE_ID: u8 = 1;
 
-/// Bits of an identifier (CiA 301, 1400h:01h and 1800h:01h): the PDO does not exist, and cannot be asked for by a remote frame.
+/// Bits of an identifier (CiA 301, 1400h:01h and 1800h:01h): the PDO does not exist, and cannot be requested by a remote frame.
 const NOT_VALID: i64 = 1 << 31;
 const NO_REMOTE_FRAME: i64 = 1 << 30;
-/// Sent and taken whenever there is something new (device profile).
+/// Transmitted and accepted at every event (device profile).
 const EVENT_DRIVEN: i64 = 255;
 
-/// Declares the two objects of each PDO: its number, its identifier, what is mapped into it.
+/// Declares the two objects of each PDO: its number, its identifier, its mapped objects.
 macro_rules! pdos {
     ($kind:literal, $parameters:ident at $first_parameters:literal, $mappings:ident at $first_mapping:literal;
      $($number:literal: $identifier:expr, [$($index:literal $data_type:ident),*];)*) => {
@@ -74,8 +74,8 @@ const fn mapped(index: i64, data_type: DataType) -> Entry {
     constant(Unsigned32, (index << 16) | bits).named("Application object")
 }
 
-/// What a data sheet adds to the node-ID of a device for the identifier of a PDO, of EMCY or of SDO, where `index` and `subindex` are
-/// one and `value` has a node-ID.
+/// Number that a data sheet adds to the node-ID of a device for the identifier of a PDO, of EMCY or of SDO, if `index` and `subindex` are
+/// one and `value` includes a node-ID.
 pub(super) const fn without_node_id(index: u16, subindex: u8, value: i64) -> Option<i64> {
     let is_identifier = matches!(
         (index, subindex),

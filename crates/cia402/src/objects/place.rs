@@ -1,4 +1,4 @@
-//! Where the values of the entries are: places that the drive's side knows by name, found at compile time.
+//! Places of the values of entries, which the drive's side knows by name, found at compile time.
 use super::entry::{Access, Admitted, Entry, ObjectDescription};
 use super::table::OBJECTS;
 use super::value::Stored;
@@ -6,7 +6,7 @@ use crate::SdoError;
 use crate::units::Object;
 use core::marker::PhantomData;
 
-/// Number of values; sub-indices 00h of arrays and records are not among them, they follow from the table.
+/// Number of values; sub-indices 00h of arrays and records are not among them, as they follow from the table.
 pub(super) const PLACES: usize = FIRST_PLACES[OBJECTS.len()];
 
 /// Place of the first entry of each object, and the number of places.
@@ -20,10 +20,10 @@ const FIRST_PLACES: [usize; OBJECTS.len() + 1] = {
     places
 };
 
-/// What an index and sub-index lead to.
+/// Result of looking up an index and sub-index.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Found {
-    /// Sub-index 00h of an array or record, and what it tells.
+    /// Sub-index 00h of an array or record, and its value.
     HighestSubindex(u8),
     /// An entry, and its place.
     Entry(&'static Entry, usize),
@@ -31,7 +31,7 @@ pub(super) enum Found {
     Text(&'static ObjectDescription),
 }
 
-/// Looks an object up, as its master names it.
+/// Looks up an object by its index and sub-index.
 pub(super) fn find(object: Object) -> Result<Found, SdoError> {
     let at = OBJECTS
         .binary_search_by_key(&object.index, |known| known.index)
@@ -50,7 +50,7 @@ pub(super) fn find(object: Object) -> Result<Found, SdoError> {
     }
 }
 
-/// What the table says of an object; `None` if there is no such one, or it is the sub-index 00h of several.
+/// Entry of an object; `None` if the object does not exist, is a string, or is the sub-index 00h of several.
 #[must_use]
 pub fn entry_of(object: Object) -> Option<&'static Entry> {
     match find(object) {
@@ -59,10 +59,10 @@ pub fn entry_of(object: Object) -> Option<&'static Entry> {
     }
 }
 
-/// The entry with its place, at compile time.
+/// Entry with its place, at compile time.
 ///
 /// # Panics
-/// If there is no such entry, which then does not compile.
+/// If there is no such entry, so that it does not compile.
 const fn place(index: u16, subindex: u8) -> (&'static Entry, usize) {
     let mut at = 0;
     while at < OBJECTS.len() {
@@ -83,7 +83,7 @@ pub struct Parameter<T> {
     holds: PhantomData<T>,
 }
 
-/// A value that the drive may set to any of its type: what it measures, and what came as process data.
+/// A value that the drive may set to any value of the type: measurements, and received process data.
 #[derive(Debug, Clone, Copy)]
 pub struct Signal<T> {
     pub(super) place: usize,
@@ -91,7 +91,7 @@ pub struct Signal<T> {
 }
 
 impl<T: Stored> Parameter<T> {
-    /// The entry at this index and sub-index; it does not compile unless there is one of this type.
+    /// Parameter at this index and sub-index; it does not compile unless there is an entry of this type.
     const fn at(index: u16, subindex: u8) -> Self {
         let (entry, place) = place(index, subindex);
         assert!(entry.data_type as u16 == T::DATA_TYPE as u16, "the object has another type");
@@ -100,7 +100,7 @@ impl<T: Stored> Parameter<T> {
 }
 
 impl<T: Stored> Signal<T> {
-    /// As [`Parameter::at`], for entries that change and take every value of their type.
+    /// Like [`Parameter::at`], for entries that change and take every value of their type.
     const fn at(index: u16, subindex: u8) -> Self {
         let Parameter { place: place_of_entry, holds } = Parameter::<T>::at(index, subindex);
         let (entry, _) = place(index, subindex);
@@ -120,7 +120,7 @@ macro_rules! places {
     };
 }
 
-/// What the master sets and the drive reads.
+/// Values that the master sets and the drive reads.
 pub mod parameter {
     use super::Parameter;
 
@@ -188,7 +188,7 @@ pub mod parameter {
     }
 }
 
-/// What the drive tells, and the set-points that come as process data.
+/// Values from the drive, and set-points that come as process data.
 pub mod signal {
     use super::Signal;
 

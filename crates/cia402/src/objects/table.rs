@@ -19,7 +19,7 @@ const MILLISECOND: &str = "ms";
 /// Servo drive (bit 17) by the profile 402 (192h).
 const DEVICE_TYPE: i64 = 0x0002_0192;
 
-/// What 6060h takes: no mode yet, or a mode that there is.
+/// Values of 6060h: no mode yet, or a supported mode.
 const MODES: [i64; Mode::ALL.len() + 1] = {
     let mut modes = [0; Mode::ALL.len() + 1];
     let mut at = 0;
@@ -40,10 +40,10 @@ const SUPPORTED_MODES: i64 = {
     bits
 };
 
-/// The homing methods that 6098h takes and 60E3h lists.
+/// Homing methods that 6098h takes and 60E3h lists.
 ///
-/// 1 and 2: limit switch and index pulse; 3 to 6: home switch and index pulse; 7 to 14: home switch, limit switch and
-/// index pulse; 17 to 30: the same without index pulse; 33 and 34: index pulse; 35 and 37: where the axis stands.
+/// 1 and 2: limit switch and index pulse; 3 to 6: home switch and index pulse; 7 to 14: home switch, limit switch and index pulse; 17 to
+/// 30: the same without index pulse; 33 and 34: index pulse; 35 and 37: present position.
 pub const HOMING_METHODS: &[i64] = &[
     1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 33, 34, 35,
     37,
@@ -301,7 +301,7 @@ pub(super) const fn record(index: u16, name: &'static str, entries: &'static [En
     ObjectDescription { index, name, contents: Contents::Record(entries) }
 }
 
-/// What the master reads and writes, every value of its type.
+/// An entry that the master reads and writes, with every value of its type.
 pub(super) const fn parameter(data_type: DataType, default: i64) -> Entry {
     Entry {
         name: "",
@@ -316,12 +316,12 @@ pub(super) const fn parameter(data_type: DataType, default: i64) -> Entry {
     }
 }
 
-/// What the drive tells.
+/// An entry with a value from the drive.
 const fn actual(data_type: DataType) -> Entry {
     Entry { access: Access::ReadOnly, mapping: Mapping::Transmit, ..parameter(data_type, 0) }
 }
 
-/// What never changes.
+/// A constant entry.
 pub(super) const fn constant(data_type: DataType, value: i64) -> Entry {
     Entry { access: Access::Constant, ..parameter(data_type, value) }
 }
@@ -330,7 +330,7 @@ const fn position_limit(default: i32) -> Entry {
     parameter(Integer32, default as i64).unit(POSITION)
 }
 
-/// An axis that never gets faster or slower is not meant.
+/// An acceleration, excluding zero, with which the velocity could never change.
 const fn acceleration() -> Entry {
     parameter(Unsigned32, 0xFFFF_FFFF).at_least_one().unit(ACCELERATION)
 }

@@ -1,16 +1,16 @@
 //! Types and values of objects.
 use core::fmt;
 
-/// Declares the data types, their values and how each is stored in 64 bits.
+/// Declares the data types, their values and their storage in 64 bits.
 macro_rules! data_types {
     ($($(#[$doc:meta])* $name:ident($type:ty) = $code:literal, $text:literal;)*) => {
-        /// The type of an object (CiA 301, section 7.4.7).
+        /// Data type of an object (CiA 301, section 7.4.7).
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[repr(u16)]
         pub enum DataType { $($(#[$doc])* $name = $code,)* }
 
         impl DataType {
-            /// Every type that an object here has.
+            /// Every type of the objects here.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// Name in the words of the standard.
@@ -37,7 +37,7 @@ macro_rules! data_types {
                 match self { $(Self::$name => <$type>::MAX as i128,)* }
             }
 
-            /// The value that these bits are, those above its size ignored.
+            /// Value of these bits; those above its size are ignored.
             #[expect(clippy::cast_possible_truncation, reason = "bits above the size of the type are not part of the value")]
             pub(super) const fn value(self, bits: u64) -> Value {
                 match self { $(Self::$name => Value::$name(bits as $type),)* }
@@ -49,19 +49,19 @@ macro_rules! data_types {
         pub enum Value { $($(#[$doc])* $name($type),)* }
 
         impl Value {
-            /// Its type.
+            /// Data type.
             #[must_use]
             pub const fn data_type(self) -> DataType {
                 match self { $(Self::$name(_) => DataType::$name,)* }
             }
 
-            /// Its bits; those of a negative number go on above its size.
+            /// Bits of the value; a negative number is sign-extended above its size.
             #[expect(clippy::cast_sign_loss, reason = "the bits are kept")]
             pub(super) const fn bits(self) -> u64 {
                 match self { $(Self::$name(value) => value as u64,)* }
             }
 
-            /// The number that it is.
+            /// Numeric value.
             #[must_use]
             pub const fn number(self) -> i128 {
                 match self { $(Self::$name(value) => value as i128,)* }
@@ -99,15 +99,15 @@ macro_rules! data_types {
     };
 }
 
-/// A type of Rust that an object holds.
+/// A Rust type of an object's value.
 pub trait Stored: Copy {
-    /// Its name in the standard.
+    /// Data type in the standard.
     const DATA_TYPE: DataType;
 
-    /// The value that these bits are.
+    /// Value of these bits.
     fn of_bits(bits: u64) -> Self;
 
-    /// The value with its type.
+    /// Value with its type.
     fn value(self) -> Value;
 }
 
@@ -140,7 +140,7 @@ impl DataType {
 const LONGEST: usize = 8;
 
 impl Value {
-    /// The value that these bytes are, the lowest first; `None` unless there are as many as the type has.
+    /// Value of these bytes, the lowest first; `None` unless their number is the size of the type.
     #[must_use]
     pub fn of_bytes(data_type: DataType, bytes: &[u8]) -> Option<Self> {
         if bytes.len() != data_type.size() {
@@ -151,7 +151,7 @@ impl Value {
         Some(data_type.value(u64::from_le_bytes(all)))
     }
 
-    /// Its bytes as they go over the bus, the lowest first; only the first [`DataType::size`] of them belong to it.
+    /// Bytes as sent over the bus, the lowest first; only the first [`DataType::size`] of them are valid.
     #[must_use]
     pub const fn bytes(self) -> [u8; LONGEST] {
         self.bits().to_le_bytes()

@@ -1,10 +1,10 @@
-//! Division by a number that is known long before.
+//! Division by a number that is known in advance.
 //!
 //! For 2^(l−1) < d ≤ 2^l and m = ⌈2^(63+l)/d⌉, which has 64 bits, ⌊n/d⌋ = ⌊n·m/2^(63+l)⌋ for every n of 63 bits: m·d exceeds
 //! 2^(63+l) by less than 2^l, so the quotient by less than n/2^63/d < 1/d. A multiplication and a shift take a third of the time
 //! of a division (Granlund & Montgomery, *Division by invariant integers using multiplication*, PLDI 1994, theorem 4.2).
 
-/// A number to divide by, at least 1.
+/// A divisor, at least 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Divisor {
     value: i64,
@@ -17,7 +17,7 @@ pub(super) struct Divisor {
 impl Divisor {
     pub(super) const ONE: Self = Self::new(1);
 
-    /// `value` is at least 1.
+    /// A divisor of `value`, at least 1.
     pub(super) const fn new(value: i64) -> Self {
         let width = i64::BITS - (value - 1).leading_zeros();
         let power = 1_u128 << (63 + width);
@@ -34,14 +34,14 @@ impl Divisor {
     /// `numerator/self`, rounded down.
     #[inline]
     pub(super) const fn floor(self, numerator: i64) -> i64 {
-        // −1 for what is negative: its quotient is the complement of that of its complement, which is not.
+        // −1 if negative: the quotient is then the complement of that of the complement, which is not negative.
         let sign = numerator >> 63;
         let magnitude = (numerator ^ sign).cast_unsigned();
         let [_, high] = halves((magnitude << 1) as u128 * self.reciprocal as u128);
         (high >> self.width).cast_signed() ^ sign
     }
 
-    /// `numerator/self` to the nearest, a half upwards; `None` where that leaves 64 bits on the way.
+    /// `numerator/self` to the nearest, a half upwards; `None` if an intermediate result leaves 64 bits.
     #[inline]
     pub(super) const fn nearest(self, numerator: i64) -> Option<i64> {
         match numerator.checked_add(self.value / 2) {
@@ -51,7 +51,7 @@ impl Divisor {
     }
 }
 
-/// The low and the high 64 bits.
+/// Low and high 64 bits.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "both halves are kept")]
 const fn halves(product: u128) -> [u64; 2] {
@@ -73,7 +73,7 @@ mod tests {
         let small = (1..=100).flat_map(|d| (-300..=300).map(move |n| (n, d)));
         let positive = || beside_powers().filter(|d| *d > 0);
         let beside_powers = positive().flat_map(|d| beside_powers().map(move |n| (n, d)));
-        // Just below and at a multiple, where a reciprocal that is rounded wrongly shows.
+        // Just below and at a multiple, where a wrongly rounded reciprocal shows.
         let beside_multiples = positive().flat_map(|d| {
             let last = i64::MAX - i64::MAX % d;
             [last - 1, last, -last, -last - 1, last - d, last / 3 / d * d - 1].map(|n| (n, d))

@@ -1,4 +1,4 @@
-//! Why a factor, a count or a position is refused.
+//! Refused factors, counts and positions.
 use core::fmt;
 
 use thiserror::Error;
@@ -18,7 +18,7 @@ impl fmt::Display for Object {
     }
 }
 
-/// A factor, reading or position that is refused, with what would be accepted.
+/// A refused factor, reading or position, with what would be accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum UnitError {
     /// An object of the factor group that is zero.
@@ -26,7 +26,7 @@ pub enum UnitError {
     ZeroFactor {
         /// The object.
         object: Object,
-        /// Its name in the standard.
+        /// Name of the object in the standard.
         name: &'static str,
     },
     /// A part of a ratio that is not positive.
@@ -37,28 +37,28 @@ pub enum UnitError {
         /// Rejected value.
         value: i64,
     },
-    /// A polarity with a bit that has no meaning.
+    /// A polarity with a reserved bit.
     #[error("polarity (607Eh:00h) must have no bits but 7, 6 and 5, got {polarity:#04x}: clear bits {reserved:#04x}")]
     ReservedPolarity {
-        /// The byte as written.
+        /// Byte as written.
         polarity: u8,
-        /// The reserved bits that are set.
+        /// Reserved bits that are set.
         reserved: u8,
     },
-    /// A product of ratios with a reduced numerator or denominator that is not kept.
+    /// A product of ratios whose reduced numerator or denominator is too large to be stored.
     #[error(
         "`{name}` needs a numerator or denominator of {value} when reduced, at most {highest} is kept: choose factors \
          that have more in common, or a coarser unit"
     )]
     RatioTooLarge {
-        /// The product.
+        /// Name of the product.
         name: &'static str,
         /// The larger one of numerator and denominator, reduced.
         value: u128,
-        /// Largest one that is kept.
+        /// Largest one that can be stored.
         highest: i64,
     },
-    /// Counts that overflow when they are converted.
+    /// Counts that overflow in the conversion.
     #[error(
         "{value} counts cannot be multiplied by {numerator} within 127 bits: wrap the position into its counter first"
     )]
@@ -68,7 +68,7 @@ pub enum UnitError {
         /// Numerator of the ratio, or of its product with the time.
         numerator: i128,
     },
-    /// A position or velocity that is no number or too far for the counts.
+    /// A position or velocity that is NaN or too far for the counts.
     #[error("`{name}` must be finite and at most {highest:e} in magnitude (SI), got {value:e}: correct it or its unit")]
     NotCountable {
         /// Field name.
@@ -84,7 +84,7 @@ pub enum UnitError {
         /// Requested width (bit).
         bits: u32,
     },
-    /// A reading that the counter cannot show.
+    /// A reading outside the range of the counter.
     #[error(
         "a {bits}-bit counter shows {lowest} to {highest}, got {reading}: check its width and whether it is signed"
     )]
@@ -98,7 +98,7 @@ pub enum UnitError {
         /// Rejected reading.
         reading: i128,
     },
-    /// Two readings so far apart that the way between them is not known.
+    /// Two readings so far apart that the direction between them is ambiguous.
     #[error(
         "the counter went from {from} to {to}, {step} counts the nearest way, at most {largest_step} tell the \
          direction: read it more often, take a wider counter or start again from a known position"
@@ -108,7 +108,7 @@ pub enum UnitError {
         from: i128,
         /// Reading after.
         to: i128,
-        /// Difference the nearest way (counts).
+        /// Difference in the shortest direction (counts).
         step: i128,
         /// Largest step accepted (counts).
         largest_step: i128,

@@ -8,22 +8,21 @@ pub const POLARITY_VELOCITY: u8 = 1 << 6;
 /// Bit 5 of the polarity (607Eh): torques are multiplied by −1. The standard leaves this bit reserved; Mitsubishi's MR-J5-G gives
 /// it this meaning, for 6071h, 60B2h, 6074h and 6077h.
 pub const POLARITY_TORQUE: u8 = 1 << 5;
-/// The bits that have a meaning.
+/// Supported bits.
 pub const POLARITY_BITS: u8 = POLARITY_POSITION | POLARITY_VELOCITY | POLARITY_TORQUE;
 
-/// The objects as they are written, `[sub-index 01h, sub-index 02h]`; all ones without polarity by default.
+/// Objects as written, `[sub-index 01h, sub-index 02h]`; all ones without polarity by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FactorGroup {
-    /// 608Fh: encoder increments for so many motor revolutions.
+    /// 608Fh: encoder increments per number of motor revolutions.
     pub position_encoder_resolution: [u32; 2],
-    /// 6091h: motor shaft revolutions for so many driving shaft revolutions.
+    /// 6091h: motor shaft revolutions per number of driving shaft revolutions.
     pub gear_ratio: [u32; 2],
-    /// 6092h: feed (user-defined position units) for so many driving shaft revolutions.
+    /// 6092h: feed (user-defined position units) per number of driving shaft revolutions.
     pub feed_constant: [u32; 2],
-    /// 6096h: numerator and denominator that make position units per second the user-defined velocity unit, `[60, 1]`
-    /// for a minute.
+    /// 6096h: numerator and denominator of the user-defined velocity unit relative to position units per second, `[60, 1]` for a minute.
     pub velocity_factor: [u32; 2],
-    /// 607Eh: any of [`POLARITY_POSITION`], [`POLARITY_VELOCITY`] and [`POLARITY_TORQUE`]; all three turn the axis round.
+    /// 607Eh: any of [`POLARITY_POSITION`], [`POLARITY_VELOCITY`] and [`POLARITY_TORQUE`]; all three reverse the axis.
     pub polarity: u8,
 }
 
@@ -40,17 +39,17 @@ impl Default for FactorGroup {
     }
 }
 
-/// How long the user-defined position unit is.
+/// Length of the user-defined position unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AxisUnit {
-    /// A linear axis: so many metres, 1/1 000 000 for µm.
+    /// A linear axis: fraction of a metre, 1/1 000 000 for µm.
     Metre(Ratio),
-    /// A rotary axis: so many revolutions, 1/360 000 for a thousandth of a degree.
+    /// A rotary axis: fraction of a revolution, 1/360 000 for a thousandth of a degree.
     Revolution(Ratio),
 }
 
 impl FactorGroup {
-    /// The conversions by these objects.
+    /// Conversions by these objects.
     ///
     /// # Errors
     /// [`UnitError::ZeroFactor`] if a sub-index is zero, [`UnitError::ReservedPolarity`] if the polarity has other
@@ -87,7 +86,7 @@ impl FactorGroup {
     }
 }
 
-/// Both sub-indices, neither zero.
+/// Both sub-indices, checked for zero.
 fn fraction(index: u16, names: [&'static str; 2], values: [u32; 2]) -> Result<[u128; 2], UnitError> {
     for (subindex, (name, value)) in (1..).zip(names.into_iter().zip(values)) {
         if value == 0 {

@@ -1,7 +1,7 @@
 //! A positive fraction of integers.
 //!
-//! A product that fits into 64 bits is divided there by a multiplication, and a number whose rounding is beyond doubt is
-//! rounded as an `f64`; the results are the same, in a third of the time.
+//! For speed, a product that fits into 64 bits is divided by a multiplication, and a number whose rounding is beyond doubt is rounded as an
+//! `f64`; the results are the same, in a third of the time.
 use super::UnitError;
 use super::divisor::Divisor;
 
@@ -16,7 +16,7 @@ impl Ratio {
     /// 1/1.
     pub const ONE: Self = Self { numerator: Divisor::ONE, denominator: Divisor::ONE };
 
-    /// The fraction, reduced.
+    /// A fraction, reduced.
     ///
     /// # Errors
     /// [`UnitError::NotPositive`] if the numerator or the denominator is zero or negative.
@@ -29,7 +29,7 @@ impl Ratio {
         Self::reduced("ratio", numerator.unsigned_abs().into(), denominator.unsigned_abs().into())
     }
 
-    /// The fraction of two positive numbers of any size; `name` is what a refusal calls it.
+    /// The fraction of two positive numbers of any size; `name` is its name in an error.
     pub(crate) fn reduced(name: &'static str, numerator: u128, denominator: u128) -> Result<Self, UnitError> {
         let divisor = greatest_common_divisor(numerator, denominator);
         let kept = |part: u128| {
@@ -60,7 +60,7 @@ impl Ratio {
         Self { numerator: self.denominator, denominator: self.numerator }
     }
 
-    /// The product; `name` is what a refusal calls it.
+    /// The product; `name` is its name in an error.
     ///
     /// # Errors
     /// [`UnitError::RatioTooLarge`] if the reduced product does not fit.
@@ -88,8 +88,8 @@ impl Ratio {
 
     /// `count` times the ratio to the nearest `f64`: one rounding.
     ///
-    /// The quotient is developed to at least 65 bits and its last one stands for the rest, so the conversion to 53 bits
-    /// rounds what the exact fraction would round.
+    /// The quotient is computed to at least 65 bits and its last one stands for the rest, so that the conversion to 53 bits rounds like the
+    /// exact fraction.
     ///
     /// # Errors
     /// [`UnitError::CountOverflow`] as [`of`](Self::of).
@@ -99,7 +99,7 @@ impl Ratio {
         if let Some(numerator) = narrow.filter(|numerator| numerator.unsigned_abs() <= EXACT)
             && self.denominator().unsigned_abs() <= EXACT
         {
-            // A quotient of two numbers is rounded once.
+            // A quotient of two exact numbers is rounded once.
             return Ok(numerator as f64 / self.denominator() as f64);
         }
         let numerator = product(count, self.numerator().into())?;
@@ -111,8 +111,8 @@ impl Ratio {
         Ok(if numerator < 0 { -magnitude } else { magnitude })
     }
 
-    /// The number `x` times the ratio to the nearest integer, a half upwards: one rounding, since `x` is a fraction
-    /// itself. `None` if `x` is not finite or the result leaves 127 bits.
+    /// The number `x` times the ratio to the nearest integer, a half upwards: one rounding, since `x` is a fraction itself. `None` if `x`
+    /// is not finite or the result leaves 127 bits.
     #[must_use]
     #[inline]
     pub fn of_f64(self, x: f64) -> Option<i128> {
@@ -124,7 +124,7 @@ impl Ratio {
         let numerator = i128::from(mantissa) * i128::from(self.numerator());
         let denominator = i128::from(self.denominator());
         if let Ok(shift) = u32::try_from(exponent) {
-            // The sign bit, 2^127, is no trap: every mantissa but 0 overflows with it, and 0 has a negative exponent.
+            // The sign bit, 2^127, does no harm: every mantissa but 0 overflows with it, and 0 has a negative exponent.
             let scaled = numerator.checked_mul(1_i128.checked_shl(shift)?)?;
             return Some(nearest(scaled, denominator));
         }
@@ -139,8 +139,8 @@ impl Ratio {
             return None;
         }
         let quotient = x * self.numerator() as f64 / self.denominator() as f64;
-        // Product and quotient are off by 2^−53 each, so are the sums below: four of them are in the doubt, with room. From
-        // 2^49 on, and for what is not finite, it is always larger than what it may be.
+        // Product and quotient are off by 2^−53 each, so are the sums below: the doubt covers four of them, with a margin. From 2^49 on,
+        // and for values that are not finite, it always exceeds its bound.
         let doubt = (quotient.abs() + 1.0) * EPSILON;
         if doubt < 0.5 {
             let [lowest, highest] = [floor(quotient - doubt + 0.5), floor(quotient + doubt + 0.5)];
@@ -150,12 +150,12 @@ impl Ratio {
     }
 }
 
-/// Integers up to 2^53 are `f64` too.
+/// Largest integer up to which every one is an `f64`.
 const EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 /// 2^−50.
 const EPSILON: f64 = 4.0 * f64::EPSILON;
 
-/// The largest integer not above `x`, which is far from the bounds of 64 bits.
+/// Largest integer not above `x`, which is far from the bounds of 64 bits.
 fn floor(x: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "far from the bounds; towards zero, which is mended")]
     let towards_zero = x as i64;
@@ -172,7 +172,7 @@ pub(crate) fn nearest(numerator: i128, denominator: i128) -> i128 {
     numerator.div_euclid(denominator) + i128::from(remainder >= denominator - remainder)
 }
 
-/// The product, refused beyond 127 bits.
+/// Product, refused beyond 127 bits.
 pub(crate) fn product(value: i128, numerator: i128) -> Result<i128, UnitError> {
     value.checked_mul(numerator).ok_or(UnitError::CountOverflow { value, numerator })
 }

@@ -1,16 +1,15 @@
-//! The conversions of a factor group.
+//! Conversions of a factor group.
 use core::f64::consts::TAU;
 
 use super::ratio::product;
 use super::{Ratio, UnitError};
 
-/// The conversions between increments of the encoder and the units of the axis, by
-/// [`FactorGroup::scaling`](super::FactorGroup::scaling).
+/// Conversions between increments of the encoder and the units of the axis, by [`FactorGroup::scaling`](super::FactorGroup::scaling).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scaling {
     pub(super) position_per_increment: Ratio,
     pub(super) velocity_per_increment: Ratio,
-    /// In metres or revolutions.
+    /// Length in metres or revolutions.
     pub(super) length_per_increment: Ratio,
     pub(super) radians: bool,
     pub(super) position_inverted: bool,
@@ -26,7 +25,7 @@ impl Scaling {
         self.position_per_increment.inverse().of(signed(position, self.position_inverted)?)
     }
 
-    /// Position in user-defined units at so many increments.
+    /// Position in user-defined units at a number of increments.
     ///
     /// # Errors
     /// As [`increments`](Self::increments).
@@ -42,7 +41,7 @@ impl Scaling {
         self.velocity_per_increment.inverse().of(signed(velocity, self.velocity_inverted)?)
     }
 
-    /// Velocity in user-defined units at so many increments per second.
+    /// Velocity in user-defined units at a number of increments per second.
     ///
     /// # Errors
     /// As [`increments`](Self::increments).
@@ -80,7 +79,7 @@ impl Scaling {
     }
 }
 
-/// The value with the sign of the polarity.
+/// Value with the sign of the polarity.
 fn signed(value: i128, inverted: bool) -> Result<i128, UnitError> {
     if inverted { product(value, -1) } else { Ok(value) }
 }

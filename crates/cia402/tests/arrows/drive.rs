@@ -27,7 +27,7 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    /// A drive that was led to `state` as a master would, without leaving it again.
+    /// A drive that was led to `state` as by a master.
     pub(crate) fn led_to(state: PowerState, params: PowerParams) -> Self {
         let way: &[(u16, PowerInputs)] = match state {
             PowerState::NotReadyToSwitchOn => &[],
@@ -53,7 +53,7 @@ impl Drive {
         drive
     }
 
-    /// Number of the transition that was taken, and what the power stage does from now on.
+    /// Number of the transition taken, and the function of the power stage from now on.
     pub(crate) fn step(&mut self, word: u16, inputs: PowerInputs) -> (Option<u8>, DriveFunction) {
         let outputs = step(&self.params, &mut self.memory, Controlword::from_bits(word), inputs);
         assert_eq!(outputs.statusword.state(), Some(self.memory.state()));

@@ -264,8 +264,8 @@ fn the_statusword_tells_what_the_drive_knows() {
     }
 }
 
-/// What a word sets off in a state, at standstill and with a quick stop that holds the axis: the patterns are those that
-/// manuals print at the arrows.
+/// Transitions that words trigger in a state, at standstill and with a quick stop that holds the axis: the patterns are those
+/// printed at the arrows in manuals.
 fn arrows(state: PowerState) -> &'static [(&'static str, u8)] {
     match state {
         NotReadyToSwitchOn | FaultReactionActive => &[],
@@ -299,7 +299,7 @@ fn every_word_takes_the_arrow_of_its_state_or_does_nothing() {
     }
 }
 
-/// Whether the lower byte of `word` has the bits of `pattern`, highest first, in which `x` is either.
+/// True if the lower byte of `word` matches `pattern`, highest bit first, in which `x` is either value.
 fn matches(word: u16, pattern: &str) -> bool {
     pattern.chars().rev().enumerate().all(|(bit, wanted)| match wanted {
         '0' => word >> bit & 1 == 0,

@@ -1,4 +1,4 @@
-//! A master that does what comes next, and the drive that it leads.
+//! A master that follows the power sequence, and its drive.
 use crate::drive::{AT_REST, Drive};
 use servobench_cia402::{Command, Next, PowerParams, PowerState, QuickStopOption, keeping, towards};
 
@@ -10,7 +10,7 @@ const GOALS: [PowerState; 5] = [
     PowerState::OperationEnabled,
     PowerState::QuickStopActive,
 ];
-/// The longest way: from the fault reaction through its end, the reset and the three commands to Operation enabled, and a
+/// The longest sequence: from the fault reaction through its end, the reset and the three commands to Operation enabled, and a
 /// quick stop.
 const LONGEST: u32 = 6;
 

@@ -1,4 +1,4 @@
-//! Points in every form in which a master writes them.
+//! Points in every form that a master can write.
 use servobench_cia402::interpolated::SegmentCommand;
 use servobench_cia402::interpolated::serial::Record;
 use servobench_fuzz::{check, fuzz, produce};
@@ -19,7 +19,7 @@ fn records() {
     });
 }
 
-/// What is understood is said again: in other bytes perhaps, of the same meaning.
+/// A decoded command encodes to bytes of the same meaning, though they may differ.
 #[test]
 fn move_segment_commands() {
     fuzz(check!(), 20_000, produce::<[u8; 8]>(), |bytes| match SegmentCommand::decode(*bytes) {

@@ -4,7 +4,7 @@ use servobench_cia402::units::{AxisUnit, Object, Ratio};
 use servobench_cia402::{AbortCode, PowerState};
 use servobench_fuzz::{ValueGenerator, check, fuzz, produce};
 
-/// One write: mostly to an object that there is, mostly as long as its type.
+/// One write: mostly to an object that exists, mostly as long as its type.
 #[derive(Debug, Clone)]
 struct Write {
     object: Object,
@@ -12,7 +12,7 @@ struct Write {
     state: PowerState,
 }
 
-/// The write that random numbers stand for.
+/// Makes a write of random numbers.
 fn write((index, subindex, is_known, number, length, state): (u16, u8, bool, i64, u8, u8)) -> Write {
     let known = &OBJECTS[usize::from(index) % OBJECTS.len()];
     let first = known.first_subindex();
@@ -54,7 +54,7 @@ fn writes() {
     });
 }
 
-/// Every value is one that its object takes, and the views that the drive reads hold.
+/// Checks that every object accepts its value, and that the views read by the drive are valid.
 fn assert_sound(dictionary: &Dictionary) {
     for known in &OBJECTS {
         for (subindex, entry) in (known.first_subindex()..).zip(known.entries()) {

@@ -1,4 +1,4 @@
-//! The words in which points come to a drive, by the tables of the manuals.
+//! The words in which a drive gets its points, by the tables of the manuals.
 use servobench_cia402::interpolated::Point;
 
 mod segment_command;

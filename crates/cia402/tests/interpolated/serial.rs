@@ -37,7 +37,7 @@ fn times_that_no_word_holds_are_not_encoded() {
     assert!(Record::Point(linear(0, 255)).encode().is_some());
 }
 
-/// Every word there is: it is refused for its reserved bits, or encoding gives it back.
+/// Every possible word is refused for its reserved bits, or encoding reproduces it.
 #[test]
 fn every_word_is_understood_or_refused() {
     let mut understood = 0;

@@ -1,4 +1,4 @@
-//! Values that are in range, but not beside others or not now.
+//! Values that are in range, but in conflict with others or with the present state.
 use crate::object;
 use servobench_cia402::objects::{Dictionary, Value};
 use servobench_cia402::units::Object;
@@ -66,14 +66,14 @@ fn what_scales_the_axis_waits_until_it_is_not_driven() {
             let code = dictionary.write(at, value, state).err().map(|refused| refused.abort_code());
             assert_eq!(code, is_driven.then_some(AbortCode::DeviceState), "{at} in {state}");
         }
-        // Windows and set-points do not wait.
+        // Windows and set-points can be written at any time.
         assert!(Dictionary::new().write(object(0x6065, 0), 5_u32.into(), state).is_ok());
         assert!(Dictionary::new().write(object(0x607A, 0), 5_i32.into(), state).is_ok());
     }
 }
 
 /// Oracle: the tables of bits 10, 12 and 13 in the profile, homing mode and interpolated position mode. In every other state, mode
-/// and outcome the method and the sub-mode are written.
+/// and result the method and the sub-mode can be written.
 #[test]
 fn what_a_motion_goes_by_waits_for_its_end() {
     let writes: [(Object, Value, i8); 2] =

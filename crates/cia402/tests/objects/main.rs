@@ -1,4 +1,4 @@
-//! The object dictionary: what the table says, what is taken and what is refused, and what is written of it.
+//! The object dictionary: its table against data sheets, and accepted and refused values.
 
 mod constraints;
 mod refusals;

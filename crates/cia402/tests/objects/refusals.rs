@@ -1,4 +1,4 @@
-//! Every refusal has its abort code, and names object, value, bound and the way out.
+//! Every refusal has its abort code, and names object, value, bound and remedy.
 use crate::object;
 use servobench_cia402::objects::{Dictionary, Value};
 use servobench_cia402::units::Object;

@@ -1,4 +1,4 @@
-//! The table against lists typed from published data sheets.
+//! The table against lists copied from published data sheets.
 use servobench_cia402::objects::{Access, Admitted, Contents, DataType, Entry, HOMING_METHODS, Mapping, OBJECTS};
 use servobench_cia402::{
     DisableOperationOption, FaultReactionOption, HaltOption, Mode, QuickStopOption, ShutdownOption,
@@ -77,7 +77,7 @@ fn homing_methods_told_are_those_taken() {
     assert!([15, 16, 31, 32, 36].iter().all(|reserved| !HOMING_METHODS.contains(reserved)));
 }
 
-/// Types as the data sheets of drives have them: index, number of sub-indices above 00h, types.
+/// Types as in the data sheets of drives: index, number of sub-indices above 00h, types.
 const TYPES: [(u16, &[DataType]); 30] = {
     use DataType::{Integer8, Integer16, Integer32, Unsigned8, Unsigned16, Unsigned32, Unsigned64};
     [
@@ -164,7 +164,7 @@ fn a_variable_is_named_once() {
     }
 }
 
-/// Oracle: the default mapping of CiA 402 as drives have it (Kollmorgen S300, *CANopen*, 5.3.1.3 and 5.3.2.3; Erl, *PDO mapping*),
+/// Oracle: the default mapping of CiA 402 as in drives (Kollmorgen S300, *CANopen*, 5.3.1.3 and 5.3.2.3; Erl, *PDO mapping*),
 /// and the identifiers of CiA 301, section 7.3.5, table 39.
 #[test]
 fn process_data_objects_are_those_of_the_profile() {

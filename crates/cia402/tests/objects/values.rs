@@ -1,4 +1,4 @@
-//! What is written is read, by whatever way.
+//! Values are read as they were written, by every interface.
 use crate::object;
 use servobench_cia402::objects::{
     Access, Contents, DataType, Dictionary, OBJECTS, ObjectDescription, Value, entry_of, parameter, signal,
@@ -42,7 +42,7 @@ fn a_new_dictionary_has_the_defaults_of_the_table() {
 #[test]
 fn each_value_has_its_own_place() {
     let mut dictionary = Dictionary::new();
-    // A number of its own everywhere, as far as it is taken.
+    // A different number in each object, if the object accepts it.
     let mut written = vec![];
     for known in &OBJECTS {
         for (subindex, entry) in (known.first_subindex()..).zip(known.entries()) {
@@ -64,7 +64,7 @@ fn each_value_has_its_own_place() {
     }
 }
 
-/// A string has bytes, all of them, is no number and is not written.
+/// A string is read as bytes, in full; it is not a number and cannot be written.
 #[test]
 fn a_string_is_read_as_bytes() {
     let mut dictionary = Dictionary::new();
@@ -213,7 +213,7 @@ fn process_data_are_read_by_sdo_too() {
         assert_eq!(dictionary.read(object(index, 0)).unwrap().number(), number, "{index:04X}h");
     }
     assert_eq!(dictionary.read(object(0x60FE, 1)).unwrap().number(), 0x8000_0001);
-    // A mode that the drive does not have is not one it was asked for.
+    // A mode that the drive does not support does not count as requested.
     dictionary.mirror(&Commands { mode: 2, ..commands }, &actuals);
     assert_eq!(dictionary.read(object(0x6060, 0)).unwrap(), Value::Integer8(9));
 }

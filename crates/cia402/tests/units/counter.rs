@@ -1,10 +1,10 @@
-//! Counters: the oracle is the position that the reading was made from, never unwrapped.
+//! Counters: the oracle is the position before it was wrapped to the reading.
 use servobench_cia402::counter::{Counter, Unwrapped};
 use servobench_cia402::units::UnitError;
 
 use crate::random::Random;
 
-/// What a counter of `bits` bits shows at `position`, by division instead of masks.
+/// Reading of a counter of `bits` bits at `position`, by division instead of masks.
 fn shown(bits: u32, signed: bool, position: i128) -> i128 {
     let range = 2_i128.pow(bits);
     let lowest = if signed { -range / 2 } else { 0 };

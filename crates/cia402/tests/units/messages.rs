@@ -1,4 +1,4 @@
-//! Every refusal names object, value, bound and the way out.
+//! Every refusal names object, value, bound and remedy.
 use servobench_cia402::counter::{Counter, Unwrapped};
 use servobench_cia402::units::{AxisUnit, FactorGroup, Ratio, Scaling, UnitError};
 

@@ -3,8 +3,7 @@ use servobench_cia402::units::Ratio;
 
 use crate::random::{Random, magnitude, sign};
 
-/// Whether `whole` is `numerator/denominator` to the nearest, a half upwards: −1/2 < whole − numerator/denominator ≤
-/// 1/2.
+/// True if `whole` is `numerator/denominator` rounded to the nearest, a half upwards: −1/2 < whole − numerator/denominator ≤ 1/2.
 fn is_nearest(whole: i128, numerator: i128, denominator: i128) -> bool {
     let twice_off = 2 * (whole * denominator - numerator);
     -denominator < twice_off && twice_off <= denominator
@@ -56,7 +55,7 @@ fn numbers_are_rounded_to_the_nearest() {
     assert_eq!(ratio.of_f64(f64::NEG_INFINITY), None);
 }
 
-/// As near to a half as an `f64` gets, where a rounding by rounded numbers goes wrong.
+/// Values as near to a half as an `f64` gets, at which rounding by `f64` arithmetic fails.
 #[test]
 fn numbers_beside_a_half_are_rounded_to_the_nearest() {
     let mut random = Random::seeded(7);
@@ -78,7 +77,7 @@ fn numbers_beside_a_half_are_rounded_to_the_nearest() {
     assert!(halves > 500, "{halves} exact halves");
 }
 
-/// Products at the bounds of 64 bits, where the computation goes over to 128.
+/// Products at the bounds of 64 bits, where the computation changes to 128.
 #[test]
 fn counts_beside_the_bounds_of_64_bits_are_rounded_to_the_nearest() {
     for (numerator, denominator) in [(1, 1), (1, 2), (1, 3), (3, 2), (7, 1 << 20), (i64::MAX, 2), (1, i64::MAX), (5, 7)]
