@@ -1,23 +1,23 @@
-//! The generator of fourth order as code for a PLC: the function block `Profile4th` in Structured Text (IEC 61131-3), and
-//! `MC_MoveAbsolute` on top of it.
+//! The generator of fourth order as code for a PLC: the function block `Profile4th` in Structured Text (IEC 61131-3), and `MC_MoveAbsolute`
+//! on top of it.
 //!
-//! The text, `profile_4th.st`, is written by hand and computes what `servobench_plcopen::generator` computes with the plan of
-//! `servobench_motion::Profile::plan_sampled`: the same operations on LREAL in the same order, but for the roots that a length is
-//! guessed by. A guess only has to be near: the length is the smallest whole number for which a product reaches a bound, and that is
-//! decided by the same operations on both sides. Whoever changes one side changes the other; `tests/outside/profile_4th_by_pyplcopen.py`
-//! compares them bit for bit.
+//! The text, `profile_4th.st`, is written by hand and reproduces `servobench_plcopen::generator` with the plan of
+//! `servobench_motion::Profile::plan_sampled`: the same operations on LREAL in the same order, but for the roots by which a length is
+//! estimated. An estimate only has to be close: the length is the smallest whole number for which a product reaches a bound, and that is
+//! decided by the same operations on both sides. Change both sides together; `tests/outside/profile_4th_by_pyplcopen.py` compares them bit
+//! for bit.
 //!
-//! # How the text is written
+//! # Rules of the text
 //!
-//! - One declaration a line, its meaning as a comment before the semicolon: [`Export`] reads them for memory, interface and dialects.
+//! - One declaration a line, its meaning as a comment before the semicolon: [`Export`] parses them for memory, interface and dialects.
 //! - Every loop is a FOR between constants: a call takes a bounded time.
-//! - No array, no function beyond SQRT, ABS, MOD and the conversions between LREAL and LINT, which controllers with LREAL have. What
-//!   a conversion rounds to is only a first try, so that it may round to either side.
-//! - No division by zero, no conversion of a number that LINT does not hold.
-//! - No input of a function or block is called as a variable of its caller, no variable as one of another unit: there are front ends that
-//!   put names in place of each other in the whole text of a call.
-//! - Comments in bodies are without words of statements, quotes and semicolons, and none stands before a statement that calls a
-//!   function from within: there are front ends that part a body at its words before they take the comments out.
+//! - No arrays, and no functions but SQRT, ABS, MOD and the conversions between LREAL and LINT, which controllers with LREAL have. The
+//!   result of a conversion is only a first try, so that it may round to either side.
+//! - No division by zero, no conversion of a number outside the range of LINT.
+//! - No input of a function or block has the name of a variable of its caller, and no variable that of another unit: some front ends
+//!   substitute names in the whole text of a call.
+//! - Comments in bodies contain no keywords, quotes and semicolons, and none stands before a statement that calls a function from within:
+//!   some front ends split a body at its keywords before they remove the comments.
 mod memory;
 #[cfg(test)]
 mod page;
@@ -30,7 +30,7 @@ use servobench_config::Choice as _;
 use thiserror::Error;
 
 servobench_config::choices! {
-    /// Whose language it is written in.
+    /// Dialect of the text.
     pub enum Dialect default Iec {
         /// IEC 61131-3 as it stands, for MATIEC, OpenPLC, Beremiz and others; XML of TC6 2.01
         Iec = "iec",
@@ -42,7 +42,7 @@ servobench_config::choices! {
 }
 
 servobench_config::choices! {
-    /// What the file is.
+    /// File format.
     pub enum Format default St {
         /// Structured Text: functions and function blocks one after the other
         St = "st",
@@ -51,32 +51,32 @@ servobench_config::choices! {
     }
 }
 
-/// What is written.
+/// Settings of an export.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Export<'a> {
-    /// Whose language.
+    /// Dialect of the text.
     pub dialect: Dialect,
     /// Text or XML.
     pub format: Format,
     /// Initial values of inputs.
     pub times: Times,
-    /// What the block with Execute is called, [`MOVE`] unless a library of the project has one of that name.
+    /// Name of the block with Execute, [`MOVE`] unless a library of the project has one of that name.
     pub move_block: &'a str,
 }
 
-/// Times that a call need not give.
+/// Default times of a call.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Times {
-    /// Of `Ts`: the period of the task (s).
+    /// Default of `Ts`: the period of the task (s).
     pub sample: f64,
-    /// Of `T_set`: from the end of a move until the block is ready (s).
+    /// Default of `T_set`: time from the end of a move until the block is ready (s).
     pub settling: f64,
 }
 
-/// Why nothing can be written.
+/// Errors of an export.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ExportError {
-    /// A time that is none.
+    /// An invalid time.
     #[error(transparent)]
     Parameter(#[from] ParamError),
     /// A time that the block would refuse.
@@ -86,44 +86,44 @@ pub enum ExportError {
         name: &'static str,
         /// Rejected value (s).
         value: f64,
-        /// Smallest value that the block takes (s).
+        /// Smallest accepted value (s).
         lowest: f64,
-        /// Largest (s).
+        /// Largest accepted value (s).
         highest: f64,
     },
-    /// A name that a block cannot have.
+    /// An invalid name of a block.
     #[error("`move_block` must be {bound}, got \"{name}\"")]
     Name {
-        /// The name.
+        /// Rejected name.
         name: String,
-        /// What it must be, in words.
+        /// Bound of the name, in words.
         bound: &'static str,
     },
-    /// TIA Portal reads no PLCopen XML.
+    /// PLCopen XML for TIA Portal, which cannot import it.
     #[error("the dialect `{}` has no PLCopen XML, which TIA Portal does not import: take the format `{}`", .dialect.name(), Format::St.name())]
     NoXml {
-        /// Which dialect.
+        /// Dialect without XML.
         dialect: Dialect,
     },
 }
 
-/// The function blocks of the text.
+/// Function blocks of the text.
 const BLOCKS: [&str; 2] = ["Profile4th", MOVE];
-/// The block with Execute, as the standard calls it.
+/// Block with Execute, by its name in the standard.
 pub const MOVE: &str = "MC_MoveAbsolute";
-/// Letters of a name at most: what the controllers of the dialects take.
+/// Longest name: the limit of the controllers of the dialects.
 const LONGEST_NAME: usize = 80;
-/// Smallest and largest sample time that the block takes (s).
+/// Smallest and largest sample time of the block (s).
 const SAMPLE_TIMES: (f64, f64) = (1e-30, 1e30);
-/// Longest settling time that it takes (s).
+/// Longest settling time of the block (s).
 const LONGEST_SETTLING: f64 = 1e30;
 
 impl Export<'_> {
-    /// The file; `written` is the time that XML has to name, as an `xs:dateTime`.
+    /// Text of the file; `written` is the creation time for XML, as an `xs:dateTime`.
     ///
     /// # Errors
-    /// [`ExportError`] when a time is not positive (a settling time: not positive or zero) or out of the range that the block takes,
-    /// for a name that is no identifier of IEC 61131-3 or that of another function of the file, and for XML of a dialect that has none.
+    /// [`ExportError`] if a time is not positive (a settling time: not positive or zero) or out of the range of the block, for a name that
+    /// is not an identifier of IEC 61131-3 or that is used by another function of the file, and for XML of a dialect without it.
     pub fn text(&self, written: &str) -> Result<String, ExportError> {
         let source = self.source()?;
         let pous = pou::read(&source);
@@ -137,7 +137,7 @@ impl Export<'_> {
         })
     }
 
-    /// The text of the standard with the times in it.
+    /// Text of the standard with the times inserted.
     fn source(&self) -> Result<String, ExportError> {
         let sample_time = positive("sample_time", self.times.sample)?;
         within("sample_time", sample_time, SAMPLE_TIMES)?;
@@ -149,7 +149,7 @@ impl Export<'_> {
         Ok(text.replace("{sample_time}", &literal(sample_time)).replace("{settling_time}", &literal(settling_time)))
     }
 
-    /// Whether the block with Execute can have its name beside the others of `text`.
+    /// Checks the name of the block with Execute against the others of `text`.
     fn check_name(&self, text: &str) -> Result<(), ExportError> {
         let name = self.move_block;
         let refuse = |bound| Err(ExportError::Name { name: name.to_owned(), bound });
@@ -168,14 +168,14 @@ impl Export<'_> {
         Ok(())
     }
 
-    /// Each function block with the memory of an instance in bytes: inputs, outputs and kept variables by their declarations, with
-    /// natural alignment.
+    /// Function blocks with the memory of an instance in bytes: inputs, outputs and kept variables by their declarations, with natural
+    /// alignment.
     #[must_use]
     pub fn instances(&self) -> [(&str, usize); BLOCKS.len()] {
         instances().map(|(name, bytes)| (if name == MOVE { self.move_block } else { name }, bytes))
     }
 
-    /// What a reader of the file has to know.
+    /// Head of the file, for its reader.
     fn head(&self) -> String {
         let tried = match (self.dialect, self.format) {
             (Dialect::Iec, Format::St) => "Compiled and run by pyplcopen 0.21. Not tried on any other compiler.",
@@ -193,7 +193,7 @@ impl Export<'_> {
     }
 }
 
-/// The same with the names of the text.
+/// Function blocks with their memory, by the names of the text.
 fn instances() -> [(&'static str, usize); BLOCKS.len()] {
     let pous = pou::read(include_str!("profile_4th.st"));
     BLOCKS.map(|name| (name, memory::instance(&pous, name)))
@@ -207,7 +207,7 @@ fn within(name: &'static str, value: f64, (lowest, highest): (f64, f64)) -> Resu
     }
 }
 
-/// A number as a literal of LREAL: the shortest that reads back to the same bits, with the point that it needs.
+/// A number as a literal of LREAL: the shortest that reads back to the same bits, with the decimal point that it needs.
 fn literal(number: f64) -> String {
     let text = format!("{number:?}").to_uppercase();
     match text.split_once('E') {

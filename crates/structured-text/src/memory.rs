@@ -1,4 +1,4 @@
-//! How much memory an instance takes, by its declarations.
+//! Memory of an instance, by its declarations.
 use crate::pou::{Pou, SectionKind};
 
 /// Size and alignment in bytes.
@@ -8,11 +8,11 @@ struct Layout {
     alignment: usize,
 }
 
-/// Bytes that an instance of the function block `name` takes, each variable at a multiple of its own size as most controllers lay
-/// them out. Temporary variables are on the stack and not counted.
+/// Bytes of an instance of the function block `name`, with each variable at a multiple of its own size as in the layout of most
+/// controllers. Temporary variables are on the stack and not counted.
 ///
 /// # Panics
-/// When a type is none of the text.
+/// If the text does not have a type of that name.
 pub(crate) fn instance(pous: &[Pou], name: &str) -> usize {
     block(pous, name).size
 }
@@ -31,7 +31,7 @@ fn block(pous: &[Pou], name: &str) -> Layout {
     Layout { size: whole.size.next_multiple_of(whole.alignment), ..whole }
 }
 
-/// Bytes of an elementary type.
+/// Size of an elementary type (bytes).
 fn elementary(name: &str) -> Option<usize> {
     Some(match name {
         "BOOL" | "SINT" => 1,

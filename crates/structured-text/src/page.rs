@@ -1,5 +1,5 @@
-//! `docs/plc-export.md` has the interface and the memory of the blocks. `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-structured-text`
-//! writes them.
+//! Interface and memory of the blocks in `docs/plc-export.md`, written by
+//! `SERVOBENCH_WRITE_DOCS=1 cargo test -p servobench-structured-text`.
 use crate::pou::{self, Section, SectionKind};
 use crate::{BLOCKS, instances};
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ fn the_page_lists_interface_and_memory() {
     }
 }
 
-/// `page` with `table` between the marks of `name`.
+/// Returns `page` with `table` between the marks of `name`.
 fn replaced(page: &str, name: &str, table: &str) -> String {
     let (begin, end) = (format!("<!-- generated: {name} -->\n"), format!("<!-- end of generated {name} -->\n"));
     let (before, rest) = page.split_once(&begin).unwrap();

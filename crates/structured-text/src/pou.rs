@@ -1,13 +1,13 @@
-//! What the text declares: program organization units (POUs) with their variables and bodies.
+//! Declarations of the text: program organization units (POUs) with their variables and bodies.
 //!
-//! It reads the one text that this crate has, so that a line it does not understand is a defect of that text: it panics, and a
-//! test reads the whole of it.
+//! The parser only has to read the one text of this crate, so that a line that it does not understand is a defect of that text: it panics,
+//! and a test reads the whole text.
 
 /// A function or a function block.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Pou<'t> {
     pub(crate) name: &'t str,
-    /// Of a function; `None` for a function block.
+    /// Type of a function's result; `None` for a function block.
     pub(crate) returns: Option<&'t str>,
     pub(crate) sections: Vec<Section<'t>>,
     /// The statements.
@@ -21,7 +21,7 @@ pub(crate) struct Section<'t> {
     pub(crate) variables: Vec<Variable<'t>>,
 }
 
-/// Which variables a section holds.
+/// Kind of the variables in a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SectionKind {
     Input,
@@ -34,7 +34,7 @@ impl SectionKind {
     const ALL: [(&'static str, Self); 4] =
         [("VAR_INPUT", Self::Input), ("VAR_OUTPUT", Self::Output), ("VAR", Self::Local), ("VAR_TEMP", Self::Temporary)];
 
-    /// The keyword that begins it.
+    /// Keyword that begins the section.
     pub(crate) fn keyword(self) -> &'static str {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(keyword, _)| keyword)
     }
@@ -46,17 +46,17 @@ pub(crate) struct Variable<'t> {
     pub(crate) name: &'t str,
     pub(crate) type_name: &'t str,
     pub(crate) initial: Option<&'t str>,
-    /// What it is; empty for a variable that no caller sees.
+    /// Meaning; empty for a variable that no caller sees.
     pub(crate) meaning: &'t str,
 }
 
 impl<'t> Pou<'t> {
-    /// Its variables.
+    /// Variables of all sections.
     pub(crate) fn variables(&self) -> impl Iterator<Item = &Variable<'t>> {
         self.sections.iter().flat_map(|section| &section.variables)
     }
 
-    /// The word that begins it, and with `END_` in front ends it.
+    /// Keyword that begins the unit, and with `END_` in front ends it.
     pub(crate) const fn keyword(&self) -> &'static str {
         if self.returns.is_some() { "FUNCTION" } else { "FUNCTION_BLOCK" }
     }
@@ -65,7 +65,7 @@ impl<'t> Pou<'t> {
 /// Every POU of `text`, in its order.
 ///
 /// # Panics
-/// When `text` is not written as the text of this crate is: a declaration a line.
+/// If `text` does not follow the rules of this crate's text: one declaration a line.
 pub(crate) fn read(text: &str) -> Vec<Pou<'_>> {
     let mut pous = Vec::new();
     let mut rest = text.trim_start();
@@ -83,7 +83,7 @@ pub(crate) fn read(text: &str) -> Vec<Pou<'_>> {
     pous
 }
 
-/// The sections at the beginning of `content`, and what follows them.
+/// Sections at the beginning of `content`, and the rest.
 fn sections(content: &str) -> (Vec<Section<'_>>, &str) {
     let (mut sections, mut rest) = (Vec::new(), content);
     while let Some((head, after)) = rest.split_once('\n')

@@ -1,7 +1,7 @@
 //! Structured Control Language: the text of an external source for TIA Portal.
 //!
-//! The language is that of the standard but for its surface: POUs in quotes, `#` before each local variable, `BEGIN` before the
-//! statements, temporary variables in functions, names of types in small letters.
+//! The language is that of the standard except for its notation: POUs in quotes, `#` before each local variable, `BEGIN` before the
+//! statements, temporary variables in functions, names of types in mixed case.
 use crate::pou::{Pou, SectionKind};
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ fn unit(pous: &[Pou], pou: &Pou) -> String {
     };
     text.push_str("{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
     for section in &pou.sections {
-        // A function keeps nothing: it has no other variables than temporary ones.
+        // A function keeps no state: it only has temporary variables.
         let kind = match section.kind {
             SectionKind::Local if pou.returns.is_some() => SectionKind::Temporary,
             kind => kind,
@@ -46,7 +46,7 @@ fn type_name(name: &str) -> String {
     }
 }
 
-/// The statements, with variables and POUs marked.
+/// Statements, with variables and POUs marked.
 fn body(pous: &[Pou], pou: &Pou) -> String {
     let (mut text, mut rest, mut depth) = (String::new(), pou.body, 0_usize);
     while let Some(first) = rest.chars().next() {

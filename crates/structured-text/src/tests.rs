@@ -1,4 +1,4 @@
-//! What holds of the text in every dialect.
+//! Properties of the text in every dialect.
 use super::*;
 use crate::pou::{Pou, SectionKind};
 
@@ -12,7 +12,7 @@ fn text(dialect: Dialect, format: Format) -> String {
     export(dialect, format).text(WRITTEN).unwrap()
 }
 
-/// `body` without its comments.
+/// Returns `body` without its comments.
 fn code(body: &str) -> String {
     let parts = body.split("(*").enumerate();
     parts.map(|(k, part)| if k == 0 { part } else { part.split_once("*)").unwrap().1 }).collect()
@@ -31,7 +31,7 @@ fn the_text_is_as_short_and_as_small_as_it_has_to_be() {
     assert!(profile <= 3000 && absolute <= 3000, "{profile} {absolute}");
 }
 
-/// Oracle: counted by hand in the declarations. Profile4th: inputs 8 + 5·8 + 8 + 3·8 + 4 = 80 with their gaps, outputs, kept variables.
+/// Oracle: counted by hand in the declarations. Profile4th: inputs 8 + 5·8 + 8 + 3·8 + 4 = 84 with their gaps, outputs, kept variables.
 #[test]
 fn memory_is_what_the_declarations_say() {
     // SINT at 0, pref to djerk_bnd at 8 to 40, TriggerEnable at 48, ActRefPos, Ts, T_set at 56 to 72, ProfileOrder at 80,
@@ -40,7 +40,7 @@ fn memory_is_what_the_declarations_say() {
     assert_eq!(instances()[0], ("Profile4th", 160 + 19 * 8));
 }
 
-/// Loops end: each is a FOR between constants.
+/// Loops are bounded: each is a FOR between constants.
 #[test]
 fn every_loop_has_a_constant_bound() {
     for pou in pou::read(include_str!("profile_4th.st")) {
@@ -54,7 +54,7 @@ fn every_loop_has_a_constant_bound() {
     }
 }
 
-/// Real numbers are LREAL, and whole ones of no type that a small controller lacks.
+/// Real numbers are LREAL, and integers have no type that a small controller lacks.
 #[test]
 fn there_are_few_types() {
     let source = include_str!("profile_4th.st");
@@ -67,7 +67,7 @@ fn there_are_few_types() {
     assert!(words(source).all(|word| word != "REAL"));
 }
 
-/// What a front end trips over that parts a text at its words before it takes the comments out.
+/// Some front ends split a text at its keywords before they remove the comments.
 #[test]
 fn comments_have_no_words_of_the_language() {
     const STATEMENTS: [&str; 16] = [
@@ -80,7 +80,7 @@ fn comments_have_no_words_of_the_language() {
         let word = words(comment).find(|word| STATEMENTS.contains(&word.to_lowercase().as_str()));
         assert_eq!(word, None, "{comment}");
     }
-    // Words of later editions, by which some take a text for one of classes.
+    // Keywords of later editions, by which some tools recognise a text with classes.
     for word in words(&text(Dialect::Iec, Format::St)) {
         assert!(
             !["method", "interface", "extends", "generic", "ref_to"].contains(&word.to_lowercase().as_str()),
@@ -100,7 +100,7 @@ fn names_differ_by_more_than_their_case() {
     }
 }
 
-/// What a front end trips over that replaces names in the text of a call.
+/// Some front ends substitute names in the text of a call.
 #[test]
 fn inputs_of_calls_are_no_variables_of_the_caller() {
     for pou in pou::read(include_str!("profile_4th.st")) {
@@ -119,7 +119,7 @@ fn inputs_of_calls_are_no_variables_of_the_caller() {
     }
 }
 
-/// Whoever calls a block sees what each of its inputs and outputs means.
+/// The declarations document the meaning of every input and output for the caller.
 #[test]
 fn every_input_and_output_has_a_meaning() {
     for pou in pou::read(include_str!("profile_4th.st")) {
@@ -163,7 +163,7 @@ impl Export<'_> {
     }
 }
 
-/// Oracle: another reader of XML. Interface and statements are those of the text.
+/// Oracle: another XML parser. Interface and statements are those of the text.
 #[test]
 fn xml_reads_back_to_the_text() {
     let source = Export::iec().source().unwrap();
@@ -195,7 +195,7 @@ fn xml_reads_back_to_the_text() {
     }
 }
 
-/// Every variable is marked, and no word is that should not be.
+/// Every variable is marked, and no other word.
 #[test]
 fn scl_has_the_same_statements() {
     let scl = text(Dialect::Scl, Format::St);

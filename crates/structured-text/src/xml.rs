@@ -2,7 +2,7 @@
 use crate::pou::{Pou, Section, SectionKind, Variable};
 use std::fmt::{self, Write as _};
 
-/// What differs between those who read it.
+/// Differences between the tools that import the XML.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Flavour {
     pub(crate) namespace: &'static str,
@@ -46,7 +46,7 @@ pub(crate) fn text(pous: &[Pou], head: &str, flavour: Flavour, written: &str) ->
     xml.text
 }
 
-/// The text under construction.
+/// XML under construction.
 struct Xml {
     text: String,
     depth: usize,
@@ -58,7 +58,7 @@ impl Xml {
         let _ = writeln!(self.text, "{:width$}{line}", "", width = 2 * self.depth);
     }
 
-    /// An element with others in it; `tag` is its name with its attributes.
+    /// Writes an element with others in it; `tag` is its name with its attributes.
     fn within(&mut self, tag: &str, content: impl FnOnce(&mut Self)) {
         self.line(format_args!("<{tag}>"));
         self.depth += 1;
@@ -67,7 +67,7 @@ impl Xml {
         self.line(format_args!("</{}>", name(tag)));
     }
 
-    /// An element with text in it, as XHTML.
+    /// Writes an element with text in it, as XHTML.
     fn prose(&mut self, tag: &str, text: &str) {
         let holder = self.flavour.text;
         self.line(format_args!("<{tag}><{holder}>{}</{}></{tag}>", escaped(text), name(holder)));
@@ -120,12 +120,12 @@ impl Xml {
     }
 }
 
-/// The name in a tag with attributes.
+/// Name in a tag with attributes.
 fn name(tag: &str) -> &str {
     tag.split_once(' ').map_or(tag, |(name, _)| name)
 }
 
-/// `text` between tags.
+/// Escapes `text` between tags.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
