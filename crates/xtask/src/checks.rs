@@ -1,8 +1,9 @@
 //! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, keys of scenario files in
-//! crates that know nothing of them, concepts that have two types, the number of packages of the program, and calls of the operating
-//! system outside of its doors.
+//! crates that know nothing of them, concepts that have two types, the number of packages of the program, calls of the operating
+//! system outside of its doors, and counts above their budgets.
 
 mod arrows;
+mod budgets;
 mod doors;
 mod keys;
 mod licences;
@@ -10,9 +11,11 @@ mod metadata;
 mod packages;
 mod representations;
 mod text;
+mod words;
 
 use crate::failure::Failure;
 use crate::workspace::Workspace;
+use budgets::{Budgets, TABLE};
 pub(crate) use metadata::{Metadata, Package};
 use packages::Packages;
 use std::path::PathBuf;
@@ -33,22 +36,31 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let files = workspace.tracked(&[])?;
     let key_paths = keys::paths(&schema(workspace)?);
     let keyless: Vec<_> = keys::below(&metadata).into_iter().map(|package| source_of(package, workspace)).collect();
-    let mut types = Vec::new();
+    let (mut types, mut budgets) = (Vec::new(), Budgets::default());
     for path in &files {
         // What is not UTF-8 (pictures, recordings) has no text to check; a deleted file has none either.
         if let Ok(text) = std::fs::read_to_string(workspace.root.join(path)) {
             findings.extend(text::findings(path, &text));
             findings.extend(doors::findings(path, &text));
             types.extend(representations::declared(path, &text));
+            budgets.count(path, &text);
             if keyless.iter().any(|source| path.starts_with(source)) {
                 findings.extend(keys::findings(path, &text, &key_paths));
             }
         }
     }
     findings.extend(representations::findings(&types));
+    let place = workspace.root.join(TABLE);
+    let table = std::fs::read_to_string(&place).map_err(Failure::file("read", &place))?;
+    if Budgets::are_written() {
+        std::fs::write(&place, budgets.written(&table)).map_err(Failure::file("write", &place))?;
+    } else {
+        findings.extend(budgets.findings(&table));
+    }
     if !findings.is_empty() {
         return Err(Failure::Findings { findings });
     }
+    println!("{}", budgets.sums());
     println!("nothing found in {} packages and {} files", metadata.count(), files.len());
     println!("packages of the program without the viewer: {}", program.count());
     Ok(())

@@ -104,10 +104,10 @@ impl Output {
                     |file: &mut BufWriter<&File>| file.get_ref().try_clone().map_err(|error| self.failed(error));
                 self.whole(path, |file| run(copied(file)?), false)
             }
-            To::Stream(path, kind) => run(opened(path, *kind).map_err(|error| self.failed(error))?),
+            To::Stream(path, kind) => run(kind.open(path).map_err(|error| self.failed(error))?),
             To::StandardOutput => {
                 let path = Path::new("standard output");
-                run(opened(path, Kind::StandardOutput).map_err(|error| self.failed(error))?)
+                run(Destination::StandardOutput.open(path).map_err(|error| self.failed(error))?)
             }
         }
     }
