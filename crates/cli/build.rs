@@ -1,5 +1,4 @@
-//! Lets the program find the MuJoCo library beside the folder it is built in, or beside the one it is unpacked in, and lists the ready
-//! scenarios that it embeds.
+//! Lists the ready scenarios that the program embeds.
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -12,9 +11,6 @@ const KINDS: [&str; 2] = ["toml", "csv"];
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    if env::var_os("CARGO_FEATURE_MUJOCO").is_some() {
-        println!("cargo::rustc-link-arg=-Wl,-rpath,$ORIGIN/../native/lib:$ORIGIN/../../native/lib");
-    }
     let folder = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
     let repository = folder.join("../..").canonicalize()?;
     let mut files = Vec::new();

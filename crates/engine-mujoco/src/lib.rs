@@ -10,11 +10,14 @@
 //! RK4 damps a mode of ω by ζ = (ω·h)⁵/144: below 1e-4 up to ω·h = 0.43, which is 1.1 kHz at 16 kHz. A chain for which it
 //! would diverge, undamped from ω·h = 2.83 on, is refused (`stability.rs`).
 //!
+//! The library of `MuJoCo` is loaded at first use (`library.rs`): a program with this engine starts without it.
+//!
 //! A fatal error of `MuJoCo` **ends the process with exit code 1** after a line on standard error. A caller that must survive
 //! that runs the engine in a separate process.
 
 mod base;
 mod chain;
+mod library;
 mod messages;
 mod mjcf;
 mod simulation;
@@ -31,6 +34,10 @@ pub struct Mujoco;
 impl Engine for Mujoco {
     fn name(&self) -> EngineName {
         NAME
+    }
+
+    fn missing(&self) -> Option<String> {
+        library::missing()
     }
 
     #[expect(clippy::match_wildcard_for_single_variants, reason = "all kinds that it does not list are refused alike")]

@@ -1,5 +1,5 @@
 //! A model and its data, stepped so that no error goes unnoticed.
-use crate::{NAME, messages};
+use crate::{NAME, library, messages};
 use mujoco_rs::prelude::{MjData, MjModel, MjSpec, MjtDisableBit, MjtWarning};
 use mujoco_rs::wrappers::mj_auxiliary::MjVfs;
 use servobench_files::with_short_quotes;
@@ -12,6 +12,7 @@ pub(crate) type Data = MjData<Arc<MjModel>>;
 
 /// Compiles MJCF text. `path` is the origin of the text: included files are looked up beside it.
 pub(crate) fn compile(xml: &str, path: &Path) -> Result<MjModel, MechanicsError> {
+    library::load().map_err(|message| MechanicsError::Native { engine: NAME, message })?;
     messages::install();
     let model_error = |message: String| MechanicsError::Model { engine: NAME, message: of_a_file(&message, path) };
     if path.as_os_str().as_encoded_bytes().contains(&0) {

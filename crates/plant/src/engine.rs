@@ -100,6 +100,11 @@ pub trait Engine: Sync {
     /// Name of the engine.
     fn name(&self) -> EngineName;
 
+    /// Why the engine cannot be used on this machine, such as a library that is not installed; `None` where it can.
+    fn missing(&self) -> Option<String> {
+        None
+    }
+
     /// Builds the mechanics at tick 0.
     ///
     /// # Errors

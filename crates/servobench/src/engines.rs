@@ -13,15 +13,36 @@ pub struct Engines {
     pub fmu_opener: &'static dyn FmuOpener,
 }
 
-/// The build lacks an engine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error(
-    "this build has no engine `{name}`; build it in with `cargo build --release -p servobench-cli --features {name}` (for \
-     `mujoco` after `cargo xtask setup`), or choose one with `--engine`"
-)]
-pub struct EngineMissing {
-    /// The engine; the feature has its name.
-    pub name: EngineName,
+/// An engine is not there.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum EngineMissing {
+    /// The build lacks it.
+    #[error(
+        "this build has no engine `{name}`; build it in with `cargo build --release -p servobench-cli --features {name}` (for \
+         `mujoco` after `cargo xtask setup`), or choose one with `--engine`"
+    )]
+    Build {
+        /// The engine; the feature has its name.
+        name: EngineName,
+    },
+    /// The machine lacks a part of it.
+    #[error("the engine `{name}` cannot be used: {why}; or choose another one with `--engine`")]
+    Machine {
+        /// The engine.
+        name: EngineName,
+        /// The missing part, and where it belongs.
+        why: String,
+    },
+}
+
+impl EngineMissing {
+    /// The engine.
+    #[must_use]
+    pub const fn name(&self) -> EngineName {
+        match self {
+            Self::Build { name } | Self::Machine { name, .. } => *name,
+        }
+    }
 }
 
 impl Engines {
@@ -41,9 +62,11 @@ impl Engines {
     /// The engine `name`.
     ///
     /// # Errors
-    /// [`EngineMissing`] names the feature and the command.
+    /// [`EngineMissing`] names the feature and the command, or the missing part.
     pub fn get(&self, name: EngineName) -> Result<&'static dyn Engine, EngineMissing> {
-        self.installed.iter().copied().find(|engine| engine.name() == name).ok_or(EngineMissing { name })
+        let found = self.installed.iter().copied().find(|engine| engine.name() == name);
+        let engine = found.ok_or(EngineMissing::Build { name })?;
+        engine.missing().map_or(Ok(engine), |why| Err(EngineMissing::Machine { name, why }))
     }
 
     /// Names of the engines that are there, in the order in which tables list them.

@@ -98,7 +98,7 @@ impl Scenario {
     pub fn engine(&self) -> Result<&'static dyn Engine, Error> {
         let engines = &self.resolved.engines;
         let found = engines.iter().find_map(|name| Engines::EMBEDDED.get(*name).ok());
-        let missing = || EngineMissing { name: engines.first().copied().unwrap_or_default() };
+        let missing = || EngineMissing::Build { name: engines.first().copied().unwrap_or_default() };
         Ok(found.ok_or_else(missing)?)
     }
 

@@ -126,7 +126,7 @@ impl Asked {
             let found = match objections(job, engines, workers) {
                 Ok(found) => found,
                 Err(RunError::Loop(servobench::Error::EngineMissing(missing))) => {
-                    asked.missing.push(missing.name);
+                    asked.missing.push(missing.name());
                     continue;
                 }
                 Err(error) => {

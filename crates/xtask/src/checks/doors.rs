@@ -4,9 +4,15 @@
 use std::path::Path;
 
 /// Where calls of the operating system stand.
-const DOORS: [&str; 3] = ["crates/files/src/sys/", "crates/isolation/src/sys/", "crates/fmi/src/library/"];
+const DOORS: [&str; 4] = [
+    "crates/files/src/sys/",
+    "crates/isolation/src/sys/",
+    "crates/fmi/src/library/",
+    "crates/engine-mujoco/src/library.rs",
+];
 /// Packages that may depend on crates of the operating system: those with a door, and the one that only chooses features.
-const WITH_CRATES: [&str; 4] = ["crates/files/", "crates/isolation/", "crates/fmi/", "crates/features/"];
+const WITH_CRATES: [&str; 5] =
+    ["crates/files/", "crates/isolation/", "crates/fmi/", "crates/engine-mujoco/", "crates/features/"];
 /// Packages that are not the program: this one, and one for a machine without operating system.
 const APART: [&str; 2] = ["crates/xtask/", "crates/bare-metal/"];
 /// Folders of tests, and files of them.

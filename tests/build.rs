@@ -1,8 +1,0 @@
-//! Lets the tests find the MuJoCo library beside the folder they are built in.
-
-fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
-    if std::env::var_os("CARGO_FEATURE_MUJOCO").is_some() {
-        println!("cargo::rustc-link-arg=-Wl,-rpath,$ORIGIN/../native/lib:$ORIGIN/../../native/lib");
-    }
-}
