@@ -49,11 +49,11 @@ table! {
     /// A scenario of servobench: an axis, a program of moves, what to measure and the limits that make it pass or fail.
     /// Physical quantities are strings with a unit: "250 mm", "30 m/min", "8 kHz", "4.2 Arms".
     pub(crate) struct File requires ["run", "axis", "motor"] {
-        /// Number of the format that the file is written in; default: the newest. What each changed: CHANGELOG.md.
+        /// Number of the format that the file is written in; default: the newest. CHANGELOG.md lists the changes of each.
         format: u32 = 1..=FORMAT,
         /// Name in tables and results; default: the file's name.
         name: String = (),
-        /// What the scenario shows, in a sentence.
+        /// Purpose of the scenario, in a sentence.
         description: String = (),
         /// Engine or engines to run it on; default: "exact".
         engine: OneOrMany<EngineName> = OneOf,
@@ -61,35 +61,35 @@ table! {
         run: Run = (),
         /// The mechanics.
         axis: Axis = (),
-        /// What moves the axis.
+        /// The motor of the axis.
         motor: Motor = (),
         /// The firmware of the drive.
         drive: Drive = (),
-        /// What every move respects unless it says otherwise.
+        /// Limits and profile of every move, unless the move overrides them.
         setpoint: Setpoint = (),
         /// Moves and pauses, one after the other from time 0; `[[program]]` for each.
         program: Many<ProgramStep> = (),
         /// The fieldbus between the motion task and the drive; without it the drive has a set-point at every tick.
         bus: Bus = (),
-        /// What holds for all `[[call]]`s.
+        /// Settings of all `[[call]]`s.
         plc: Plc = (),
         /// Calls of PLCopen function blocks instead of a program; `[[call]]` for each.
         call: Many<Call> = (),
         /// Parts that FMUs simulate beside the axis: a load, a controller, a source of signals; `[[fmu]]` for each.
         fmu: Many<Fmu> = (),
-        /// How they and the axis exchange what they give.
+        /// Exchange of signals between FMUs and the axis.
         coupling: Coupling = (),
         /// External forces and torques; `[[disturbance]]` for each.
         disturbance: Many<Disturbance> = (),
-        /// Where the load is at time 0; the motor is at rest at zero.
+        /// State of the load at time 0; the motor is at rest at zero.
         initial: Initial = (),
-        /// What to record.
+        /// Rows and channels to record.
         record: Record = (),
-        /// What the measures need to know.
+        /// Settings of the metrics.
         measure: Measures = (),
-        /// What the run is held to beside its limits, each unless it is `false`.
+        /// Requirements on the run beside its limits; each applies unless it is `false`.
         requirements: RequirementTable = (),
-        /// How far off the request the axis may be.
+        /// Tolerances between the axis and its requests.
         tolerance: Tolerance = (),
         /// Faults that belong to the run; `[[expect]]` for each.
         expect: Many<Expect> = (),
@@ -105,14 +105,14 @@ table! {
         base_rate: Rate = "16 kHz",
         /// Length of the run, 1e6 s at most; default: the program and half a second.
         duration: f64 = positive(Plain(&TIME), "2 s"),
-        /// Longest time by the clock, "none" for no limit; default: ten minutes and a hundred times the time
-        /// that `check` estimates. One that takes longer is an error. What is simulated does not depend on it.
+        /// Longest time of the run by the clock, "none" for no limit; default: ten minutes and a hundred times the time
+        /// that `check` estimates. A longer run is an error. The simulation does not depend on it.
         time_limit: BoundOrNone = positive(Plain(&TIME), "5 min"),
     }
 }
 
 table! {
-    /// Where the load is at time 0; the motor is at rest at zero.
+    /// State of the load at time 0; the motor is at rest at zero.
     pub(crate) struct Initial {
         /// Position of the load (axis coordinate).
         load_position: f64 = any(InAxis(&POSITION), "0.1 mm"),
@@ -122,26 +122,25 @@ table! {
 }
 
 table! {
-    /// What to record.
+    /// Rows and channels to record.
     pub(crate) struct Record {
-        /// Rate of the rows that are kept; default: the base rate. It divides the base rate. What is measured is every
-        /// tick.
+        /// Rate of the recorded rows; default: the base rate. It divides the base rate. Metrics are measured at every tick.
         rate: Rate = "4 kHz",
-        /// Channels to keep; default: all that the axis has.
+        /// Channels to record; default: all that the axis has.
         channels: OneOrMany<Signal> = (),
     }
 }
 
 table! {
-    /// What the measures need to know.
+    /// Settings of the metrics.
     pub(crate) struct Measures {
         /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
         window: f64 = positive(InAxis(&POSITION), "10 um"),
-        /// Where in the machine homing has to put the zero of the task (axis coordinate); default: wherever it finds it.
+        /// Position in the machine at which homing must put the task's zero (axis coordinate); default: any.
         home_at: f64 = any(InAxis(&POSITION), "-2 mm"),
-        /// From when on residual vibration is measured; default: the end of the last profile.
+        /// Start of the measurement of residual vibration; default: the end of the last profile.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
-        /// Where to look for the residual mode; default: everywhere.
+        /// Frequency of the residual mode to look for; default: any.
         mode: f64 = positive(Plain(&FREQUENCY), "38.985 Hz"),
     }
 }

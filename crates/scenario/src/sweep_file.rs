@@ -46,21 +46,21 @@ pub struct SweepRequest {
 }
 
 table! {
-    /// A sweep of servobench: a scenario, and keys of it that take other values from run to run.
+    /// A sweep of servobench: a scenario, and keys of it whose values vary from run to run.
     pub(crate) struct SweepFile requires ["scenario", "vary"] {
         /// The scenario that is varied: a path from the folder of this file.
         scenario: String = (),
-        /// What the sweep shows, in a sentence.
+        /// Purpose of the sweep, in a sentence.
         description: String = (),
         /// Engine or engines to run it on; default: those of the scenario.
         engine: OneOrMany<EngineName> = OneOf,
-        /// How the values of several keys are combined; default: "grid".
+        /// Combination of the values of several keys; default: "grid".
         arrangement: Arrangement = OneOf,
-        /// Metrics that are wanted of each run; default: all. Those that the scenario limits are measured in any case.
+        /// Metrics of each run in the results; default: all. Those that the scenario limits are always measured.
         metrics: OneOrMany<WantedMetric> = (),
         /// Keys that vary; `[[vary]]` for each.
         vary: Many<Vary> = (),
-        /// How keys with a distribution are drawn.
+        /// Draws of the keys with a distribution.
         draws: DrawTable = (),
     }
 }
@@ -72,41 +72,41 @@ table! {
         key: String = (),
         /// Other keys that have the same value in each run: "measure.mode".
         also: OneOrMany<String> = (),
-        /// Whether it is what the machine is like, which nobody chooses: what is chosen is then compared at its worst over these values. Only
-        /// in a grid; what is drawn is given in any case. Default: in the front alone for keys of `axis`, `motor` and `disturbance` and for
-        /// seeds; otherwise false.
+        /// Marks a given property of the machine, not a choice: the choices are then compared at their worst over these values. Only in
+        /// a grid; a drawn key always counts as given. Default: in the front alone for keys of `axis`, `motor` and `disturbance` and
+        /// for seeds; otherwise false.
         given: bool = (),
-        /// The values that it takes one after the other.
+        /// List of its values.
         values: OneOrMany<Amount> = (),
-        /// Values from one end to the other, both among them.
+        /// Values from one end to the other, both included.
         range: Range = (),
-        /// Drawn: every value between two is as likely as any other.
+        /// Drawn uniformly between two values.
         uniform: Uniform = (),
-        /// Drawn: every whole number between two is as likely as any other, for seeds.
+        /// Drawn uniformly from the whole numbers between two, for seeds.
         whole: Whole = (),
-        /// Drawn: Gauss's distribution.
+        /// Drawn from a normal distribution.
         normal: Normal = (),
-        /// Drawn: most likely in the middle, less and less towards two ends.
+        /// Drawn from a triangular distribution.
         triangular: Triangular = (),
     }
 }
 
 table! {
-    /// Values from one end to the other, both among them.
+    /// Values from one end to the other, both included.
     pub(crate) struct Range requires ["from", "to", "count"] {
         /// The first value.
         from: Amount = (),
         /// The last value, in the unit of the first.
         to: Amount = (),
-        /// How many there are.
+        /// Number of values.
         count: u32 = 2..=1_000_000,
-        /// At equal distances or at equal ratios; default: "linear".
+        /// Spacing at equal distances or at equal ratios; default: "linear".
         spacing: Spacing = OneOf,
     }
 }
 
 table! {
-    /// Every value between two is as likely as any other: `from` and `to`, or `mean` and `tolerance`.
+    /// Uniform distribution: `from` and `to`, or `mean` and `tolerance`.
     pub(crate) struct Uniform {
         /// The smallest value.
         from: Amount = (),
@@ -114,13 +114,13 @@ table! {
         to: Amount = (),
         /// The value in the middle.
         mean: Amount = (),
-        /// How far the ends are from the middle, in parts of it.
+        /// Distance of the ends from the middle, as a share of it.
         tolerance: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }
 
 table! {
-    /// Every whole number between two is as likely as any other.
+    /// Uniform distribution over the whole numbers between two.
     pub(crate) struct Whole requires ["from", "to"] {
         /// The smallest number.
         from: Amount = (),
@@ -130,19 +130,19 @@ table! {
 }
 
 table! {
-    /// Gauss's distribution: `mean` and `sigma`, or `mean` and `tolerance`.
+    /// Normal distribution: `mean` and `sigma`, or `mean` and `tolerance`.
     pub(crate) struct Normal requires ["mean"] {
         /// The value in the middle.
         mean: Amount = (),
         /// Standard deviation, in the unit of the middle.
         sigma: Amount = (),
-        /// Three standard deviations, in parts of the middle: 99.7 % of all are within.
+        /// Three standard deviations, as a share of the middle: 99.7 % of all values are within.
         tolerance: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }
 
 table! {
-    /// Most likely in the middle, less and less towards two ends: `from`, `mode` and `to`, or `mode` and `tolerance`.
+    /// Triangular distribution: `from`, `mode` and `to`, or `mode` and `tolerance`.
     pub(crate) struct Triangular requires ["mode"] {
         /// The smallest value, in the unit of the most likely.
         from: Amount = (),
@@ -150,19 +150,19 @@ table! {
         mode: Amount = (),
         /// The largest value, in the unit of the most likely.
         to: Amount = (),
-        /// How far the ends are from the most likely value, in parts of it.
+        /// Distance of the ends from the most likely value, as a share of it.
         tolerance: f64 = positive(Plain(&RATIO), "5 %"),
     }
 }
 
 table! {
-    /// How keys with a distribution are drawn.
+    /// Draws of the keys with a distribution.
     pub(crate) struct DrawTable requires ["count"] {
-        /// How many draws there are, of all these keys together.
+        /// Number of draws, of all these keys together.
         count: u32 = 1..=10_000_000,
         /// The same seed gives the same draws, on every machine; default: 1.
         seed: u32 = 0..=u32::MAX,
-        /// How the draws spread; default: "latin-hypercube".
+        /// Sampling of the distributions; default: "latin-hypercube".
         method: Method = OneOf,
     }
 }

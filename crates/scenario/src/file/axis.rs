@@ -10,33 +10,33 @@ use servobench_config::{any, not_negative, positive};
 use servobench_plant::{ChainParameter, EndStopParameter, FrictionParameter};
 
 table! {
-    /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's own MJCF file.
+    /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's MJCF file.
     pub(crate) struct Axis {
         /// Name of an axis in `models/axes`, whose values the other keys override.
         model: String = (),
-        /// Where the values come from.
+        /// Source of the values.
         source: String = (),
-        /// Whether the load moves along a line or turns.
+        /// Motion of the load: along a line, or turning.
         motion: Coordinate = OneOf,
         /// Travel per revolution of a screw, pinion or pulley. Without it a linear axis has a linear motor.
         lead: f64 = positive(Plain(&LEAD), "10 mm"),
         /// Revolutions of the motor per revolution behind the gear; default: 1.
         gear_ratio: f64 = positive(Plain(&RATIO), "5"),
-        /// What moves with the rotor, in the motor coordinate. The rotor's own inertia is added to it.
+        /// Body that moves with the rotor, in the motor coordinate. The rotor's inertia is added to it.
         motor_side: MotorSide = (),
         /// The body behind the coupling or screw (axis coordinate).
         table: Body = (),
         /// The body that the axis is to position (axis coordinate).
         load: Body = (),
-        /// A user's own MJCF file instead of bodies.
+        /// A user's MJCF file instead of bodies.
         mjcf: Mjcf = (),
-        /// The mechanics as an FMU, for the engine "fmu"; bodies beside it are for the other engines.
+        /// The mechanics as an FMU, for the engine "fmu"; bodies given as well are for the other engines.
         fmu: Fmu = (),
-        /// Period of a modulo axis, one that turns on and on; default: none, the axis has ends. Function blocks use it.
+        /// Period of a modulo axis, which turns without end; default: none, the axis has ends. Function blocks use it.
         modulo: f64 = positive(InAxis(&POSITION), "360 deg"),
         /// Switches along the axis, which a drive on a fieldbus sees.
         switches: Switches = (),
-        /// Stops that push the load back at the ends of its travel; default: none, it goes on.
+        /// Stops that push the load back at the ends of its travel; default: none, unlimited travel.
         end_stops: EndStops = (),
     }
 }
@@ -50,7 +50,7 @@ table! {
         positive: f64 = any(InAxis(&POSITION), "520 mm"),
         /// Home switch; default: none.
         home: HomeSwitch = (),
-        /// Where in each revolution of the motor the index pulse comes; default: 0. A linear motor has none.
+        /// Angle of the index pulse in each revolution of the motor; default: 0. A linear motor has none.
         index: f64 = any(Plain(&POSITION.rotary), "90 deg"),
     }
 }
@@ -79,7 +79,7 @@ table! {
 }
 
 table! {
-    /// What moves with the rotor, in the motor coordinate.
+    /// Body that moves with the rotor, in the motor coordinate.
     pub(crate) struct MotorSide {
         /// Moment of inertia, for a rotary motor.
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
@@ -104,10 +104,10 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.005 kg m2"),
         /// default: rigid.
         stiffness: f64 = ChainParameter::STIFFNESS,
-        /// Natural frequency of the body on its coupling, the one before it held: another way to say `stiffness`, m·(2πf)².
+        /// Natural frequency of the body on its coupling, with the body before it held; an alternative to `stiffness`, m·(2πf)².
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
         damping: f64 = ChainParameter::DAMPING,
-        /// Damping ratio of the body on its coupling, the one before it held: another way to say `damping`, 2ζ·√(stiffness·m).
+        /// Damping ratio of the body on its coupling, with the body before it held; an alternative to `damping`, 2ζ·√(stiffness·m).
         damping_ratio: f64 = not_negative(Plain(&RATIO), "0.02"),
         /// against the ground.
         viscous: f64 = FrictionParameter::VISCOUS,
@@ -144,16 +144,16 @@ impl Body {
 }
 
 table! {
-    /// A user's own MJCF file and which of its parts are the axis.
+    /// A user's MJCF file, and the parts of it that are the axis.
     pub(crate) struct Mjcf requires ["file", "motor_joint", "load_joint", "actuator"] {
         /// The file, relative to the file that names it.
         file: String = (),
         /// Joint whose coordinate is the motor's.
         motor_joint: String = (),
-        /// Joint of the load. The load's position takes in the joints of the same kind that this one stands on, down to
-        /// the body that carries motor and load.
+        /// Joint of the load. The load's position includes the joints of the same kind below this one, down to the body that carries
+        /// motor and load.
         load_joint: String = (),
-        /// Motor actuator that the drive's torque or force goes to.
+        /// Motor actuator that applies the drive's torque or force.
         actuator: String = (),
     }
 }

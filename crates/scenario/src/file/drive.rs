@@ -22,7 +22,7 @@ use servobench_drive::{
 };
 
 choices! {
-    /// Which encoder closes the position loop.
+    /// Encoder that closes the position loop.
     pub(crate) enum FeedbackEncoder {
         /// the encoder on the motor
         Motor = "motor",
@@ -42,20 +42,19 @@ choices! {
 }
 
 table! {
-    /// The firmware of the drive: position, velocity and current loops in a cascade. It knows the axis by its sensors and
-    /// its own estimates only.
+    /// The firmware of the drive: position, velocity and current loops in a cascade. It knows the axis only by its sensors and its
+    /// estimates.
     pub(crate) struct Drive {
         /// Name of a drive in `models/drives`, whose values the other keys override.
         model: String = (),
-        /// Where the values come from.
+        /// Source of the values.
         source: String = (),
-        /// Whether the power stage is on; default: true. Off: no current, no force, and the axis is free.
+        /// Power stage on; default: true. Off: no current, no force, and the axis is free.
         enabled: bool = (),
         dc_link: f64 = current::Parameter::DC_LINK,
-        /// Largest torque that the drive asks for, besides what the current limit of the motor or the `limit` of an ideal
-        /// source allows.
+        /// Largest torque that the drive requests, besides the limit by the motor's current or the `limit` of an ideal source.
         max_torque: f64 = positive(Plain(&TORQUE), "12 Nm"),
-        /// Largest force that the drive asks for, with a linear motor.
+        /// Largest force that the drive requests, with a linear motor.
         max_force: f64 = positive(Plain(&FORCE), "300 N"),
         /// Encoder that closes the position loop; default: the motor's.
         position_feedback: FeedbackEncoder = OneOf,
@@ -71,21 +70,21 @@ table! {
         position: Position = (),
         /// Filters in the torque path, one after the other; `[[drive.filter]]` for each.
         filter: Many<TorqueFilter> = (),
-        /// Harmonics of cogging that the drive takes off, by the measured position; `[[drive.cogging]]` for each, eight at most.
+        /// Harmonics of cogging that the drive compensates by the measured position; `[[drive.cogging]]` for each, eight at most.
         cogging: Many<CoggingHarmonic> = (),
         /// Gains over speed; default: none.
         gain_schedule: GainSchedule = (),
         /// I²t of motor and drive; default: none.
         i2t: I2t = (),
-        /// What the drive watches of motor and power stage; default: nothing.
+        /// Supervision of motor and power stage; default: none.
         supervision: Supervision = (),
         /// Feedforward; default: none.
         feedforward: Feedforward = (),
-        /// What the firmware believes of the axis; default: the truth.
+        /// The firmware's model of the axis; default: the true values.
         estimate: Estimate = (),
         /// Encoder on the load; default: none.
         load_encoder: Encoder = Mount::Load,
-        /// What the master writes into the drive's objects (CiA 402) before the first cycle of `[bus]`: whole numbers by index and
+        /// Values that the master writes to the drive's objects (CiA 402) before the first cycle of `[bus]`: whole numbers by index and
         /// sub-index.
         objects: ObjectTable = (),
     }
@@ -109,15 +108,15 @@ table! {
         /// default: 0. The torque or force per q-axis current is then that of 1.5·p·(ψ + (L_d − L_q)·i_d) of the
         /// estimated motor, and `max_current` bounds the vector of both.
         d_reference: f64 = current::Parameter::D_REFERENCE,
-        /// Which d-axis current an effort is given with; default: "d-reference".
+        /// Choice of the d-axis current for a torque or force; default: "d-reference".
         strategy: Strategy = OneOf,
-        /// Whether the d-axis current weakens the field where the voltage ends, by the estimated motor and DC link; default: false.
+        /// Field weakening by the d-axis current at the voltage limit, from the estimated motor and DC link; default: false.
         field_weakening: bool = (),
         /// default: 0.95.
         field_weakening_share: f64 = operating_point::Parameter::SHARE,
         /// default: none.
         field_weakening_feedback: f64 = operating_point::Parameter::FEEDBACK,
-        /// Whether the voltage limit is that of the measured DC link, not of the estimated one; default: false.
+        /// Voltage limit from the measured DC link, not from the estimated one; default: false.
         measured_dc_link: bool = (),
         /// Compensation of the inverter's dead time; default: none.
         dead_time_compensation: DeadTimeCompensation = (),
@@ -146,8 +145,8 @@ table! {
         max_speed: f64 = BlockParameter::MAX_SPEED => max_speed,
         /// default: 1.
         reference_weight: f64 = BlockParameter::REFERENCE_WEIGHT => reference_weight,
-        /// How the velocity of the motor is measured; by default an encoder without increments and errors gives it, of any other the
-        /// drive takes differences.
+        /// Method of measuring the motor's velocity; by default an encoder without increments and errors gives the velocity itself, and
+        /// the drive takes differences of the positions of any other.
         measurement: Method = OneOf,
         /// (with "mt"); default: 100 ns.
         timer: f64 = mt::Parameter::TIMER,
@@ -161,7 +160,7 @@ table! {
 }
 
 table! {
-    /// An observer of position, velocity and disturbance of the motor, by the estimated inertia and the effort that the drive asks for.
+    /// An observer of position, velocity and disturbance of the motor, by the estimated inertia and the effort that the drive requests.
     pub(crate) struct Observer requires ["bandwidth"] {
         bandwidth: f64 = observer::Parameter::OBSERVER_BANDWIDTH,
         /// default: 0.
@@ -192,20 +191,20 @@ table! {
     pub(crate) struct Feedforward {
         /// Share of the reference velocity that is added to the velocity command; `true` is all of it; default: none.
         velocity: Share = (),
-        /// Whether that velocity goes on along the set-point between two cycles of a slower position loop, one value
-        /// for each cycle of the velocity loop; default: true. `false`: a staircase, which costs torque ripple.
+        /// Continues that velocity along the set-point between two cycles of a slower position loop, with one value for each cycle of
+        /// the velocity loop; default: true. `false`: a staircase, which causes torque ripple.
         interpolate: bool = (),
         /// Model of the force or torque that is added; default: "off".
         effort: EffortFeedforward = OneOf,
-        /// Whether estimated Coulomb friction and bias are added too; default: false.
+        /// Adds estimated Coulomb friction and bias; default: false.
         friction: bool = (),
-        /// How long the reference waits for the feedforward path; default: "auto", as long as that path takes.
+        /// Delay of the reference, which matches the feedforward path; default: "auto", the delay of that path.
         delay: Automatic = not_negative(Plain(&TIME), "125 us"),
     }
 }
 
 table! {
-    /// What the firmware believes of the axis, in the axis coordinate; default: each value is the plant's own.
+    /// The firmware's model of the axis, in the axis coordinate; default: the true values of the plant.
     pub(crate) struct Estimate {
         /// Travel per revolution of the screw, pinion or pulley.
         lead: f64 = positive(Plain(&LEAD), "10 mm"),
@@ -227,7 +226,7 @@ table! {
 }
 
 table! {
-    /// What the firmware believes of the synchronous motor, phase to neutral.
+    /// The firmware's model of the synchronous motor, phase to neutral.
     pub(crate) struct EstimatedMotor {
         resistance: f64 = current::Parameter::RESISTANCE,
         inductance_d: f64 = current::Parameter::INDUCTANCE_D,

@@ -5,7 +5,7 @@ use servobench_drive::current::dead_time;
 use servobench_drive::{cogging, overload, schedule};
 
 table! {
-    /// I²t: the thermal load of first order of motor and drive. Each is there when its table is.
+    /// I²t: the thermal load of first order of motor and drive. Each is active if its table is present.
     pub(crate) struct I2t {
         /// The motor.
         motor: ThermalLoad = (),
@@ -20,13 +20,13 @@ table! {
         continuous_current: f64 = overload::Parameter::CONTINUOUS_CURRENT,
         time_constant: f64 = overload::Parameter::TIME_CONSTANT,
         peak_time: f64 = overload::Parameter::PEAK_TIME,
-        /// What the drive does when the load is what the continuous current makes; default: "derate". A fault needs a `[bus]`.
+        /// Reaction of the drive when the load reaches that of the continuous current; default: "derate". A fault needs a `[bus]`.
         reaction: overload::Reaction = OneOf,
     }
 }
 
 table! {
-    /// A harmonic of the motor's cogging that the drive takes off: amplitude·sin(order·θ + phase).
+    /// A harmonic of the motor's cogging that the drive compensates: amplitude·sin(order·θ + phase).
     pub(crate) struct CoggingHarmonic requires ["order", "amplitude"] {
         /// Periods in a revolution of the motor; of a linear motor in two pole pitches.
         order: u32 = 1..=10_000,
@@ -47,7 +47,7 @@ table! {
 }
 
 table! {
-    /// Gains over speed: as in the other tables up to one speed, multiples of them from another one on, a line between.
+    /// Gains over speed: those of the other tables up to one speed, multiples of them from another speed, linear between.
     pub(crate) struct GainSchedule requires ["from", "to"] {
         from: f64 = schedule::Parameter::FROM,
         to: f64 = schedule::Parameter::TO,

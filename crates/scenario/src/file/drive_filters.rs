@@ -5,11 +5,11 @@ use servobench_config::choices;
 use servobench_drive::filter;
 
 choices! {
-    /// What a filter does.
+    /// Kind of a filter.
     pub(crate) enum FilterKind {
-        /// takes away what is above its `frequency`
+        /// attenuates above its `frequency`
         LowPass = "low-pass",
-        /// takes out what is about its `frequency`
+        /// attenuates around its `frequency`
         Notch = "notch",
         /// zeros and poles, each with a frequency and a damping ratio
         BiQuad = "bi-quad",
@@ -18,9 +18,9 @@ choices! {
 
 table! {
     /// A filter between velocity loop and current loop, at the rate of the velocity loop; its gain is 1 at standstill. Filters act
-    /// in the order of the file, four at most, and the limits of torque and current act behind them.
+    /// in the order of the file, four at most, and the limits of torque and current act after them.
     pub(crate) struct TorqueFilter requires ["kind"] {
-        /// What it does.
+        /// Kind of the filter.
         kind: FilterKind = OneOf,
         frequency: f64 = filter::Parameter::FREQUENCY,
         /// Order of a low-pass; default: 1.
@@ -28,7 +28,7 @@ table! {
         /// default: 0.7.
         damping: f64 = filter::Parameter::DAMPING,
         zero_frequency: f64 = filter::Parameter::ZERO_FREQUENCY,
-        /// default: 0. A notch leaves their ratio to that of the poles at its frequency.
+        /// default: 0. The gain of a notch at its frequency is the ratio of this to `pole_damping`.
         zero_damping: f64 = filter::Parameter::ZERO_DAMPING,
         pole_frequency: f64 = filter::Parameter::POLE_FREQUENCY,
         /// default: 0.7.

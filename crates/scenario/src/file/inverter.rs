@@ -5,9 +5,9 @@ use servobench_base::Rate;
 use servobench_plant::inverter::{LinkParameter, Modulation, Parameter, Params};
 
 table! {
-    /// What the inverter does beside giving the voltage that it is asked for: docs/inverter.md. Each key is an effect of its own.
+    /// Effects of the inverter on the requested voltage: docs/inverter.md. Each key is a separate effect.
     pub(crate) struct Inverter sets Params {
-        /// How it makes its voltage; default: "averaged".
+        /// Model of the modulation; default: "averaged".
         modulation: Modulation = OneOf => modulation,
         /// Frequency of the carrier, and of the switching; `dead_time` and "switching" need it. With "switching" it divides the base rate
         /// or is a multiple of it.
@@ -22,7 +22,7 @@ table! {
 }
 
 table! {
-    /// The DC link as it is: mains behind a resistance and diodes, a capacitor, a brake resistor: docs/inverter.md. `drive.dc_link` is its
+    /// The DC link: mains behind a resistance and diodes, a capacitor, a brake resistor: docs/inverter.md. `drive.dc_link` is its
     /// voltage without load.
     pub(crate) struct Link requires ["capacitance", "source_resistance"] {
         capacitance: f64 = LinkParameter::CAPACITANCE,
@@ -31,7 +31,7 @@ table! {
         mains_frequency: f64 = LinkParameter::MAINS_FREQUENCY,
         /// Time in which the mains have less voltage; default: none.
         sag: Sag = (),
-        /// Resistor that takes what comes back; default: none.
+        /// Brake resistor for returned energy; default: none.
         brake: Brake = (),
     }
 }
@@ -46,7 +46,7 @@ table! {
 }
 
 table! {
-    /// Resistor that takes what a braking motor gives back: on above one voltage of the link, off below another.
+    /// Brake resistor for the energy that a braking motor returns: on above one voltage of the link, off below another.
     pub(crate) struct Brake requires ["resistance", "on", "off"] {
         resistance: f64 = LinkParameter::BRAKE_RESISTANCE,
         on: f64 = LinkParameter::BRAKE_ON,

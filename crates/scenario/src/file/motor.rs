@@ -16,7 +16,7 @@ use servobench_drive::current;
 use servobench_plant::pmsm;
 
 choices! {
-    /// What kind of motor it is.
+    /// Kind of motor.
     pub(crate) enum MotorKind {
         /// a permanent-magnet synchronous motor, turning or linear, on an averaged inverter
         Pmsm = "pmsm",
@@ -28,14 +28,14 @@ choices! {
 }
 
 table! {
-    /// What moves the axis. Values of a synchronous motor are phase to neutral, flux linkage and currents are amplitudes
-    /// inside; units say what a value is: `Arms` or `Apk`.
+    /// The motor of the axis. Values of a synchronous motor are phase to neutral, flux linkage and currents are amplitudes
+    /// inside; the unit distinguishes `Arms` from `Apk`.
     pub(crate) struct Motor {
         /// Name of a motor in `models/motors`, whose values the other keys override.
         model: String = (),
-        /// Where the values come from.
+        /// Source of the values.
         source: String = (),
-        /// What kind of motor it is.
+        /// Kind of motor.
         kind: MotorKind = OneOf,
         /// Pole pairs p of a motor that turns.
         pole_pairs: u32 = 1..=1000,
@@ -59,7 +59,7 @@ table! {
         inertia: f64 = positive(Plain(&INERTIA), "0.00018 kg m2"),
         /// Mass of the moving part of a linear motor.
         mass: f64 = positive(Plain(&MASS), "3 kg"),
-        /// : the drive asks for no more.
+        /// : the drive requests no more.
         max_current: f64 = current::Parameter::MAX_CURRENT,
         /// Force or torque per volt of an ideal source; without it the output is the force or torque itself.
         gain: f64 = positive(InMotor(&SOURCE_GAIN), "35.1507 N/V"),
@@ -75,13 +75,13 @@ table! {
         phase_resistance: Many<f64> = pmsm::PhaseParameter::RESISTANCE,
         /// Temperature of winding and magnets.
         temperature: Temperature = (),
-        /// How the losses warm them; without it the temperature stays.
+        /// Warming of both by the losses; without it the temperatures are constant.
         thermal: Thermal = (),
         /// Saturation of the iron, by one figure of the data sheet.
         saturation: Saturation = (),
         /// Saturation of the iron, by a table of flux linkages.
         flux_map: FluxMap = (),
-        /// How it is connected to the inverter; default: as it should be.
+        /// Connection to the inverter; default: correct.
         connection: Connection = (),
         /// Encoder on the motor; default: ideal.
         encoder: Encoder = Mount::Motor,

@@ -37,11 +37,11 @@ table! {
 }
 
 table! {
-    /// Cable between inverter and motor, where it is not as it should be: docs/faults.md.
+    /// Faults of the cable between inverter and motor: docs/faults.md.
     pub(crate) struct Connection {
-        /// Two phases that are exchanged; default: none.
+        /// Two exchanged phases; default: none.
         swapped: Swap = OneOf,
-        /// Phase of the motor that is lost: no current flows in it any more; default: none.
+        /// Lost phase of the motor, which carries no current any more; default: none.
         open: Phase = OneOf,
         /// default: 0.
         open_at: f64 = WiringParameter::OPEN_AT,
@@ -60,7 +60,7 @@ table! {
 }
 
 table! {
-    /// Temperature of the motor: it changes resistance and flux linkage, of which the drive is told nothing.
+    /// Temperature of the motor: it changes resistance and flux linkage without the drive's knowledge.
     pub(crate) struct Temperature {
         /// default: 20 °C.
         reference: f64 = TemperatureParameter::REFERENCE,
@@ -100,7 +100,7 @@ table! {
 }
 
 table! {
-    /// Flux linkages by the currents, in place of inductances and flux linkage, which stay what the drive believes.
+    /// Flux linkages over the currents, in place of inductances and flux linkage, which remain the drive's estimates.
     pub(crate) struct FluxMap requires ["file"] {
         /// A CSV file, relative to this one, with the heading `i_d [Apk],i_q [Apk],psi_d [mV s],psi_q [mV s]`: any units, and a row for
         /// each pair of currents, from 3 to 65 of either axis with 0 among them. A table that begins at i_q = 0 is mirrored. psi_d without

@@ -21,7 +21,7 @@ table! {
         move_to: f64 = any(InAxis(&POSITION), "250 mm"),
         /// Moves by a distance from the last target.
         move_by: f64 = any(InAxis(&POSITION), "-250 mm"),
-        /// Goes over to a velocity and holds it for `hold`; the next move takes over in motion.
+        /// Changes to a velocity and holds it for `hold`; the next move takes over in motion.
         reach_velocity: f64 = any(InAxis(&VELOCITY), "10 m/min"),
         /// Moves through the points of a table.
         table: TableOfPoints = (),
@@ -29,9 +29,9 @@ table! {
         wait: f64 = not_negative(Plain(&TIME), "0.2 s"),
         /// Passes the target of `move_to` or `move_by` at this velocity; the next move takes over in motion.
         end_velocity: f64 = any(InAxis(&VELOCITY), "5 m/min"),
-        /// How long `reach_velocity` holds its velocity; default: not at all.
+        /// Time for which `reach_velocity` holds its velocity; default: not at all.
         hold: f64 = not_negative(Plain(&TIME), "0.5 s"),
-        /// Breaks the move before off, so long after its start, and takes over from the state of motion that it has then.
+        /// Aborts the move before at this time after its start, and takes over from its state of motion there.
         aborts_after: f64 = positive(Plain(&TIME), "0.3 s"),
         /// Order of the profile.
         order: u32 = 2..=4,
@@ -39,15 +39,15 @@ table! {
         acceleration: f64 = LimitParameter::ACCELERATION,
         jerk: f64 = LimitParameter::JERK,
         snap: f64 = LimitParameter::SNAP,
-        /// Which profile goes from rest to rest.
+        /// Profile of a move from rest to rest.
         method: Method = OneOf,
         /// Sample time of the plan, a whole number of base ticks.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
-        /// How the times are made whole numbers of samples.
+        /// Rounding of the times to whole numbers of samples.
         sampling: Sampling = OneOf,
-        /// How set-points are made of the samples.
+        /// Set-points made from the samples.
         execution: Execution = OneOf,
-        /// Plans as if the axis were in motion, with so much work.
+        /// Plans as if the axis were in motion, with this amount of work.
         online: Effort = OneOf,
         negative_velocity: f64 = LimitParameter::NEGATIVE_VELOCITY,
         negative_acceleration: f64 = LimitParameter::NEGATIVE_ACCELERATION,
@@ -59,7 +59,7 @@ table! {
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
         /// Slows the move to last this long, every derivative in proportion; default: as fast as the limits allow.
         duration: f64 = positive(Plain(&TIME), "1.5 s"),
-        /// Limits that this move's own metrics must keep, beside those of the run.
+        /// Limits on the metrics of this move, in addition to those of the run.
         limits: LimitTable = (),
     }
 }
@@ -71,7 +71,7 @@ table! {
         on: DisturbedBody = OneOf,
         /// Start: it acts from the first tick that is not before it; default: 0.
         start: f64 = not_negative(Plain(&TIME), "0.5 s"),
-        /// How long it lasts: it acts up to the last tick before its end; default: the end of the run.
+        /// Duration: it acts up to the last tick before its end; default: the end of the run.
         duration: f64 = positive(Plain(&TIME), "0.2 s"),
         /// Amplitude, where the body moves along a line.
         force: f64 = any(Plain(&FORCE), "200 N"),

@@ -43,7 +43,7 @@ impl Field for RequirementTable {
             .map(|requirement| (requirement.as_str(), vec![requirement.meaning()], json!({ "type": "boolean" })));
         let keys: Vec<_> = keys.collect();
         let keys = keys.iter().map(|(name, doc, schema)| (*name, ("", doc.as_slice()), schema.clone())).collect();
-        object_schema(&["Whether the run is held to each requirement."], &[], keys)
+        object_schema(&["Requirements on the run beside its limits; each applies unless it is `false`."], &[], keys)
     }
 }
 
@@ -58,36 +58,36 @@ servobench_config::choices! {
 }
 
 table! {
-    /// A fault or an incident that belongs to the run: when it comes it breaks no requirement, and a run in which it does not come
-    /// fails. What follows from a fault for the other parts of the axis is expected with it: a fault of the drive or the link brings
-    /// the axis to `ErrorStop`. Blocks that end in `Error`, and incidents, are expected each by itself.
+    /// A fault or an incident that belongs to the run: it violates no requirement, and a run without it fails. The consequences of a
+    /// fault for the other parts of the axis are expected with it: a fault of the drive or the link takes the axis to `ErrorStop`.
+    /// Blocks that end in `Error`, and incidents, are expected one by one.
     pub(crate) struct Expect {
-        /// What is expected; default: "fault".
+        /// Fault or incident; default: "fault".
         on: ExpectedOn = OneOf,
         /// State or error code: "ErrorStop" of the axis, the code of the drive (603Fh) as in "8611h", the name of the
         /// link's fault as in "positive limit switch", the `ErrorID` of a call as in "2002h".
         fault: String = (),
-        /// Whose fault: "axis", "drive", "link", or the name of a call.
+        /// Source of the fault: "axis", "drive", "link", or the name of a call.
         who: String = (),
-        /// Which incident, with `on = "event"`.
+        /// Name of the incident, with `on = "event"`.
         event: Incident = OneOf,
-        /// From when on it may come; default: the beginning.
+        /// Earliest time of its occurrence; default: the beginning.
         from: f64 = not_negative(Plain(&TIME), "0.2 s"),
-        /// Until when it must have come; default: the end of the run.
+        /// Latest time of its first occurrence; default: the end of the run.
         to: f64 = positive(Plain(&TIME), "0.6 s"),
     }
 }
 
 table! {
-    /// How far off the request the axis may be, as shares.
+    /// Tolerances between the axis and its requests, as shares.
     pub(crate) struct Tolerance {
-        /// From the response of its loops, of the way between two turning points; default: 0.03.
+        /// Deviation from the response of its loops, as a share of the path between two turning points; default: 0.03.
         follows: f64 = positive(Plain(&RATIO), "0.05"),
-        /// From a target, of the way to it, where the window is not smaller; default: 0.05.
+        /// Deviation from a target, as a share of the distance to it, where the window is not smaller; default: 0.05.
         arrives: f64 = positive(Plain(&RATIO), "0.05"),
-        /// From a velocity that is held, of it; default: 0.03.
+        /// Deviation from a velocity that is held, as a share of it; default: 0.03.
         velocity: f64 = positive(Plain(&RATIO), "0.05"),
-        /// From an effort, of it; default: 0.04.
+        /// Deviation from a torque or force, as a share of it; default: 0.04.
         effort: f64 = positive(Plain(&RATIO), "0.05"),
     }
 }

@@ -37,12 +37,12 @@ impl Mount {
 }
 
 table! {
-    /// Position encoder: a resolution, or none for an ideal one, and its errors; what is not given does not err.
+    /// Position encoder: a resolution, or none for an ideal one, and its errors; an error that is not given is zero.
     pub(crate) struct Encoder of (mount: Mount) sets EncoderErrors {
         /// Increments per revolution: 1048576 for 20 bits.
         counts_per_rev: u32 = 1..=u32::MAX,
         step: f64 = mount.step(),
-        /// Increments per period of the signals, instead of the two keys before.
+        /// Increments per period of the signals, instead of the two keys above.
         interpolation: u32 = 1..=u32::MAX,
         /// (needed by the errors of the signals and by `interpolation`).
         signal_period: f64 = mount.of(EncoderParameter::SIGNAL_PERIOD, "0.2 deg"),
@@ -56,7 +56,7 @@ table! {
         lost_track: Track = OneOf,
         /// default: 0.
         lost_at: f64 = EncoderParameter::LOST_AT,
-        /// (of what turns; with `disc_radius`).
+        /// (of a disc that turns; with `disc_radius`).
         eccentricity: f64 = EncoderParameter::ECCENTRICITY => eccentricity,
         disc_radius: f64 = EncoderParameter::RADIUS => radius,
         /// default: 0.
@@ -68,8 +68,8 @@ table! {
         seed: u32 = 0..=u32::MAX => seed,
         /// default: 0.
         latency: f64 = EncoderParameter::LATENCY => latency,
-        /// Bits of the revolutions that an absolute encoder counts before it begins again, 0 for one of a single turn; the drive
-        /// counts on. Default: never.
+        /// Bits of the revolutions that an absolute encoder counts before it wraps, 0 for a single-turn encoder; the drive continues
+        /// the count. Default: it never wraps.
         turn_bits: u32 = 0..=32,
         ..commutation: Commutation = mount
     }
@@ -99,8 +99,8 @@ impl Commutation {
 }
 
 table! {
-    /// Errors of the current sensors on the phases a and b, and their converter; the third phase is −(a + b). What is not given does not
-    /// err.
+    /// Errors of the current sensors on the phases a and b, and their converter; the third phase is −(a + b). An error that is not
+    /// given is zero.
     pub(crate) struct CurrentSensor sets plant::CurrentSensor {
         offset_a: f64 = CurrentSensorParameter::OFFSET_A => offset[0],
         offset_b: f64 = CurrentSensorParameter::OFFSET_B => offset[1],
@@ -109,10 +109,10 @@ table! {
         noise: f64 = CurrentSensorParameter::NOISE => noise,
         /// Seed of the noise; default: 0. The same seed gives the same noise, on every machine.
         seed: u32 = 0..=u32::MAX => seed,
-        /// Bits of the converter, both directions together; with `range`. Default: no steps and no range.
+        /// Bits of the converter, both directions together; with `range`. Default: no quantisation and no range.
         bits: u32 = 2..=32,
         range: f64 = CurrentSensorParameter::RANGE,
-        /// Cycles of the current loop after which a sample is told; default: 0.
+        /// Delay of a sample, in cycles of the current loop; default: 0.
         delay: u32 = 0..=2 => delay,
         /// (less than a base tick); default: 0.
         shift: f64 = CurrentSensorParameter::SHIFT => shift,

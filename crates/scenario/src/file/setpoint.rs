@@ -14,7 +14,7 @@ use servobench_motion::shape::ShaperKind;
 use servobench_planner::{FollowKind, Method, Sampling, VelocitiesKind};
 
 table! {
-    /// What every move respects unless it says otherwise.
+    /// Limits and profile of every move, unless the move overrides them.
     pub(crate) struct Setpoint {
         /// Order of the profile: 2 limits velocity and acceleration, 3 jerk too, 4 snap too.
         order: u32 = 2..=4,
@@ -22,15 +22,16 @@ table! {
         acceleration: f64 = LimitParameter::ACCELERATION,
         jerk: f64 = LimitParameter::JERK,
         snap: f64 = LimitParameter::SNAP,
-        /// Which profile goes from rest to rest; default: "published".
+        /// Profile of moves from rest to rest; default: "published".
         method: Method = OneOf,
         /// Sample time of moves from rest to rest, a whole number of base ticks; default: continuous.
         sample_time: f64 = positive(Plain(&TIME), "1 ms"),
-        /// How the times are made whole numbers of samples; default: "published".
+        /// Rounding of the times to whole numbers of samples; default: "published".
         sampling: Sampling = OneOf,
-        /// How set-points are made of the samples; default: "hold".
+        /// Set-points made from the samples; default: "hold".
         execution: Execution = OneOf,
-        /// Plans every move as one that may start in motion, with so much work; "fast" where a move does and nothing is given.
+        /// Plans every move as one that may start in motion, with this amount of work; a move that does start in motion is planned
+        /// "fast" by default.
         online: Effort = OneOf,
         /// default: as `velocity`.
         negative_velocity: f64 = LimitParameter::NEGATIVE_VELOCITY,
@@ -42,7 +43,7 @@ table! {
         shaper: OneOrMany<Shaper> = (),
         /// Lengths of moving averages behind the generator, one after the other, whole numbers of base ticks.
         averages: Many<f64> = positive(Plain(&TIME), "10 ms"),
-        /// Between a slow task that commands and the drive; default: the drive has a new set-point at every tick.
+        /// Interpolation between the set-points of a slow task; default: none, the drive has a new set-point at every tick.
         interpolation: Interpolation = (),
     }
 }
@@ -60,9 +61,9 @@ table! {
         jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
         /// Jerk as the time in which the acceleration rises at the beginning of the ramp, and falls at its end; at most half of it counts.
         jerk_time: f64 = positive(Plain(&TIME), "2 ms"),
-        /// The same as the way of a master in its units, which goes at `master_speed`.
+        /// The same time as the distance of a master in its units, at `master_speed`.
         jerk_master_units: f64 = positive(Plain(&RATIO), "1.5"),
-        /// Jerk of the deceleration; said as for the acceleration unless one of these five is given.
+        /// Jerk of the deceleration, by one of these five keys; default: as for the acceleration.
         deceleration_jerk: f64 = positive(InAxis(&JERK), "80 m/s3"),
         /// Jerk of the deceleration as the part of its ramp in which it changes.
         deceleration_jerk_of_time: f64 = positive(Plain(&RATIO), "50 %"),
@@ -70,7 +71,7 @@ table! {
         deceleration_jerk_of_maximum: f64 = positive(Plain(&RATIO), "60 %"),
         /// Jerk of the deceleration as the time in which it changes at either end.
         deceleration_jerk_time: f64 = positive(Plain(&TIME), "2 ms"),
-        /// Jerk of the deceleration as the way of the master in that time.
+        /// Jerk of the deceleration as the distance of the master in that time.
         deceleration_jerk_master_units: f64 = positive(Plain(&RATIO), "1.5"),
         /// Speed of the master, in its units per second.
         master_speed: f64 = positive(Plain(&RATIO), "360"),
@@ -85,7 +86,7 @@ table! {
     /// An input shaper: the move in parts, each half a period of a mode later than the one before, so that their vibrations
     /// cancel.
     pub(crate) struct Shaper requires ["kind"] {
-        /// Which one.
+        /// Kind of shaper.
         kind: Option<ShaperKind> = OneOfOrNone("no shaper, where `[setpoint]` has one; in a list this one is left out"),
         /// Natural frequency of the mode.
         frequency: f64 = positive(Plain(&FREQUENCY), "17.5 Hz"),
@@ -97,9 +98,9 @@ table! {
 }
 
 table! {
-    /// Between a slow task that commands and the drive.
+    /// Interpolation between the set-points of a slow task.
     pub(crate) struct Interpolation requires ["mode", "period"] {
-        /// How values between two commands are found.
+        /// Method of interpolation between two commands.
         mode: Mode = OneOf,
         /// Time between two commands, a whole number of base ticks.
         period: f64 = positive(Plain(&TIME), "4 ms"),
@@ -107,22 +108,22 @@ table! {
 }
 
 table! {
-    /// A table of points, and how it is followed. It starts and ends at rest unless its first and last point have a velocity.
+    /// A table of points to follow. It starts and ends at rest unless its first and last point have a velocity.
     pub(crate) struct TableOfPoints requires ["file"] {
         /// A CSV file, relative to this one, with the heading `time [ms],position [mm],velocity [mm/s]`: any units, velocity
         /// left out where there is none; `step` in place of `position` counts from the point before; over a bus also in `counts`.
         /// Columns `acceleration`, `jerk` and `snap` are not used.
         file: String = (),
-        /// Whether the positions count from where the axis is when the move starts.
+        /// Counts the positions from the position of the axis at the start of the move.
         relative: bool = (),
-        /// Where the velocities come from; default: "given".
+        /// Source of the velocities; default: "given".
         velocities: VelocitiesKind = OneOf,
-        /// How often "smooth" passes over them; default: 2.
+        /// Number of passes of "smooth"; default: 2.
         passes: u32 = 0..=1_000_000,
-        /// How it is followed; default: "segments".
+        /// Method of following the table; default: "segments".
         follow: FollowKind = OneOf,
-        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; "auto" is the one that takes the
-        /// smallest part of the velocity and the acceleration that the move may have; default: 0.25.
+        /// Share of a segment at either end in which the velocity of "plateaus" changes, up to 0.5; "auto" is the share that needs the
+        /// smallest part of the velocity and acceleration allowed to the move; default: 0.25.
         plateau_share: Automatic = positive(Plain(&RATIO), "0.25"),
         /// Commands per second of "steps".
         command_rate: f64 = positive(Plain(&FREQUENCY), "100 Hz"),

@@ -64,11 +64,11 @@ servobench_config::choices! {
         CyclicPosition = "csp",
         /// cyclic synchronous velocity: the master closes the position loop
         CyclicVelocity = "csv",
-        /// profile position: the drive plans the way to each target
+        /// profile position: the drive plans the profile to each target
         ProfilePosition = "pp",
         /// profile velocity: the drive ramps to each velocity
         ProfileVelocity = "pv",
-        /// interpolated position: the drive goes through the points of a buffer
+        /// interpolated position: the drive moves through the points of a buffer
         InterpolatedPosition = "ip",
     }
 }

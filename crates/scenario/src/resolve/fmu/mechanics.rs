@@ -13,11 +13,11 @@ use servobench_plant::{FmuBody, FmuModel, ModelKind};
 use servobench_signals::Signal;
 
 choices! {
-    /// What an output of an FMU can be that simulates the mechanics.
+    /// Roles of the outputs of an FMU that simulates the mechanics.
     enum BodySignal {
-        /// the motor's position in its own coordinate
+        /// the motor's position in the motor coordinate
         ShaftPosition = "shaft.position",
-        /// the motor's velocity in its own coordinate
+        /// the motor's velocity in the motor coordinate
         ShaftVelocity = "shaft.velocity",
         /// the load's position in the axis coordinate
         LoadPosition = "load.position",
@@ -110,7 +110,7 @@ pub(in crate::resolve) fn mechanics(file: &File, known: Known<'_>, report: &mut 
         };
         if !gives(shaft) {
             let help =
-                "mechanics give the motor's position in its own coordinate, and the load's unless they are one body";
+                "mechanics give the motor's position in the motor coordinate, and the load's unless they are one body";
             report.error(given.outputs.span().unwrap_or(*span), "no output is `shaft.position`", help);
             return None;
         }
