@@ -22,7 +22,7 @@ pub mod supervision;
 servobench_config::parameters! {
     /// A numeric parameter of a block.
     pub enum BlockParameter {
-        /// Largest speed of the motor that the velocity loop is given to follow
+        /// Largest speed of the motor in the reference of the velocity loop
         MAX_SPEED "largest speed" = positive(Motor(&VELOCITY), "3000 rpm");
         /// Weight b of the velocity reference in the proportional part: 0 makes an IP controller, 1 a PI
         REFERENCE_WEIGHT "weight of the velocity reference" = Measure { kind: Plain(&RATIO), bound: Bound::Within(0.0, 1.0), example: "0.6" };

@@ -12,7 +12,7 @@ use servobench_config::{ParameterError, not_negative};
 servobench_config::parameters! {
     /// A parameter of the delay.
     pub enum Parameter {
-        /// How long the reference waits for the feedforward path
+        /// Delay of the reference, which matches the feedforward path
         DELAY "delay of the reference" = not_negative(Plain(&TIME), "0.2 ms");
     }
 }

@@ -23,7 +23,7 @@ servobench_config::parameters! {
         GAIN "gain of the velocity loop" = not_negative(Motor(&VISCOUS), "243.45 N s/m");
         /// Integral time of a PI
         INTEGRAL_TIME "integral time of the velocity loop" = positive(Plain(&TIME), "6 ms");
-        /// Largest torque or force that the drive asks for
+        /// Largest torque or force that the drive requests
         MAX_EFFORT "largest effort" = positive(Motor(&EFFORT), "12 Nm");
     }
 }

@@ -14,7 +14,7 @@ use servobench_config::quantities::{EFFORT, INERTIAL, RATIO, STIFFNESS, VISCOUS}
 use servobench_config::{any, not_negative, positive};
 
 servobench_config::parameters! {
-    /// A parameter of bodies and the couplings between them, in the axis coordinate; the motor has those of its body in its own.
+    /// A parameter of bodies and the couplings between them, in the axis coordinate; those of the motor's body in the motor coordinate.
     pub enum ChainParameter {
         /// Mass or moment of inertia
         INERTIA "inertia" = positive(Axis(&INERTIAL), "40 kg");

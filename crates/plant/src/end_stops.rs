@@ -21,13 +21,13 @@ const MOST_DAMPED: f64 = 0.5;
 servobench_config::parameters! {
     /// A parameter of the end stops, in the axis coordinate.
     pub enum EndStopParameter {
-        /// Where the stop at the negative end begins
+        /// Position at which the stop at the negative end begins
         NEGATIVE "position of the negative end stop" = any(Axis(&POSITION), "-30 mm");
-        /// Where the stop at the positive end begins
+        /// Position at which the stop at the positive end begins
         POSITIVE "position of the positive end stop" = any(Axis(&POSITION), "530 mm");
-        /// Stiffness of both
+        /// Stiffness of both stops
         STIFFNESS "stiffness of the end stops" = positive(Axis(&STIFFNESS), "10 N/um");
-        /// Damping of both
+        /// Damping of both stops
         DAMPING "damping of the end stops" = not_negative(Axis(&VISCOUS), "3000 N s/m");
     }
 }

@@ -18,7 +18,7 @@ use servobench_config::not_negative;
 use servobench_config::quantities::{EFFORT, VELOCITY, VISCOUS};
 
 servobench_config::parameters! {
-    /// A parameter of the friction of a body, in the axis coordinate; the motor has those of its body in its own.
+    /// A parameter of the friction of a body, in the axis coordinate; those of the motor's body in the motor coordinate.
     pub enum FrictionParameter {
         /// Viscous friction
         VISCOUS "viscous" = not_negative(Axis(&VISCOUS), "200 N s/m");

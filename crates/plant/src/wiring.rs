@@ -24,13 +24,13 @@ use servobench_config::quantities::TIME;
 servobench_config::parameters! {
     /// A parameter of the cable.
     pub enum WiringParameter {
-        /// Time from which on the phase is lost
+        /// Time from which the phase is lost
         OPEN_AT "loss of a motor phase" = not_negative(Plain(&TIME), "0.3 s");
     }
 }
 
 servobench_config::choices! {
-    /// Two phases that are exchanged.
+    /// Two exchanged phases.
     pub enum Swap {
         /// a and b
         Ab = "ab",

@@ -18,7 +18,7 @@ servobench_config::parameters! {
         POSITION_TIME "derivative time of the position loop" = positive(Plain(&TIME), "2 ms");
         /// Time constant of the filter on the derivative of the position error
         POSITION_FILTER_TIME "derivative filter of the position loop" = not_negative(Plain(&TIME), "0.5 ms");
-        /// Derivative time of the velocity loop: the measured acceleration counts as so much inertia, gain × time
+        /// Derivative time of the velocity loop: the measured acceleration acts as an additional inertia, gain × time
         VELOCITY_TIME "derivative time of the velocity loop" = positive(Plain(&TIME), "0.5 ms");
         /// Time constant of the filter on the measured acceleration
         VELOCITY_FILTER_TIME "derivative filter of the velocity loop" = not_negative(Plain(&TIME), "0.2 ms");

@@ -20,17 +20,17 @@ use servobench_config::{ParameterError, not_negative, positive};
 servobench_config::parameters! {
     /// A parameter of a filter in the torque path.
     pub enum Parameter {
-        /// Corner frequency of a low-pass, or the frequency that a notch takes out
+        /// Corner frequency of a low-pass, or the centre frequency of a notch
         FREQUENCY "frequency of a filter" = positive(Plain(&FREQUENCY), "420 Hz");
         /// Damping ratio of the poles of a low-pass of second order
         DAMPING "damping of a filter" = positive(Plain(&RATIO), "0.7");
         /// Frequency of the zeros of a bi-quad
         ZERO_FREQUENCY "frequency of a filter's zeros" = positive(Plain(&FREQUENCY), "400 Hz");
-        /// Damping ratio of the zeros; 0 takes their frequency out entirely
+        /// Damping ratio of the zeros; 0 removes their frequency entirely
         ZERO_DAMPING "damping of a filter's zeros" = not_negative(Plain(&RATIO), "0.05");
         /// Frequency of the poles of a bi-quad
         POLE_FREQUENCY "frequency of a filter's poles" = positive(Plain(&FREQUENCY), "500 Hz");
-        /// Damping ratio of the poles: the larger, the wider is a notch
+        /// Damping ratio of the poles: a larger one makes a notch wider
         POLE_DAMPING "damping of a filter's poles" = positive(Plain(&RATIO), "0.7");
     }
 }

@@ -16,11 +16,11 @@ use servobench_config::{ParameterError, positive};
 servobench_config::parameters! {
     /// A parameter of an I²t model.
     pub enum Parameter {
-        /// Current that may flow for ever
+        /// Current that may flow continuously
         CONTINUOUS_CURRENT "continuous current" = positive(Plain(&CURRENT), "5 Arms");
         /// Thermal time constant
         TIME_CONSTANT "thermal time constant" = positive(Plain(&TIME), "30 s");
-        /// How long the largest current of the motor may flow from cold, instead of the time constant
+        /// Time for which the largest current of the motor may flow from cold, instead of the time constant
         PEAK_TIME "time of the largest current" = positive(Plain(&TIME), "2 s");
     }
 }
@@ -28,9 +28,9 @@ servobench_config::parameters! {
 servobench_config::choices! {
     /// Reaction of the drive to a load of 1.
     pub enum Reaction default Derate {
-        /// keeps to the continuous current
+        /// limits the current to the continuous current
         Derate = "derate",
-        /// tells a fault, 2350h of CiA 402
+        /// reports a fault, 2350h of CiA 402
         Fault = "fault",
     }
 }

@@ -14,7 +14,7 @@ servobench_config::parameters! {
     pub enum Parameter {
         /// Speed of the motor up to which the gains are those of standstill
         FROM "speed from which gains change" = not_negative(Motor(&VELOCITY), "10 rpm");
-        /// Speed of the motor from which on the gains are the others
+        /// Speed of the motor from which the gains are those at speed
         TO "speed to which gains change" = positive(Motor(&VELOCITY), "100 rpm");
         /// Gain of the position loop at speed, as a multiple of that at standstill
         POSITION "factor of the position gain" = positive(Plain(&RATIO), "0.5");

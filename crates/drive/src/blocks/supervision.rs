@@ -34,27 +34,27 @@ use servobench_config::{Bound, Measure, ParameterError, positive};
 servobench_config::parameters! {
     /// A parameter of the supervision of motor and power stage.
     pub enum Parameter {
-        /// Measured DC link below which the drive tells a fault
+        /// Measured DC link voltage below which the drive reports a fault
         UNDERVOLTAGE "under-voltage threshold" = positive(Plain(&VOLTAGE), "200 V");
-        /// Measured DC link above which it tells one
+        /// Measured DC link voltage above which it reports one
         OVERVOLTAGE "over-voltage threshold" = positive(Plain(&VOLTAGE), "400 V");
-        /// Speed of the motor above which it tells one
+        /// Speed of the motor above which it reports one
         OVERSPEED "over-speed threshold" = positive(Motor(&VELOCITY), "6500 rpm");
-        /// Current of a phase above which it tells one
+        /// Current of a phase above which it reports one
         OVERCURRENT "over-current threshold" = positive(Plain(&CURRENT), "20 Arms");
-        /// Temperature of the winding above which it tells one
+        /// Temperature of the winding above which it reports one
         WINDING_TEMPERATURE "over-temperature threshold" = Measure { kind: Plain(&TEMPERATURE), bound: Bound::Within(-100.0, 500.0), example: "130 degC" };
         /// Speed that the motor gains against its torque-producing current
         COMMUTATION_SPEED "speed gained against the current" = positive(Motor(&VELOCITY), "200 rpm");
         /// Least torque-producing current that counts
         COMMUTATION_CURRENT "current of the commutation supervision" = positive(Plain(&CURRENT), "4 Arms");
-        /// Speed below which the motor stands
+        /// Speed below which the motor counts as stalled
         STALL_SPEED "speed of a stalled motor" = positive(Motor(&VELOCITY), "5 rpm");
-        /// How long the loops are at their limit meanwhile
+        /// Time for which the loops are at their limit meanwhile
         STALL_TIME "time of a stalled motor" = positive(Plain(&TIME), "0.2 s");
         /// Least current reference of a leg that counts
         PHASE_CURRENT "current of the phase supervision" = positive(Plain(&CURRENT), "1 Arms");
-        /// How long a leg has less than half of it
+        /// Time for which a leg has less than half of it
         PHASE_TIME "time of a lost phase" = positive(Plain(&TIME), "10 ms");
     }
 }

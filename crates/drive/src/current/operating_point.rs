@@ -43,7 +43,7 @@ servobench_config::choices! {
     pub enum Strategy default DReference {
         /// a constant one, `d_reference`
         DReference = "d-reference",
-        /// maximum torque per ampere: the one with which the current is least
+        /// maximum torque per ampere: the d-axis current that needs the least current
         Mtpa = "mtpa",
     }
 }

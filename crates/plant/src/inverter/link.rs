@@ -27,19 +27,19 @@ servobench_config::parameters! {
         CAPACITANCE "capacitance of the link" = positive(Plain(&CAPACITANCE), "470 uF");
         /// Resistance between the rectified mains and the capacitor
         SOURCE_RESISTANCE "resistance of the mains" = positive(Plain(&RESISTANCE), "0.5 Ohm");
-        /// Frequency of three-phase mains, of which a bridge makes six pulses in a period
+        /// Frequency of the three-phase mains, rectified by a bridge to six pulses a period
         MAINS_FREQUENCY "frequency of the mains" = positive(Plain(&FREQUENCY), "50 Hz");
-        /// When the mains sag
+        /// Start of the mains sag
         SAG_START "start of the sag" = not_negative(Plain(&TIME), "0.2 s");
-        /// For how long
+        /// Duration of the sag
         SAG_DURATION "duration of the sag" = positive(Plain(&TIME), "60 ms");
-        /// By which share of their voltage
+        /// Depth of the sag, as a share of the mains voltage
         SAG_DEPTH "depth of the sag" = Measure { kind: Plain(&RATIO), bound: Bound::Within(0.0, 1.0), example: "0.4" };
-        /// Brake resistor
+        /// Resistance of the brake resistor
         BRAKE_RESISTANCE "brake resistance" = positive(Plain(&RESISTANCE), "47 Ohm");
-        /// Voltage of the link above which the brake resistor goes on
+        /// Voltage of the link above which the brake resistor is switched on
         BRAKE_ON "voltage that switches the brake on" = positive(Plain(&VOLTAGE), "390 V");
-        /// Voltage of the link below which it goes off
+        /// Voltage of the link below which it is switched off
         BRAKE_OFF "voltage that switches the brake off" = positive(Plain(&VOLTAGE), "375 V");
     }
 }

@@ -12,15 +12,15 @@ servobench_config::parameters! {
         CARRIER "carrier of the inverter" = positive(Plain(&FREQUENCY), "16 kHz");
         /// Time after each change of a leg for which both of its devices are off
         DEAD_TIME "dead time" = not_negative(Plain(&TIME), "2 us");
-        /// Voltage that a device takes as soon as it conducts, transistor or diode
+        /// Constant voltage drop of a conducting device, transistor or diode
         DEVICE_DROP "device drop" = not_negative(Plain(&VOLTAGE), "1 V");
-        /// Resistance of a device that conducts, besides that
+        /// Resistance of a conducting device, in addition to that drop
         ON_RESISTANCE "on-resistance" = not_negative(Plain(&RESISTANCE), "30 mOhm");
     }
 }
 
 choices! {
-    /// How the inverter makes its voltage.
+    /// Model of the inverter's modulation.
     pub enum Modulation {
         /// the mean over the carrier
         Averaged = "averaged",

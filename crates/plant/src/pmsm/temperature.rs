@@ -33,7 +33,7 @@ servobench_config::parameters! {
         RESISTANCE_COEFFICIENT "temperature coefficient of the resistance" = not_negative(Plain(&PER_KELVIN), "0.00393 1/K");
         /// Change of the flux linkage per kelvin, as a part of it: from −0.001 to −0.0012 1/K of neodymium, −0.002 1/K of ferrite
         FLUX_COEFFICIENT "temperature coefficient of the flux linkage" = servobench_config::any(Plain(&PER_KELVIN), "-0.0011 1/K");
-        /// Temperature of what the housing stands in
+        /// Temperature of the housing's surroundings
         AMBIENT "ambient temperature" = temperature("40 degC");
         /// Thermal resistance from the winding to the housing
         TO_HOUSING "thermal resistance to the housing" = positive(Plain(&THERMAL_RESISTANCE), "0.6 K/W");
@@ -43,7 +43,7 @@ servobench_config::parameters! {
         WINDING_CAPACITY "heat capacity of the winding" = positive(Plain(&HEAT_CAPACITY), "120 J/K");
         /// Heat capacity of the housing, with the iron
         HOUSING_CAPACITY "heat capacity of the housing" = positive(Plain(&HEAT_CAPACITY), "1.6 kJ/K");
-        /// Highest temperature that the insulation of the winding bears: a winding that is hotter comes to harm
+        /// Highest temperature that the insulation of the winding withstands: a hotter winding is damaged
         LIMIT "temperature limit of the winding" = temperature("130 degC");
     }
 }

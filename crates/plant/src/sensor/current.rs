@@ -26,19 +26,19 @@ use servobench_config::{Bound, Measure, any, not_negative, positive};
 servobench_config::parameters! {
     /// A parameter of the current sensors.
     pub enum CurrentSensorParameter {
-        /// What the sensor of phase a reads at no current
+        /// Reading of the sensor of phase a without current
         OFFSET_A "offset of the current sensor a" = any(Plain(&CURRENT_OF_A_PHASE), "0.05 A");
-        /// What the sensor of phase b reads at no current
+        /// Reading of the sensor of phase b without current
         OFFSET_B "offset of the current sensor b" = any(Plain(&CURRENT_OF_A_PHASE), "-0.02 A");
-        /// Share by which the sensor of phase a reads too much
+        /// Share by which the sensor of phase a reads too high
         GAIN_ERROR_A "gain error of the current sensor a" = Measure { kind: Plain(&RATIO), bound: Bound::Within(-0.9, 9.0), example: "0.01" };
-        /// Share by which the sensor of phase b reads too much
+        /// Share by which the sensor of phase b reads too high
         GAIN_ERROR_B "gain error of the current sensor b" = Measure { kind: Plain(&RATIO), bound: Bound::Within(-0.9, 9.0), example: "-0.01" };
-        /// Noise of each sample, effective value
+        /// Noise of each sample, RMS value
         NOISE "noise of the current sensors" = not_negative(Plain(&CURRENT_NOISE), "20 mA");
         /// Largest current of the converter, in both directions
         RANGE "range of the current sensors" = positive(Plain(&CURRENT_OF_A_PHASE), "30 A");
-        /// How long before its tick the current is sampled
+        /// Time before its tick at which the current is sampled
         SHIFT "sampling shift of the current sensors" = not_negative(Plain(&TIME), "5 us");
     }
 }

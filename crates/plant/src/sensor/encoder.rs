@@ -28,7 +28,7 @@ const fn share(example: &'static str) -> Measure {
 }
 
 servobench_config::parameters! {
-    /// A parameter of an encoder, on the load in the axis coordinate, on the motor in its own.
+    /// A parameter of an encoder, on the load in the axis coordinate, on the motor in the motor coordinate.
     pub enum EncoderParameter {
         /// One increment
         STEP "encoder step" = positive(Axis(&POSITION), "0.1 um");
@@ -40,23 +40,23 @@ servobench_config::parameters! {
         OFFSET_SINE "offset of the encoder's sine" = share("0.01");
         /// Offset of the cosine, as a share of the amplitude
         OFFSET_COSINE "offset of the encoder's cosine" = share("-0.005");
-        /// By how much the sine is more than 90° from the cosine
+        /// Phase between sine and cosine in excess of 90°
         PHASE_ERROR "phase error of the encoder" = Measure { kind: Plain(&POSITION.rotary), bound: Bound::Within(-1.5, 1.5), example: "1 deg" };
-        /// Time from which on a track is lost
+        /// Time from which a track is lost
         LOST_AT "loss of the encoder's track" = not_negative(Plain(&TIME), "0.2 s");
-        /// How far the centre of the disc is from the axis of rotation
+        /// Distance of the disc's centre from the axis of rotation
         ECCENTRICITY "eccentricity of the encoder" = not_negative(Plain(&POSITION.linear), "10 um");
         /// Radius at which the disc is read
         RADIUS "radius of the encoder's disc" = positive(Plain(&POSITION.linear), "20 mm");
-        /// Angle at which the eccentricity makes no error
+        /// Angle at which the eccentricity causes no error
         ECCENTRICITY_ANGLE "angle of the encoder's eccentricity" = any(Plain(&POSITION.rotary), "30 deg");
-        /// What the encoder reads at zero
+        /// Reading of the encoder at zero
         ZERO_OFFSET "zero offset of the encoder" = any(Axis(&POSITION), "5 um");
-        /// Noise of each reading, effective value
+        /// Noise of each reading, RMS value
         NOISE "noise of the encoder" = not_negative(Axis(&POSITION), "10 nm");
-        /// Electrical angle by which the commutation of the drive is off
+        /// Electrical angle error of the drive's commutation
         COMMUTATION_OFFSET "commutation offset of the encoder" = any(Plain(&POSITION.rotary), "5 deg");
-        /// How old the position is that is read
+        /// Age of the position that is read
         LATENCY "latency of the encoder" = Measure { kind: Plain(&TIME), bound: Bound::Within(0.0, 0.01), example: "40 us" };
     }
 }
@@ -79,7 +79,7 @@ pub struct EncoderErrors {
     pub eccentricity: f64,
     /// Radius at which the disc is read (m); meaningless without eccentricity.
     pub radius: f64,
-    /// Angle at which the eccentricity makes no error (rad).
+    /// Angle at which the eccentricity causes no error (rad).
     pub eccentricity_angle: f64,
     /// Reading at zero (rad or m). The drive knows it for its commutation, but takes the axis to be there.
     pub zero: f64,

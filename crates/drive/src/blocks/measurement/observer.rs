@@ -30,7 +30,7 @@ servobench_config::parameters! {
     pub enum Parameter {
         /// Bandwidth ω_o: all three poles of the error
         OBSERVER_BANDWIDTH "bandwidth of the observer" = positive(Plain(&BANDWIDTH), "200 Hz");
-        /// Share of the observed disturbance that is taken off the effort
+        /// Share of the observed disturbance that is subtracted from the effort
         COMPENSATION "compensation of the disturbance" = Measure { kind: Plain(&RATIO), bound: Bound::Within(0.0, 1.0), example: "0.8" };
     }
 }

@@ -29,11 +29,11 @@ const fn share(low: f64, example: &'static str) -> Measure {
 servobench_config::parameters! {
     /// A parameter of the saturation.
     pub enum SaturationParameter {
-        /// Current in the q axis at which the iron saturates as `share` says; with i_d = 0
+        /// Current in the q axis for which `share` is given, with i_d = 0
         CURRENT "current of the saturation" = positive(Plain(&CURRENT), "30 Apk");
-        /// Torque or force per ampere that is left at that current, as a part of that without current: K_T(peak)/K_T(small)
+        /// Torque or force per ampere at that current, as a share of that without current: K_T(peak)/K_T(small)
         SHARE "share of the effort per ampere" = share(0.3, "0.85");
-        /// Part of the inductances that never saturates
+        /// Share of the inductances that never saturates
         RESIDUAL "residual share of the inductance" = share(0.0, "0.1");
     }
 }
