@@ -60,7 +60,7 @@ pub use stream::Interpolator;
 use servobench_config::Choice;
 
 servobench_config::choices! {
-    /// How the values between two slow samples are found; the table in the [module documentation](self) compares them.
+    /// Interpolation between two slow samples; the table in the [module documentation](self) compares them.
     pub enum Mode {
         /// position linear, velocity its slope; one period late
         Linear = "linear",

@@ -73,8 +73,8 @@ pub use second::Sides;
 pub use transition::Transition;
 
 servobench_config::choices! {
-    /// How much work a plan of order 4 may take. Of a thousand random plans all but two are the same with either; the others are of
-    /// states too near their velocity limit for the shortest way.
+    /// Amount of work for a plan of order 4. Of a thousand random plans all but two are the same with either; the others are of
+    /// states too near their velocity limit for the shortest profile.
     pub enum Effort default Fast {
         /// a bounded amount of work, for a control cycle
         Fast = "fast",

@@ -50,7 +50,7 @@ servobench_config::choices! {
     pub enum Shape named ShapeKind {
         /// acceleration as rectangular as `maximum_jerk` allows
         Trapezoid = "trapezoid",
-        /// acceleration with a jerk of its own
+        /// acceleration with a separately given jerk
         SCurve {
             /// Of the acceleration.
             acceleration: Jerk,

@@ -63,12 +63,12 @@ pub use cascade::{Along, Cascade};
 pub use shortest::Shortest;
 
 servobench_config::choices! {
-    /// How samples of the highest derivative become set-points. What the [`Cascade`] sends lags on the way by half a sample for each
-    /// derivative but one.
+    /// Set-points from samples of the highest derivative. Those of the [`Cascade`] lag in motion by half a sample for each derivative
+    /// but one.
     pub enum Execution default ExactHold {
         /// the exact polynomial, the highest derivative held: N samples, no lag
         ExactHold = "hold",
-        /// the forward-Euler cascade, each sample held until the next: at rest at the same sample, and 1.5 samples late on the way at
+        /// the forward-Euler cascade, each sample held until the next: at rest at the same sample, and 1.5 samples late in motion at
         /// order 4
         ForwardEuler = "euler",
     }

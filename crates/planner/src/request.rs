@@ -64,9 +64,9 @@ pub struct Grid {
 }
 
 servobench_config::choices! {
-    /// How the times of a move are made whole numbers of samples.
+    /// Rounding of the times of a move to whole numbers of samples.
     pub enum Sampling default Published {
-        /// time after time is rounded up, as it is published
+        /// each time rounded up in turn, as published
         Published = "published",
         /// the fewest samples that the published profile needs
         Fewest = "fewest",
@@ -82,12 +82,12 @@ impl Grid {
 }
 
 servobench_config::choices! {
-    /// Which profile goes from rest to rest: the one of Pietrusewicz et al. 2019, or the shortest, which of a sampled move is that of the
-    /// fewest samples, whatever its shape.
+    /// Profile of moves from rest to rest: the one of Pietrusewicz et al. 2019, or the shortest, for a sampled move that of the fewest
+    /// samples, whatever its shape.
     pub enum Method default Published {
         /// the published profile, 15 segments at order 4: a step through one moving average for each order
         Published = "published",
-        /// the shortest: up to 6.94 % less time at order 4 where velocity does not cruise
+        /// the shortest: up to 6.94 % less time at order 4 where the profile has no constant velocity
         Optimal = "optimal",
     }
 }

@@ -18,9 +18,9 @@ pub struct TableMove {
 }
 
 servobench_config::choices! {
-    /// Where the velocities at the points come from. At the first and the last one they are what the table says, zero unless it says.
+    /// Source of the velocities at the points. At the first and the last point they are those of the table, by default zero.
     pub enum Velocities named VelocitiesKind default Given {
-        /// the table's own; a point without one is approached linearly
+        /// those of the table; a point without one is approached linearly
         Given = "given",
         /// the mean of the segments before and behind
         Average = "average",
@@ -35,7 +35,7 @@ servobench_config::choices! {
 }
 
 servobench_config::choices! {
-    /// How a table is followed.
+    /// Method of following a table.
     pub enum Follow named FollowKind default Segments {
         /// along its cubic and linear segments (PVT, PT)
         Segments = "segments",
@@ -46,7 +46,7 @@ servobench_config::choices! {
         } = "plateaus",
         /// by profile velocities along the cubic spline, sent at `command_rate`
         Steps {
-            /// How often.
+            /// Commands per second.
             rate: CommandRate,
         } = "steps",
     }

@@ -4,7 +4,7 @@ use servobench_base::Shortest;
 use servobench_config::choices;
 
 choices! {
-    /// How the values of a range lie between its ends.
+    /// Spacing of the values of a range.
     pub enum Spacing default Linear {
         /// At equal distances.
         Linear = "linear",

@@ -7,11 +7,12 @@ use crate::sweep::Setting;
 use servobench_config::choices;
 
 choices! {
-    /// How the draws of a key spread over its distribution.
+    /// Sampling of a key's distribution.
     pub enum Method default LatinHypercube {
-        /// Each draw by itself.
+        /// Independent draws.
         Random = "random",
-        /// One draw in each of as many equally likely parts as there are draws, in a random order for each key: fewer draws tell as much.
+        /// One draw in each of as many equally likely parts as there are draws, in a random order for each key: fewer draws give as
+        /// much information.
         LatinHypercube = "latin-hypercube",
     }
 }

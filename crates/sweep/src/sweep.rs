@@ -9,7 +9,7 @@ use std::collections::HashSet;
 pub const MOST_POINTS: usize = 100_000_000;
 
 choices! {
-    /// How the values of several keys are combined.
+    /// Combination of the values of several keys.
     pub enum Arrangement default Grid {
         /// Each value of one key with each value of the others; those of the last key follow each other.
         Grid = "grid",
