@@ -120,114 +120,114 @@ pub use touch_probe::{AbortTrigger, AbortTriggerInputs, TouchProbe, TouchProbeIn
 
 list_inputs! {
     Position "position" changes InputType::Quantity(any(Axis(&POSITION), "250 mm")),
-        "Target position" + ", of MC_Home, MC_HomeDirect, MC_StepBlock and MC_SetPosition the position that the axis is given";
+        "Target position" + ", for MC_Home, MC_HomeDirect, MC_StepBlock and MC_SetPosition the new position of the axis";
     Distance "distance" changes InputType::Quantity(any(Axis(&POSITION), "-250 mm")), "Distance";
     Velocity "velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "30 m/min")),
-        "Velocity; of MC_MoveVelocity it may be negative";
+        "Velocity; for MC_MoveVelocity it may be negative";
     EndVelocity "end_velocity" changes InputType::Quantity(any(Axis(&VELOCITY), "5 m/min")),
-        "Velocity at the target, kept afterwards" + "; of MC_PositionProfile at its last position, 0 unless given";
+        "Velocity at the target, kept afterwards" + "; for MC_PositionProfile at its last position (default 0)";
     VelocityDifference "velocity_difference" changes InputType::Quantity(positive(Axis(&VELOCITY), "5 m/min")),
         "Largest velocity on top of the motion under way";
     Acceleration "acceleration" changes InputType::Quantity(positive(Axis(&ACCELERATION), "5 m/s2")), "Largest acceleration";
     Deceleration "deceleration" changes InputType::Quantity(positive(Axis(&ACCELERATION), "8 m/s2")),
-        "Largest deceleration" + "; as `acceleration` unless given";
+        "Largest deceleration" + " (default `acceleration`)";
     Jerk "jerk" changes InputType::Quantity(positive(Axis(&JERK), "50 m/s3")), "Largest jerk";
     Snap "snap" changes InputType::Quantity(positive(Axis(&SNAP), "1000 m/s4")),
         "Largest snap" + ", an input beside those of the standard";
     Direction "direction" changes InputType::Direction,
-        "Which way the axis goes" + ". Of a move to a position on a modulo axis, \"shortest\" unless given; otherwise \"positive\", \
-         and a negative velocity or torque goes the other way";
+        "Direction of the axis" + " (default \"shortest\" for a move to a position on a modulo axis, otherwise \"positive\", \
+         where a negative velocity or torque reverses it)";
     BufferMode "buffer_mode" stays InputType::BufferMode,
-        "What becomes of the motion under way" + "; \"aborting\" unless given";
+        "Treatment of the active motion" + " (default \"aborting\")";
     ContinuousUpdate "continuous_update" stays InputType::Flag,
-        "Whether `updates` count while `Execute` is TRUE" + "; they do not unless given";
-    Torque "torque" changes InputType::Quantity(any(Motor(&EFFORT), "2 Nm")), "Torque, of a linear motor the force";
+        "Applies `updates` while `Execute` is TRUE" + " (default false)";
+    Torque "torque" changes InputType::Quantity(any(Motor(&EFFORT), "2 Nm")), "Torque, for a linear motor the force";
     TorqueRamp "torque_ramp" changes InputType::Quantity(positive(Motor(&EFFORT_RATE), "10 Nm/s")),
-        "Largest change of the torque" + "; at once unless given";
+        "Largest change of the torque" + " (default unlimited)";
     TorqueLimit "torque_limit" stays InputType::Quantity(positive(Motor(&EFFORT), "1 Nm")),
-        "Largest torque of MC_StepBlock (6072h), at which it is held by an obstacle";
+        "Largest torque of MC_StepBlock (6072h), at which an obstacle counts as found";
     TorqueTolerance "torque_tolerance" stays InputType::Quantity(positive(Motor(&EFFORT), "0.05 Nm")),
-        "By how much the torque may be below that at an obstacle" + "; by 5 % of it unless given";
+        "Amount by which the torque may be below that at an obstacle" + " (default 5 % of it)";
     DetectionVelocityLimit "detection_velocity_limit" stays InputType::Quantity(positive(Axis(&VELOCITY), "1 mm/s")),
-        "Velocity below which the axis is held by an obstacle";
+        "Velocity below which an obstacle holds the axis";
     DetectionVelocityTime "detection_velocity_time" stays InputType::Quantity(not_negative(Plain(&TIME), "50 ms")),
-        "For how long it is to be that slow";
+        "Time for which the axis must be that slow";
     TimeLimit "time_limit" stays InputType::Quantity(positive(Plain(&TIME), "20 s")),
-        "Longest time of MC_StepBlock" + "; without an end unless given";
+        "Longest time of MC_StepBlock" + " (default unlimited)";
     DistanceLimit "distance_limit" stays InputType::Quantity(positive(Axis(&POSITION), "600 mm")),
-        "Longest way of MC_StepBlock" + "; without an end unless given";
+        "Longest distance of MC_StepBlock" + " (default unlimited)";
     VelocityFactor "velocity_factor" changes InputType::Quantity(not_negative(Plain(&RATIO), "50 %")),
-        "Factor of all velocities" + "; 1 unless given";
+        "Factor of all velocities" + " (default 1)";
     AccelerationFactor "acceleration_factor" changes InputType::Quantity(positive(Plain(&RATIO), "50 %")),
-        "Factor of all accelerations and decelerations" + "; 1 unless given";
+        "Factor of all accelerations and decelerations" + " (default 1)";
     JerkFactor "jerk_factor" changes InputType::Quantity(positive(Plain(&RATIO), "50 %")),
-        "Factor of all jerks" + "; 1 unless given";
+        "Factor of all jerks" + " (default 1)";
     Relative "relative" stays InputType::Flag,
-        "Whether MC_SetPosition shifts the position by the given one" + "; it does not unless given";
+        "MC_SetPosition shifts the position by the given one" + " (default false)";
     SettlingTime "settling_time" stays InputType::Quantity(positive(Plain(&TIME), "50 ms")),
-        "From the end of a profile until the generator is ready for the next";
+        "Time from the end of a profile until the generator is ready for the next";
     Reversed "reversed" stays InputType::Flag,
-        "Whether the motor is mounted the other way round" + "; it is not unless given";
+        "Motor mounted the other way round" + " (default false)";
     EnablePositive "enable_positive" changes InputType::Flag,
-        "Whether MC_Power permits motion upwards" + "; it does unless given";
+        "MC_Power permits motion upwards" + " (default true)";
     EnableNegative "enable_negative" changes InputType::Flag,
-        "Whether MC_Power permits motion downwards" + "; it does unless given";
+        "MC_Power permits motion downwards" + " (default true)";
     Table "table" stays InputType::Table,
-        "Table of a profile, whose times count from its start; a first row at 0 says where the axis is then. The file of \
+        "Table of a profile, whose times count from its start; a first row at 0 gives the position of the axis then. The file of \
          MC_PositionProfile has the columns `time` and `position`, that of MC_VelocityProfile `velocity`, that of \
          MC_AccelerationProfile `acceleration`. Positions are followed along the cubic spline, or by `follow = \"plateaus\"`";
     TimeScale "time_scale" stays InputType::Quantity(positive(Plain(&RATIO), "2")),
-        "Factor of the times of a table" + "; 1 unless given";
+        "Factor of the times of a table" + " (default 1)";
     ValueScale "value_scale" stays InputType::Quantity(any(Plain(&RATIO), "-0.5")),
-        "Factor of the values of a table, not 0" + "; 1 unless given";
+        "Factor of the values of a table, not 0" + " (default 1)";
     PositionOffset "position_offset" stays InputType::Quantity(any(Axis(&POSITION), "10 mm")),
-        "What is then added to the positions of a table" + "; nothing unless given";
+        "Offset then added to the positions of a table" + " (default 0)";
     VelocityOffset "velocity_offset" stays InputType::Quantity(any(Axis(&VELOCITY), "1 m/min")),
-        "What is then added to the velocities of a table" + "; nothing unless given";
+        "Offset then added to the velocities of a table" + " (default 0)";
     AccelerationOffset "acceleration_offset" stays InputType::Quantity(any(Axis(&ACCELERATION), "1 m/s2")),
-        "What is then added to the accelerations of a table" + "; nothing unless given";
+        "Offset then added to the accelerations of a table" + " (default 0)";
     Parameter "parameter" stays InputType::Choice(&const { names::<AxisParameter, { AxisParameter::ALL.len() }>() }),
         "Parameter of the axis that is a number";
     BoolParameter "bool_parameter" stays InputType::Choice(&const { names::<AxisBoolParameter, { AxisBoolParameter::ALL.len() }>() }),
         "Parameter of the axis that is TRUE or FALSE";
-    Value "value" stays InputType::ParameterValue, "What is written to `parameter`";
-    BoolValue "bool_value" stays InputType::Flag, "What is written to `bool_parameter` or to the digital output";
+    Value "value" stays InputType::ParameterValue, "Value written to `parameter`";
+    BoolValue "bool_value" stays InputType::Flag, "Value written to `bool_parameter` or to the digital output";
     InputNumber "input_number" stays InputType::Whole(0, 31),
         "Bit of the digital inputs of the drive (60FDh)" + ": 0 negative and 1 positive limit switch, 2 home switch";
     OutputNumber "output_number" stays InputType::Whole(0, 31), "Bit of the digital outputs of the drive (60FEh)";
-    Switches "switches" stays InputType::Switches, "Switches of MC_DigitalCamSwitch, each with a track and where it is TRUE";
+    Switches "switches" stays InputType::Switches, "Switches of MC_DigitalCamSwitch, each with a track and its positions";
     TrackOptions "track_options" stays InputType::Tracks,
-        "Compensations and hysteresis of tracks of MC_DigitalCamSwitch" + "; a track without has none";
+        "Compensations and hysteresis of tracks of MC_DigitalCamSwitch" + " (default none)";
     EnableMask "enable_mask" changes InputType::Whole(0, u32::MAX),
-        "Tracks of MC_DigitalCamSwitch that are enabled, track k by bit k" + "; all unless given";
+        "Tracks of MC_DigitalCamSwitch that are enabled, track k by bit k" + " (default all)";
     ValueSource "value_source" stays InputType::Choice(&const { names::<ValueSource, { ValueSource::ALL.len() }>() }),
-        "Whose position and velocity switch the outputs" + "; those of the set-point unless given";
+        "Source of the position and velocity that switch the outputs" + " (default \"set-point\")";
     TriggerInput "trigger_input" stays InputType::Choice(&const { names::<ProbeTrigger, { ProbeTrigger::ALL.len() }>() }),
-        "What has the drive record the position of the axis";
+        "Trigger on which the drive records the position of the axis";
     FirstPosition "first_position" stays InputType::Quantity(any(Axis(&POSITION), "90 mm")),
-        "Beginning of the window in which a trigger counts" + "; everywhere unless given";
+        "Beginning of the window in which a trigger counts" + " (default everywhere)";
     LastPosition "last_position" stays InputType::Quantity(any(Axis(&POSITION), "110 mm")),
-        "End of the window in which a trigger counts" + "; everywhere unless given";
+        "End of the window in which a trigger counts" + " (default everywhere)";
     MoveType "move_type" stays InputType::Choice(&const { names::<MoveType, { MoveType::ALL.len() }>() }),
-        "Whether `position` of MAM is where to or how far" + "; where to unless given";
+        "Meaning of `position` of MAM, a target or a distance" + " (default \"absolute\")";
     Shape "shape" stays InputType::Choice(&const { names::<ShapeKind, { ShapeKind::ALL.len() }>() }),
-        "Shape of the velocity of MAM" + "; \"trapezoid\" unless given";
+        "Shape of the velocity of MAM" + " (default \"trapezoid\")";
     JerkOfTime "jerk_of_time" stays InputType::Quantity(positive(Plain(&RATIO), "25 %")),
-        "Jerk as the part of the ramp in which the acceleration changes" + "; of an S-curve all of it unless one is given";
+        "Jerk as the part of the ramp in which the acceleration changes" + " (default 100 % for an S-curve, if no jerk is given)";
     JerkOfMaximum "jerk_of_maximum" stays InputType::Quantity(positive(Plain(&RATIO), "60 %")),
-        "Jerk as a part of that of the axis";
+        "Jerk as a share of that of the axis";
     JerkTime "jerk_time" stays InputType::Quantity(positive(Plain(&TIME), "2 ms")),
         "Jerk as the time in which the acceleration rises, and falls";
     DecelerationJerk "deceleration_jerk" stays InputType::Quantity(positive(Axis(&JERK), "80 m/s3")),
-        "Jerk of the deceleration" + "; as that of the acceleration unless one is given";
+        "Jerk of the deceleration" + " (default that of the acceleration)";
     DecelerationJerkOfTime "deceleration_jerk_of_time" stays InputType::Quantity(positive(Plain(&RATIO), "50 %")),
-        "The same as the part of its ramp in which it changes";
+        "Jerk of the deceleration as the part of its ramp in which it changes";
     DecelerationJerkOfMaximum "deceleration_jerk_of_maximum" stays InputType::Quantity(positive(Plain(&RATIO), "60 %")),
-        "The same as a part of that of the axis";
+        "Jerk of the deceleration as a share of that of the axis";
     DecelerationJerkTime "deceleration_jerk_time" stays InputType::Quantity(positive(Plain(&TIME), "2 ms")),
-        "The same as the time in which it rises, and falls";
+        "Jerk of the deceleration as the time in which it rises, and falls";
     Order "order" stays InputType::Whole(2, 4),
-        "Which derivative of the position Profile4th switches: 2 the acceleration, 3 the jerk, 4 the snap" + "; 4 unless given";
+        "Derivative of the position that Profile4th switches: 2 the acceleration, 3 the jerk, 4 the snap" + " (default 4)";
 }
 
 list_outputs! {
@@ -235,16 +235,16 @@ list_outputs! {
     Busy "Busy" Flag "the block is not finished";
     Active "Active" Flag "the block controls the axis";
     CommandAborted "CommandAborted" Flag "another command has taken over";
-    Error "Error" Flag "something is wrong";
-    ErrorId "ErrorID" Number "what is wrong";
+    Error "Error" Flag "the block has an error";
+    ErrorId "ErrorID" Number "the code of the error";
     Status "Status" Flag "the power is on";
     Valid "Valid" Flag "the other outputs are valid";
     InVelocity "InVelocity" Flag "the commanded velocity is reached";
     InEndVelocity "InEndVelocity" Flag "the target is passed at its velocity";
     InTorque "InTorque" Flag "the commanded torque is reached";
     ProfileCompleted "ProfileCompleted" Flag "the profile is over";
-    CoveredDistance "CoveredDistance" Number "how far the motion on top has come";
-    Enabled "Enabled" Flag "the override holds";
+    CoveredDistance "CoveredDistance" Number "distance covered by the superimposed motion";
+    Enabled "Enabled" Flag "the override is active";
     Ready "Ready" Flag "the generator takes a new command";
     ErrorStop "ErrorStop" Flag "the axis is in the state ErrorStop";
     Disabled "Disabled" Flag "the axis is in the state Disabled";
@@ -276,15 +276,15 @@ list_outputs! {
     Value "Value" Number "the value of the parameter";
     BoolValue "Value" Flag "the value of the parameter, input or output";
     InOperation "InOperation" Flag "the tracks that are enabled are switched";
-    RecordedPosition "RecordedPosition" Number "where the axis was when the trigger came";
+    RecordedPosition "RecordedPosition" Number "position of the axis at the trigger";
     Acceleration "Acceleration" Number "the acceleration of the set-point";
-    Added "pref_add" Number "what the move adds to the position";
+    Added "pref_add" Number "position added by the move";
     Jerk "Jerk" Number "the jerk of the set-point";
     Snap "dJerk" Number "the snap of the set-point";
     MoveEnabled "EN" Flag "the block is executed";
     MoveBegun "DN" Flag "the move has begun";
-    MoveFailed "ER" Flag "something is wrong";
-    InProcess "IP" Flag "the move is under way";
+    MoveFailed "ER" Flag "the block has an error";
+    InProcess "IP" Flag "the move is in progress";
     MoveActive "AC" Flag "the move controls the axis";
     ProcessComplete "PC" Flag "the axis is at its target";
 }
@@ -312,7 +312,7 @@ list_blocks! {
         "moves by a distance on top of the motion under way";
     HaltSuperimposed: HaltSuperimposed, "MC_HaltSuperimposed",
         "brakes the motion on top, and leaves the one below alone";
-    MoveVelocity: MoveVelocity, "MC_MoveVelocity" command, "goes over to a velocity and keeps it";
+    MoveVelocity: MoveVelocity, "MC_MoveVelocity" command, "changes to a velocity and keeps it";
     MoveContinuousAbsolute: MoveContinuousAbsolute, "MC_MoveContinuousAbsolute" command,
         "passes a position at a velocity and keeps that";
     MoveContinuousRelative: MoveContinuousRelative, "MC_MoveContinuousRelative" command,
@@ -325,25 +325,25 @@ list_blocks! {
     SetPosition: SetPosition, "MC_SetPosition", "gives the axis a position without moving it";
     SetOverride: SetOverride, "MC_SetOverride",
         "scales velocities, accelerations and jerks as long as it is enabled";
-    TorqueControl: TorqueControl, "MC_TorqueControl" command, "goes over to a torque or force and keeps it";
-    ReadStatus: ReadStatus, "MC_ReadStatus", "tells the state of the axis";
-    ReadMotionState: ReadMotionState, "MC_ReadMotionState", "tells whether the axis speeds up or slows down, and which way";
-    ReadAxisInfo: ReadAxisInfo, "MC_ReadAxisInfo", "tells switches, power, reference and warnings of the axis";
-    ReadDigitalInput: ReadDigitalInput, "MC_ReadDigitalInput", "tells a digital input of the drive";
-    ReadDigitalOutput: ReadDigitalOutput, "MC_ReadDigitalOutput", "tells a digital output of the drive";
+    TorqueControl: TorqueControl, "MC_TorqueControl" command, "changes to a torque or force and keeps it";
+    ReadStatus: ReadStatus, "MC_ReadStatus", "reads the state of the axis";
+    ReadMotionState: ReadMotionState, "MC_ReadMotionState", "reads whether the axis accelerates or decelerates, and its direction";
+    ReadAxisInfo: ReadAxisInfo, "MC_ReadAxisInfo", "reads switches, power, reference and warnings of the axis";
+    ReadDigitalInput: ReadDigitalInput, "MC_ReadDigitalInput", "reads a digital input of the drive";
+    ReadDigitalOutput: ReadDigitalOutput, "MC_ReadDigitalOutput", "reads a digital output of the drive";
     WriteDigitalOutput: WriteDigitalOutput, "MC_WriteDigitalOutput", "sets a digital output of the drive";
     DigitalCamSwitch: DigitalCamSwitch<Rows<CamState>>, "MC_DigitalCamSwitch",
         "switches digital outputs of the drive by the position of the axis";
-    TouchProbe: TouchProbe, "MC_TouchProbe", "records where the axis is when a trigger comes";
-    AbortTrigger: AbortTrigger, "MC_AbortTrigger", "waits for the trigger no more";
-    ReadParameter: ReadParameter, "MC_ReadParameter", "tells a parameter of the axis that is a number";
-    ReadBoolParameter: ReadBoolParameter, "MC_ReadBoolParameter", "tells a parameter of the axis that is TRUE or FALSE";
+    TouchProbe: TouchProbe, "MC_TouchProbe", "records the position of the axis at a trigger";
+    AbortTrigger: AbortTrigger, "MC_AbortTrigger", "stops waiting for the trigger";
+    ReadParameter: ReadParameter, "MC_ReadParameter", "reads a parameter of the axis that is a number";
+    ReadBoolParameter: ReadBoolParameter, "MC_ReadBoolParameter", "reads a parameter of the axis that is TRUE or FALSE";
     WriteParameter: WriteParameter, "MC_WriteParameter", "sets a parameter of the axis that is a number";
     WriteBoolParameter: WriteBoolParameter, "MC_WriteBoolParameter", "sets a parameter of the axis that is TRUE or FALSE";
-    ReadAxisError: ReadAxisError, "MC_ReadAxisError", "tells the error of the axis";
-    ReadActualPosition: ReadActualPosition, "MC_ReadActualPosition", "tells the actual position";
-    ReadActualVelocity: ReadActualVelocity, "MC_ReadActualVelocity", "tells the actual velocity";
-    ReadActualTorque: ReadActualTorque, "MC_ReadActualTorque", "tells the actual torque or force";
+    ReadAxisError: ReadAxisError, "MC_ReadAxisError", "reads the error of the axis";
+    ReadActualPosition: ReadActualPosition, "MC_ReadActualPosition", "reads the actual position";
+    ReadActualVelocity: ReadActualVelocity, "MC_ReadActualVelocity", "reads the actual velocity";
+    ReadActualTorque: ReadActualTorque, "MC_ReadActualTorque", "reads the actual torque or force";
     AxisMove: AxisMove, "MAM" command, "Rockwell's axis move: from rest to rest by a trapezoid or an S-curve";
     Profile4th: Profile4th, "Profile4th" command, "the generator of fourth order as a block: moves to a position";
 }

@@ -11,13 +11,13 @@ servobench_config::choices! {
     pub enum BufferMode default Aborting {
         /// the active motion is aborted
         Aborting = "aborting",
-        /// the motion under way ends first
+        /// the active motion ends first
         Buffered = "buffered",
         /// its target is passed at the lower of both velocities
         BlendingLow = "blending-low",
-        /// its target is passed at its own velocity
+        /// its target is passed at the velocity of the active motion
         BlendingPrevious = "blending-previous",
-        /// its target is passed at the velocity of the next
+        /// its target is passed at the velocity of this command
         BlendingNext = "blending-next",
         /// its target is passed at the higher of both velocities
         BlendingHigh = "blending-high",
@@ -58,9 +58,9 @@ servobench_config::choices! {
         Positive = "positive",
         /// downwards
         Negative = "negative",
-        /// the shorter way of a modulo axis
+        /// the shorter distance on a modulo axis
         Shortest = "shortest",
-        /// as the axis goes already
+        /// the direction in which the axis already moves
         Current = "current",
     }
 }

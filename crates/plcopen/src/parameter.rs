@@ -44,11 +44,11 @@ servobench_config::choices! {
     /// A BOOL parameter of the axis.
     #[derive(Stateful)]
     pub enum AxisBoolParameter {
-        /// EnableLimitPos (4): whether the positive software limit holds
+        /// EnableLimitPos (4): TRUE if the positive software limit is active
         EnablePositiveLimit = "enable-limit-pos",
-        /// EnableLimitNeg (5): whether the negative software limit holds
+        /// EnableLimitNeg (5): TRUE if the negative software limit is active
         EnableNegativeLimit = "enable-limit-neg",
-        /// EnablePosLagMonitoring (6): whether the following error is monitored
+        /// EnablePosLagMonitoring (6): TRUE if the following error is monitored
         EnableLagMonitoring = "enable-pos-lag-monitoring",
     }
 }

@@ -7,7 +7,7 @@ servobench_config::choices! {
     /// Velocity from which the acceleration of a velocity command is computed, so that the drive reaches the next velocity a cycle later.
     #[derive(Stateful)]
     pub enum RampStart default SetPoint {
-        /// the velocity of the set-point before: what the drive has when it obeys
+        /// the velocity of the set-point before, which the drive has if it follows exactly
         SetPoint = "set-point",
         /// the velocity that the drive reports
         Actual = "actual",

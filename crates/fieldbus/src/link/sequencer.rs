@@ -18,7 +18,7 @@ servobench_config::choices! {
     pub enum Sequencing default Strict {
         /// state after state of the power state machine, each awaited
         Strict = "strict",
-        /// the last controlword at once, only the end awaited
+        /// the last controlword at once, only the final state awaited
         Simplified = "simplified",
     }
 }
