@@ -58,9 +58,9 @@ impl Iteration {
 choices! {
     /// The kinds of [`Method`]s.
     pub enum MethodKind default GaussSeidel {
-        /// all step at once, with what the others gave at the start of the step
+        /// all step at once, with the others' outputs at the start of the step
         Jacobi = "jacobi",
-        /// one after the other, each with what those before it have just given
+        /// one after the other, each with the new outputs of those before it
         GaussSeidel = "gauss-seidel",
         /// steps are repeated until inputs and outputs agree
         Iterated = "iterated",

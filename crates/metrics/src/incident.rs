@@ -18,19 +18,19 @@ use std::fmt;
 servobench_config::choices! {
     /// Incidents of an axis and its drive.
     pub enum Incident {
-        /// the load meets an end stop, or a joint of a user's own model the end of its range
+        /// the load meets an end stop, or a joint of a user's model the end of its range
         EndStop = "end_stop",
         /// the winding is hotter than `motor.thermal.limit`
         WindingTemperature = "winding_temperature",
         /// a point is missing in the trajectory buffer of the drive
         MissingPoint = "missing_point",
-        /// the trajectory buffer of the drive is sent more points than it holds
+        /// the trajectory buffer of the drive receives more points than it holds
         BufferOverflow = "buffer_overflow",
         /// the trajectory buffer of the drive runs out of points
         BufferUnderflow = "buffer_underflow",
         /// a limit of the drive is active (bit 11 of the statusword)
         InternalLimit = "internal_limit",
-        /// a `[[bus.fault]]` of the scenario concerns frames, or cycles of the motion task
+        /// a `[[bus.fault]]` of the scenario affects frames, or cycles of the motion task
         BusFault = "bus_fault",
     }
 }

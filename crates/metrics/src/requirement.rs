@@ -70,17 +70,17 @@ macro_rules! requirements {
 }
 
 requirements! {
-    Follows "follows" "the load goes along with the positions that are requested",
+    Follows "follows" "the load follows the requested positions",
     Arrives "arrives" "the load rests at each target",
-    Stands "stands" "the axis stands before its first motion",
-    Velocity "velocity" "the load has each velocity that is requested and held",
-    Effort "effort" "the motor gives each torque or force that is requested",
+    Stands "stands" "the axis is at rest before its first motion",
+    Velocity "velocity" "the load reaches each velocity that is requested and held",
+    Effort "effort" "the motor gives each requested torque or force",
     Stopped "stopped" "the axis comes to rest after each stop",
     Executed "executed" "every motion and every call is executed and ends without an error",
-    NoFault "no_fault" "axis, drive and link have no fault but those that are expected",
-    Stable "stable" "the loop is stable, and no oscillation grows or goes from limit to limit",
-    Rings "rings" "after a motion nothing goes on to swing",
-    NoHarm "no_harm" "no harm comes to machine, motor or trajectory but what is expected",
+    NoFault "no_fault" "axis, drive and link have no faults except expected ones",
+    Stable "stable" "the loop is stable, and no oscillation grows or alternates between limits",
+    Rings "rings" "no oscillation persists after a motion",
+    NoHarm "no_harm" "machine, motor and trajectory come to no harm except expected incidents",
     Bounded "bounded" "positions stay finite and within a multiple of the range of the program",
 }
 
