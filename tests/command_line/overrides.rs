@@ -58,7 +58,7 @@ fn what_is_no_override_is_a_mistake_of_the_command_line() {
     let output = servobench(&["run", "--set", "jerk", "--jobs", "0"]);
     assert_eq!(code(&output), 2);
     let said = said(&output);
-    for expected in ["invalid value '0' for '--jobs <N>'", "'--set <KEY=VALUE>': there is no `=`"] {
+    for expected in ["invalid value '0' for '--jobs <N>'", "'--set <KEY=VALUE>': missing `=`"] {
         assert!(said.contains(expected), "{expected} in:\n{said}");
     }
 }

@@ -63,7 +63,7 @@ fn what_it_names_is_looked_for_from_the_current_folder() {
     let output = fed(&["check", "-"], text.as_bytes(), work.path());
     assert_eq!(code(&output), 0, "{}", said(&output));
     let elsewhere = fed(&["check", "-"], text.as_bytes(), &repository());
-    assert!(code(&elsewhere) == 2 && said(&elsewhere).contains("there is no model `own`"), "{}", said(&elsewhere));
+    assert!(code(&elsewhere) == 2 && said(&elsewhere).contains("unknown model `own`"), "{}", said(&elsewhere));
 }
 
 #[test]

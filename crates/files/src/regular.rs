@@ -80,7 +80,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`open`]; [`ErrorKind::InvalidData`] when it is not in UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
-    let not_text = |_| io::Error::new(ErrorKind::InvalidData, "it is no text in UTF-8");
+    let not_text = |_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8 text");
     String::from_utf8(read(path, most)?).map_err(not_text)
 }
 
@@ -152,7 +152,7 @@ mod tests {
         let endless = read(Path::new("/proc/self/maps"), 9).unwrap_err();
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
         std::fs::write(&path, [0xff]).unwrap();
-        assert_eq!(read_text(&path, 9).unwrap_err().to_string(), "it is no text in UTF-8");
+        assert_eq!(read_text(&path, 9).unwrap_err().to_string(), "it is not UTF-8 text");
     }
 
     #[test]

@@ -77,7 +77,7 @@ pub fn root_of(folder: &Path, given: Option<&Path>) -> io::Result<PathBuf> {
         let project = own.ancestors().find(|above| above.join(PROJECT).symlink_metadata().is_ok());
         project.map_or_else(|| own.clone(), Path::to_owned)
     };
-    if root.is_dir() { Ok(root) } else { Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder")) }
+    if root.is_dir() { Ok(root) } else { Err(io::Error::new(io::ErrorKind::NotADirectory, "it is not a folder")) }
 }
 
 impl FileAccess {
@@ -157,8 +157,8 @@ impl FileAccess {
             Arc::clone(text)
         } else {
             let bytes = read(&real, self.left(role)).map_err(|error| self.unreadable(path, error))?;
-            let text = String::from_utf8(bytes)
-                .map_err(|_| Refusal::Unreadable(io::Error::other("it is no text in UTF-8")))?;
+            let text =
+                String::from_utf8(bytes).map_err(|_| Refusal::Unreadable(io::Error::other("it is not UTF-8 text")))?;
             self.total += text.len() as u64;
             let text: Arc<str> = text.into();
             self.texts.insert(real.clone(), Arc::clone(&text));

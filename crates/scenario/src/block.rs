@@ -24,7 +24,7 @@ impl Field for BlockName {
         let found = Self::from_name(text);
         if found.is_none() {
             let names = Self::ALL.iter().map(|block| block.name());
-            report.error(node.span, format!("there is no function block \"{text}\""), suggestion(text, names));
+            report.error(node.span, format!("unknown function block \"{text}\""), suggestion(text, names));
         }
         found
     }

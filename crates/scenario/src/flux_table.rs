@@ -106,7 +106,7 @@ pub enum FluxTableMistake {
     #[error("more than {MOST_ROWS} rows: leave out currents between which the flux linkages are nearly straight")]
     TooMany,
     /// A pair of currents has no row.
-    #[error("there is no row for i_d = {d} A and i_q = {q} A (peak): every i_d needs a row for every i_q")]
+    #[error("missing row for i_d = {d} A and i_q = {q} A (peak): every i_d needs a row for every i_q")]
     Hole {
         /// i_d.
         d: f64,
@@ -265,7 +265,7 @@ fn number(scale: &Scale, text: &str) -> Result<f64, &'static str> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => scale.value(text),
         Ok(_) => Err("the number must be finite"),
-        Err(_) => Err("write a number like `12.5`, its unit stands in the heading"),
+        Err(_) => Err("write a number like `12.5`; its unit is in the heading"),
     }
 }
 
@@ -302,7 +302,7 @@ mod tests {
             ("1,-2,20,.11", "1,-2,nan,.11", "the number must be finite"),
             ("1,-2,20,.11", "1,-2,1e40,.11", "the number is too large"),
             ("1,-2,20,.11", "0,-2,20,.11", "4:1: the currents of this row are those of line 2, too"),
-            ("1,-2,20,.11", "", "there is no row for i_d = -2 A and i_q = 1.41"),
+            ("1,-2,20,.11", "", "missing row for i_d = -2 A and i_q = 1.41"),
         ] {
             let said = read_flux_table(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();
             assert!(said.contains(expected), "{to}: {said}");

@@ -24,12 +24,12 @@ pub(crate) fn newer(root: &Table) -> Option<Diagnostic> {
 /// Warns of the changed meaning of a file of an older format.
 pub(crate) fn warn_of_older(root: &Table, report: &mut Report) {
     let Some((node, 1)) = number(root) else { return };
-    let message = "format 1: a run passed when its limits were kept; since format 2 it is held to requirements too (arrives, \
+    let message = "format 1: a run passed if it kept its limits; since format 2 it must also meet requirements (arrives, \
                    executed, no_fault, stable, bounded) and may fail where it passed";
     report.warning(
         node.span,
         message,
-        "lift what is not meant by its name in `[requirements]`, and write `format = 2`",
+        "lift the requirements that are not meant, by name in `[requirements]`, and write `format = 2`",
     );
 }
 
@@ -64,7 +64,10 @@ mod tests {
     fn an_older_format_is_read_with_a_warning_that_says_what_has_changed() {
         let said = said(&format!("format = 1\n{TEXT}"));
         assert_eq!(said.len(), 1, "{said:?}");
-        assert!(said[0].starts_with("a.toml:1:10: format 1: ") && said[0].contains("held to requirements"), "{said:?}");
+        assert!(
+            said[0].starts_with("a.toml:1:10: format 1: ") && said[0].contains("must also meet requirements"),
+            "{said:?}"
+        );
     }
 
     /// No further mistakes are reported: keys of a later format are not mistakes.

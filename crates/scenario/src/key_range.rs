@@ -28,7 +28,7 @@ impl FromStr for KeyRange {
         let (key, range) = text.split_once('=').ok_or_else(|| wrong(format!("`{text}` has no `=`")))?;
         let key = key.trim().to_owned();
         if key.is_empty() {
-            return Err(wrong(format!("`{text}` names no key")));
+            return Err(wrong(format!("`{text}` does not name a key")));
         }
         let (ends, unit) = if let Some((low, high)) = range.split_once("..") {
             let ((low, own), (high, unit)) = (number(low)?, number(high)?);
@@ -45,7 +45,7 @@ impl FromStr for KeyRange {
             };
             ([middle - off, middle + off], unit)
         } else {
-            return Err(wrong(format!("`{range}` is no range")));
+            return Err(wrong(format!("`{range}` is not a range")));
         };
         if ends[0] > ends[1] || !ends.iter().all(|end| end.is_finite()) {
             return Err(wrong(format!(
@@ -60,7 +60,7 @@ impl FromStr for KeyRange {
 fn number(text: &str) -> Result<(f64, String), KeyRangeError> {
     match amount(text) {
         Value::Number(number, unit) => Ok((number, unit)),
-        Value::Text(text) => Err(KeyRangeError(format!("`{}` is no number with a unit", text.trim()))),
+        Value::Text(text) => Err(KeyRangeError(format!("`{}` is not a number with a unit", text.trim()))),
     }
 }
 

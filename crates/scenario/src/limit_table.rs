@@ -23,11 +23,7 @@ impl Field for LimitTable {
         for entry in &table.entries {
             let Ok(metric) = entry.key.parse::<Name>() else {
                 let names = Name::ALL.iter().map(|metric| metric.as_str());
-                report.error(
-                    entry.key_span,
-                    format!("there is no metric `{}`", entry.key),
-                    suggestion(&entry.key, names),
-                );
+                report.error(entry.key_span, format!("unknown metric `{}`", entry.key), suggestion(&entry.key, names));
                 continue;
             };
             let limit = limit(&format!("{path}.{metric}"), metric, &entry.node, report);

@@ -91,7 +91,7 @@ impl Named {
             Ok(document) => document,
             Err(error) => {
                 let why = with_short_quotes(&error.to_string());
-                return refuse(format!("`{}` is no well-formed XML: {why}", path.display()));
+                return refuse(format!("`{}` is not well-formed XML: {why}", path.display()));
             }
         };
         self.size.add(&document);
@@ -104,7 +104,7 @@ impl Named {
                 if key.starts_with("file") && !value.is_empty() {
                     if value.contains('\0') || value.len() > 4096 {
                         return refuse(format!(
-                            "`{}` names a file `{}`, which no file is called",
+                            "`{}` names a file `{}`, which cannot be the name of a file",
                             path.display(),
                             quoted(value)
                         ));
@@ -124,7 +124,7 @@ impl Named {
             [("files", self.assets.len() + models.len(), MOST_NAMES), ("folders of files", folders, MOST_FOLDERS)]
         {
             if count > most {
-                return refuse(format!("`{}` names {count} {what}, it may name {most}", path.display()));
+                return refuse(format!("`{}` names {count} {what}, at most {most} are allowed", path.display()));
             }
         }
         Ok(models)

@@ -84,8 +84,7 @@ pub(crate) fn lay_on_models(
             }
         };
         if model.displaces {
-            let message =
-                format!("`{}` stands in the place of the built-in model `{name}`, and differs from it", model.name);
+            let message = format!("`{}` replaces the built-in model `{name}`, and differs from it", model.name);
             report.warning(span, message, "give it another name if the built-in one is meant");
         }
         let id = sources.add(model.name, model.text, model.place);
@@ -94,7 +93,7 @@ pub(crate) fn lay_on_models(
         broken.extend(parsed.broken.into_iter().map(|line| (id, line)));
         let mut below = parsed.table;
         if let Some(entry) = below.entries.iter().find(|entry| entry.key == "model") {
-            report.error(entry.key_span, "a model cannot stand on another model", "give its values here");
+            report.error(entry.key_span, "a model cannot be based on another model", "give its values here");
         }
         below.overlay(std::mem::take(table));
         *table = below;
@@ -111,10 +110,7 @@ fn find(
 ) -> Result<Model, (String, String)> {
     if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)) || name.starts_with('.')
     {
-        return Err((
-            format!("`{name}` is no name of a model"),
-            "letters, digits, `-`, `_` and `.` make a name".into(),
-        ));
+        return Err((format!("`{name}` is not a model name"), "a name has letters, digits, `-`, `_` and `.`".into()));
     }
     let file_name = format!("{name}.toml");
     let folders: Vec<PathBuf> = match place {
@@ -142,10 +138,7 @@ fn find(
         return Ok(Model { name, text: text.to_owned(), place: Place::Embedded(folder.into()), displaces: false });
     }
     let known = known(folder, &folders);
-    Err((
-        format!("there is no model `{name}` in `models/{folder}`"),
-        suggestion(name, known.iter().map(String::as_str)),
-    ))
+    Err((format!("unknown model `{name}` in `models/{folder}`"), suggestion(name, known.iter().map(String::as_str))))
 }
 
 /// The folder itself and [`LEVELS`] folders above it.
@@ -191,7 +184,7 @@ pub(crate) fn read_beside(
         Place::Embedded(folder) => {
             let path = folder.join(file);
             let Some(text) = MODELS.get_file(&path).and_then(include_dir::File::contents_utf8) else {
-                let message = format!("there is no embedded file `{}`", path.display());
+                let message = format!("missing embedded file `{}`", path.display());
                 return Err(Refused { message, help: RELATIVE });
             };
             let path = Path::new(EMBEDDED).join("models").join(path);
@@ -217,7 +210,7 @@ mod tests {
     fn names_cannot_leave_the_folder() {
         for name in ["", "../motors/x", "a/b", ".hidden", "/etc/passwd", "C:x"] {
             let found = find(("motors", FileRole::MotorModel), name, None, &mut FileAccess::default());
-            assert!(found.is_err_and(|(message, _)| message.contains("no name of a model")));
+            assert!(found.is_err_and(|(message, _)| message.contains("not a model name")));
         }
     }
 }

@@ -59,7 +59,7 @@ impl ObjectTable {
     fn entry(&mut self, path: &str, entry: &Entry, report: &mut Report) -> Option<()> {
         let (index, subindex) = entry.key.split_once('.').map_or((entry.key.as_str(), None), |(a, b)| (a, Some(b)));
         let Some(index) = hexadecimal(index, 4) else {
-            return refuse(entry.key_span, format!("`{}` is no index of an object", entry.key), report);
+            return refuse(entry.key_span, format!("`{}` is not the index of an object", entry.key), report);
         };
         let path = format!("{path}.{}", entry.key);
         match (subindex, &entry.node.value) {
@@ -77,7 +77,7 @@ impl ObjectTable {
         let decimal = subindex.parse().ok().filter(|_| subindex.len() == 1);
         let subindex = decimal.or_else(|| hexadecimal(subindex, 2)).and_then(|subindex| u8::try_from(subindex).ok());
         let Some(subindex) = subindex else {
-            return refuse(entry.key_span, format!("`{}` is no sub-index of an object", entry.key), report);
+            return refuse(entry.key_span, format!("`{}` is not the sub-index of an object", entry.key), report);
         };
         let object = Object { index, subindex };
         if self.0.iter().any(|written| written.object == object) {

@@ -187,7 +187,7 @@ impl Setting<'_> {
         let key_span = Span::new(self.source, &part.place);
         let is_last = index + 1 == self.of.path.len();
         if part.is_index {
-            self.refuse(index, "is a table and no list");
+            self.refuse(index, "is a table, not a list");
             return;
         }
         if let Some(entry) = table.entry_mut(&part.name) {
@@ -201,7 +201,7 @@ impl Setting<'_> {
         if self.of.path.get(index + 1).is_some_and(|next| next.is_index) {
             let keys: Vec<&str> = table.entries.iter().map(|entry| entry.key.as_str()).collect();
             let help = suggestion(&part.name, keys);
-            self.report.lacking(&part.name, key_span, format!("there is no list `{}`", self.of.up_to(index)), help);
+            self.report.lacking(&part.name, key_span, format!("unknown list `{}`", self.of.up_to(index)), help);
             return;
         }
         let mut entry = Entry { key: part.name.clone(), key_span, node };
@@ -252,7 +252,7 @@ impl Setting<'_> {
             _ => format!("`{list}` has {count} elements, `{list}[0]` to `{list}[{}]`", count - 1),
         };
         let place = Span::new(self.source, &part.place);
-        self.report.lacking(&self.of.path[0].name, place, format!("there is no `{}`", self.of.up_to(index)), help);
+        self.report.lacking(&self.of.path[0].name, place, format!("`{}` does not exist", self.of.up_to(index)), help);
     }
 
     /// Reports that the value before the part `index` cannot have it.

@@ -171,7 +171,7 @@ mod tests {
         for (text, said) in [
             (
                 "time [ms],step [mm],position [mm]\n0,0,0\n1,1,1",
-                "1:21: `position` and `step` both say where the points are: delete one",
+                "1:21: `position` and `step` both give the positions of the points: delete one",
             ),
             (
                 "time [ms],step [mm/s]\n0,0\n1,1",
@@ -252,7 +252,7 @@ mod tests {
             ),
             (
                 "time [s],position [m],snap [m/s4]\n0,0,0\n1,1,x",
-                "3:5: `snap` is `x`: write a number like `12.5`, its unit stands in the heading",
+                "3:5: `snap` is `x`: write a number like `12.5`; its unit is in the heading",
             ),
             (
                 "time [s],position [m],crackle [m/s5]\n0,0,0\n1,1,0",
@@ -281,8 +281,8 @@ mod tests {
             (
                 None,
                 "time [s],position [counts]\n",
-                "1:10: `position` cannot be in `counts`: it is not known what a count is of the axis: `servobench plan` is told by \
-                 --counts, a scenario by the `units` of its `[bus]`",
+                "1:10: `position` cannot be in `counts`: the size of a count on the axis is unknown: give --counts to `servobench \
+                 plan`, or `units` to the `[bus]` of a scenario",
             ),
             (
                 linear,
@@ -343,7 +343,7 @@ mod tests {
             ),
             (
                 "time [s],position [mm]\n0,0\n1,x",
-                "3:3: `position` is `x`: write a number like `12.5`, its unit stands in the heading",
+                "3:3: `position` is `x`: write a number like `12.5`; its unit is in the heading",
             ),
             ("time [s],position [mm]\n0,0\n1,nan", "3:3: `position` is `nan`: the number must be finite"),
             (
@@ -360,8 +360,7 @@ mod tests {
         for (rows, said) in [
             (
                 "0,0,0\n1,5,0\n\n1,7,0",
-                "5:1: `time` is 0.001 s, not later than 0.001 s at the point before: sort the rows by time and give each \
-                 a time of its own",
+                "5:1: `time` is 0.001 s, not later than 0.001 s at the point before: sort the rows by time and give each a different time",
             ),
             (
                 "0,0,0\n1,5",

@@ -59,7 +59,7 @@ fn other(is: Dimension, wanted: &[&Physical]) -> (String, &'static str) {
         return if is == is.without_amplitude() {
             ("neither an amplitude nor an effective value".to_owned(), "write `Arms` or `Apk`, `Vrms` or `Vpk`")
         } else {
-            ("an amplitude or an effective value".to_owned(), "plain `A` or `V` is wanted here")
+            ("an amplitude or an effective value".to_owned(), "plain `A` or `V` is needed here")
         };
     }
     let help = if is == Dimension::KILOGRAM && accepts(Dimension::METRE.times(Dimension::SECOND, -2)) {

@@ -222,7 +222,7 @@ impl Field for WantedMetric {
             return Some(Self(name));
         }
         let names = Name::ALL.iter().map(|metric| metric.as_str());
-        report.error(node.span, format!("there is no metric `{text}`"), suggestion(text, names));
+        report.error(node.span, format!("unknown metric `{text}`"), suggestion(text, names));
         None
     }
 
@@ -442,7 +442,11 @@ fn ends(from: &Slot<Amount>, to: &Slot<Amount>, report: &mut Report) -> Result<(
 fn number(slot: &Slot<Amount>, unit: Option<&str>, report: &mut Report) -> Result<(f64, String), Reported> {
     let At { value: Amount(value), span } = slot.at().ok_or(Reported)?;
     let Value::Number(number, own) = value else {
-        report.error(*span, format!("`{}` is no number", value.written()), "write a number with its unit: \"50 m/s3\"");
+        report.error(
+            *span,
+            format!("`{}` is not a number", value.written()),
+            "write a number with its unit: \"50 m/s3\"",
+        );
         return Err(Reported);
     };
     if let Some(unit) = unit.filter(|unit| unit != own) {
@@ -463,7 +467,7 @@ fn draws(file: &SweepFile, drawn: Vec<Drawn>, report: &mut Report) -> Result<Opt
             return Ok(None);
         }
         let place = file.vary.span().unwrap_or(file.span);
-        report.error(place, "how many draws there are is missing", "write `[draws]` with `count = 1000`");
+        report.error(place, "the number of draws is missing", "write `[draws]` with `count = 1000`");
         return Err(Reported);
     };
     let count = *table.count.given().ok_or(Reported)?;

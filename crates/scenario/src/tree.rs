@@ -198,7 +198,7 @@ fn another_format(text: &str) -> Option<&'static str> {
     match text.trim_start_matches('\u{feff}').trim_start().chars().next()? {
         '{' => Some("it looks like JSON"),
         '<' => Some("it looks like XML or HTML"),
-        '\0' => Some("it is no text"),
+        '\0' => Some("it is not text"),
         _ => None,
     }
 }

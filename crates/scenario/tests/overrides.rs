@@ -107,7 +107,7 @@ fn what_a_model_says_is_overridden_and_so_is_the_model() {
     let keys: Vec<_> = differences(&plain.scenario.parameters, &found.scenario.parameters);
     assert_eq!(keys.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["motor.gain"]);
     let said = mistakes(&text, &["motor.model=empms"]);
-    assert_eq!(said, ["--set motor.model=empms: there is no model `empms` in `models/motors`; did you mean `emps`?"]);
+    assert_eq!(said, ["--set motor.model=empms: unknown model `empms` in `models/motors`; did you mean `emps`?"]);
 }
 
 #[test]
@@ -117,14 +117,14 @@ fn a_mistake_is_told_with_its_place_on_the_command_line() {
         ("setpoint.velocty=1 m/s", "unknown key `velocty` in `setpoint`; did you mean `velocity`?"),
         ("setpoint.velocity=1", "`velocity` needs a unit, got the bare number 1; write \"1 m/s\""),
         ("setpoint.velocity.x=1", "`setpoint.velocity` is a string and has no parts"),
-        ("program[2].wait=1 s", "there is no `program[2]`; `program` has 2 elements, `program[0]` to `program[1]`"),
+        ("program[2].wait=1 s", "`program[2]` does not exist; `program` has 2 elements, `program[0]` to `program[1]`"),
         ("program.wait=1 s", "`program` is a list; say which: `program[0].wait`"),
         (
             "call[0].velocity=1 m/s",
-            "there is no list `call`; known here: `run`, `axis`, `motor`, `drive`, `setpoint`, `program`, `record`",
+            "unknown list `call`; known here: `run`, `axis`, `motor`, `drive`, `setpoint`, `program`, `record`",
         ),
-        ("progam[0].wait=1 s", "there is no list `progam`; did you mean `program`?"),
-        ("setpoint[0]=1", "`setpoint` is a table and no list"),
+        ("progam[0].wait=1 s", "unknown list `progam`; did you mean `program`?"),
+        ("setpoint[0]=1", "`setpoint` is a table, not a list"),
         (
             "record.channels[0]=load.positon",
             "\"load.positon\" is not a value of `channels`; did you mean `load.position`?",
@@ -191,15 +191,15 @@ fn a_text_that_is_no_override_says_what_is_wrong() {
     for (text, expected) in [
         ("", "a key is missing"),
         ("=1", "a key is missing"),
-        ("setpoint.jerk", "there is no `=`"),
+        ("setpoint.jerk", "missing `=`"),
         ("setpoint.=1", "a key is missing"),
         (".x=1", "a key is missing"),
         ("setpoint jerk=1", "`j` cannot be in a key"),
-        ("setpoint.jerk=", "there is no value behind `=`"),
-        ("setpoint.jerk=  ", "there is no value behind `=`"),
+        ("setpoint.jerk=", "missing value after `=`"),
+        ("setpoint.jerk=  ", "missing value after `=`"),
         ("setpoint.jerk=\"1", "the value begins like TOML, but: "),
         ("engine=[exact]", "the value begins like TOML, but: "),
-        ("setpoint.jerk='1' # x", "the value begins like TOML, but: there is more behind it"),
+        ("setpoint.jerk='1' # x", "the value begins like TOML, but: there is more after it"),
         ("program[].wait=1", "by its number from 0 on"),
         ("program[-1].wait=1", "by its number from 0 on"),
         ("program[1.wait=1", "by its number from 0 on"),

@@ -109,14 +109,14 @@ fn mistakes_have_their_places() {
         "{units}"
     );
     let words = vary("range = { from = \"slow\", to = \"fast\", count = 2 }");
-    assert!(words.contains("`slow` is no number"), "{words}");
+    assert!(words.contains("`slow` is not a number"), "{words}");
     let log = vary("range = { from = \"0 m/s3\", to = \"2 m/s3\", count = 2, spacing = \"log\" }");
-    assert!(log.contains("`setpoint.jerk`: from 0 to 2 there is no logarithmic scale"), "{log}");
+    assert!(log.contains("`setpoint.jerk`: a scale from 0 to 2 cannot be logarithmic"), "{log}");
     assert!(vary("normal = { mean = \"1 kg\", tolerance = \"5 %\" }").contains("write `[draws]`"));
     assert!(vary("normal = { mean = \"1 kg\" }").contains("`sigma` or `tolerance` beside `mean`"));
     assert!(vary("uniform = { from = 2, to = 1 }\n[draws]\ncount = 5").contains("from a lower to a higher value"));
     let metric = of("metrics = \"settling_tim\"\n[[vary]]\nkey = \"a\"\nvalues = 1\n").join("\n");
-    assert!(metric.contains("there is no metric `settling_tim`") && metric.contains("settling_time"), "{metric}");
+    assert!(metric.contains("unknown metric `settling_tim`") && metric.contains("settling_time"), "{metric}");
     let twice = of("[[vary]]\nkey = \"a\"\nvalues = 1\n[[vary]]\nkey = \"a\"\nvalues = 2\n").join("\n");
     assert!(twice.contains("`a` varies twice"), "{twice}");
     for number in ["nan", "inf", "-inf", "\"1e400 kg\""] {

@@ -27,7 +27,7 @@ impl Field for RequirementTable {
         for entry in &table.entries {
             let Ok(requirement) = entry.key.parse::<Requirement>() else {
                 let names = Requirement::ALL.iter().map(|requirement| requirement.as_str());
-                let message = format!("there is no requirement `{}`", entry.key);
+                let message = format!("unknown requirement `{}`", entry.key);
                 report.error(entry.key_span, message, suggestion(&entry.key, names));
                 continue;
             };

@@ -31,7 +31,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<(Vec<Part>, usize), Stri
         match reader.take() {
             Some('.') => {}
             Some('=') => return Ok((path, reader.at)),
-            None => return Err(format!("there is no `=`: {EXAMPLE}")),
+            None => return Err(format!("missing `=`: {EXAMPLE}")),
             Some(other) => {
                 return Err(format!(
                     "`{other}` cannot be in a key: put a part with it in quotes, as in fmu[0].parameters.'a b'=1"

@@ -11,7 +11,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
     let at = words.len() - words[start..].trim_start().len();
     let span = Span::new(SourceId::SCENARIO, &(at..at + text.len()));
     let Some(first) = text.chars().next() else {
-        return Err("there is no value behind `=`; an empty string is written ''".into());
+        return Err("missing value after `=`; an empty string is written ''".into());
     };
     // A document of one key whose value lies at the same bytes as on the command line.
     let document = format!("k{}={}{}", " ".repeat(start - 2), " ".repeat(at - start), text);
@@ -19,7 +19,7 @@ pub(super) fn read(words: &str, start: usize) -> Result<Node, String> {
         // No scenario needs a date, and a comment after a value would be dropped.
         Ok(node) if node.value != Value::Date && node.span == span => Ok(node),
         found if matches!(first, '[' | '{' | '"' | '\'') => {
-            let why = found.err().unwrap_or_else(|| "there is more behind it".to_owned());
+            let why = found.err().unwrap_or_else(|| "there is more after it".to_owned());
             Err(format!("the value begins like TOML, but: {why}"))
         }
         _ => Ok(Node { value: Value::Text(text.to_owned()), span }),

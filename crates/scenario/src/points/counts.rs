@@ -37,8 +37,8 @@ pub(super) fn read_unit(column: Column, unit: &str, counts: Option<Counts>) -> O
         return Some(Err(format!("write `{expected}`{or}")));
     };
     let Some(Counts { per, motion }) = counts else {
-        let unknown = "it is not known what a count is of the axis: `servobench plan` is told by --counts, a scenario by the `units` of its \
-                       `[bus]`";
+        let unknown = "the size of a count on the axis is unknown: give --counts to `servobench plan`, or `units` to the `[bus]` \
+                       of a scenario";
         return Some(Err(unknown.to_owned()));
     };
     Some(Ok((Scale::per(per, tens), usize::from(motion == Coordinate::Rotary))))

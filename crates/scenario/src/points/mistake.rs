@@ -64,7 +64,7 @@ pub enum PointsMistake {
         column: Column,
     },
     /// Positions are given twice.
-    #[error("`position` and `step` both say where the points are: delete one")]
+    #[error("`position` and `step` both give the positions of the points: delete one")]
     PositionAndStep,
     /// Steps add up to a position that has lost its precision.
     #[error("the steps add up to more than 1e30 (SI): check them, and the unit in the heading")]
@@ -97,8 +97,7 @@ pub enum PointsMistake {
     },
     /// A point is not later than the previous one.
     #[error(
-        "`time` is {time} s, not later than {before} s at the point before: sort the rows by time and give each a time \
-         of its own"
+        "`time` is {time} s, not later than {before} s at the point before: sort the rows by time and give each a different time"
     )]
     Order {
         /// Time of the point (s).

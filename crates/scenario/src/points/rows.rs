@@ -215,6 +215,6 @@ fn number(scale: &Scale, text: &str) -> Result<f64, &'static str> {
         Ok(_) if text.contains(|c: char| c.is_ascii_digit()) => Err("the number is too large: above 1e30 in SI"),
         Ok(_) => Err("the number must be finite"),
         Err(_) if text.is_empty() => Err("write a number; only `velocity` beside `position` may be left empty"),
-        Err(_) => Err("write a number like `12.5`, its unit stands in the heading"),
+        Err(_) => Err("write a number like `12.5`; its unit is in the heading"),
     }
 }

@@ -124,7 +124,7 @@ impl Reading<'_, '_> {
             && !own.bound.holds(value)
         {
             let message = format!("`{}` of {} must be {}", input.key(), self.block, own.bound);
-            self.report.error(span, message, "the target says in which direction");
+            self.report.error(span, message, "the target gives the direction");
         }
         value
     }
@@ -197,7 +197,7 @@ impl Reading<'_, '_> {
     /// Warns of a direction on an axis with ends: only a modulo axis has two directions to a position.
     fn warn_without_modulo(&mut self) {
         if let (Slot::Absent, Some(span)) = (self.context.modulo, self.inputs.slot(Input::Direction).span()) {
-            let message = "`direction` is ignored: on an axis with ends one way leads to a position";
+            let message = "`direction` is ignored: on an axis with ends only one direction leads to a position";
             let help = "give the period `modulo` in `[axis]`, or leave it out";
             self.said.once(span, |report| report.warning(span, message, help), self.report);
         }
@@ -208,7 +208,7 @@ impl Reading<'_, '_> {
         if let Slot::Given(At { value: Value::Direction(Direction::Shortest), span }) =
             self.inputs.slot(Input::Direction)
         {
-            let message = format!("{} does not go this way", self.block);
+            let message = format!("{} does not have this direction", self.block);
             self.report.error(*span, message, "write \"positive\", \"negative\" or \"current\"");
         }
     }

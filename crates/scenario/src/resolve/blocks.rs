@@ -29,7 +29,7 @@ pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Repor
     if let Some(velocity) = velocity
         && let (Some(span), Some(file::VelocityKind::P)) = (velocity.reference_weight.span(), velocity.kind.given())
     {
-        let message = "a P loop has no `reference_weight`: nothing would bring it to its reference";
+        let message = "a P loop has no `reference_weight`: it would not reach its reference";
         report.error(span, message, "write `kind = \"pi\"`");
     }
     let [motor_load, drive_load] = loads(drive, known, report);
@@ -68,7 +68,7 @@ fn loads(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> [Load; 
     let max_current = match known.motor {
         Some(Motor::Pmsm { max_current, .. }) => *max_current,
         Some(_) => {
-            report.warning(given.span, "`i2t` is not used: there is no current", "");
+            report.warning(given.span, "`i2t` is not used: the motor has no current", "");
             return [Ok(None), Ok(None)];
         }
         None => return [Err(Reported), Err(Reported)],
@@ -109,7 +109,7 @@ fn load(
     let reaction = given.reaction.optional()?.copied().unwrap_or_default();
     if reaction == Reaction::Fault && !has_bus {
         let span = given.reaction.span().unwrap_or(given.span);
-        report.error(span, "without a `[bus]` there is nobody to tell a fault", "write \"derate\", or add `[bus]`");
+        report.error(span, "without a `[bus]` no fault can be reported", "write \"derate\", or add `[bus]`");
         return Err(Reported);
     }
     Ok(overload::Params { continuous_current, time_constant, reaction })

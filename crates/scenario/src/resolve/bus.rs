@@ -104,9 +104,9 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
 /// Refuses a bus without a drive that can move the axis.
 fn refuse_without_a_drive(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Report) {
     let (message, help) = match actuator {
-        Some(Actuator::Prescribed) => ("the motor follows the set-point exactly: there is no drive on the bus", ""),
+        Some(Actuator::Prescribed) => ("the motor follows the set-point exactly: the bus has no drive", ""),
         Some(Actuator::Off(_)) => {
-            ("the power stage is off for good", "leave `enabled` out of `[drive]`: the master powers the drive")
+            ("the power stage stays off", "leave `enabled` out of `[drive]`: the master powers the drive")
         }
         Some(Actuator::Pmsm { .. } | Actuator::IdealSource { .. }) | None => return,
     };
@@ -116,7 +116,7 @@ fn refuse_without_a_drive(given: &file::Bus, actuator: Option<&Actuator>, report
 fn refuse_a_second_interpolation(file: &File, report: &mut Report) {
     if let Some(span) = file.setpoint.given().and_then(|setpoint| setpoint.interpolation.span()) {
         let help = "give `motion_cycle` and `interpolation` in `[bus]`";
-        report.error(span, "with a fieldbus it is the master that interpolates", help);
+        report.error(span, "with a fieldbus the master interpolates", help);
     }
 }
 
@@ -124,7 +124,7 @@ fn refuse_a_second_interpolation(file: &File, report: &mut Report) {
 fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
     let offsets = [("velocity_offset", given.velocity_offset.span()), ("effort_offset", given.effort_offset.span())];
     if !mode.is_cyclic() {
-        refuse(&offsets, "is for the modes \"csp\" and \"csv\"", "the drive makes the way itself here", report);
+        refuse(&offsets, "is for the modes \"csp\" and \"csv\"", "the drive generates the profile here", report);
     }
     if !mode.is_cyclic() {
         let key = [("margin", given.margin.span()), ("run_ahead", given.run_ahead.span())];
@@ -136,7 +136,7 @@ fn refuse_by_mode(given: &file::Bus, mode: BusMode, report: &mut Report) {
     }
     if mode != BusMode::InterpolatedPosition {
         let key = [("trajectory_buffer", given.trajectory_buffer.span()), ("point_time", given.point_time.span())];
-        refuse(&key, "is for the mode \"ip\"", "only there the drive goes through the points of a buffer", report);
+        refuse(&key, "is for the mode \"ip\"", "only there the drive moves through the points of a buffer", report);
     }
 }
 
@@ -160,7 +160,7 @@ fn margin(given: &file::Bus, cycles: Option<(u32, u32)>, known: &Known<'_>, repo
     let margin = whole::ticks("margin", *at, known.base_rate, report)?;
     let (cycle, every) = cycles?;
     if u64::from(margin) > 2 * u64::from(cycle) * u64::from(every) {
-        report.error(at.span, "more than two cycles of the motion task cannot be waited for", "make it shorter");
+        report.error(at.span, "the margin is at most two cycles of the motion task", "make it shorter");
         return None;
     }
     Some(margin)
@@ -242,10 +242,10 @@ fn effort_offset(given: &file::Bus, actuator: Option<&Actuator>, report: &mut Re
     let is_elastic = estimate.stiffness.is_finite() && estimate.load_inertia > 0.0;
     if at.value != EffortFeedforward::Off && !is_heavy {
         let help = "give `motor_inertia` in `[drive.estimate]`";
-        report.error(at.span, "nothing is known of the inertia of this axis", help);
+        report.error(at.span, "the inertia of this axis is unknown", help);
     } else if at.value == EffortFeedforward::TwoMass && !is_elastic {
         let help = "write \"rigid\", or give `stiffness` and `load_inertia` in `[drive.estimate]`";
-        report.error(at.span, "the axis is rigid: there are no two masses", help);
+        report.error(at.span, "the axis is rigid: it is a single mass", help);
     }
     Some(at.value)
 }
@@ -290,7 +290,8 @@ fn units(file: &File, given: &file::Bus, actuator: Option<&Actuator>, report: &m
     if let Some(units) = given.units.optional().ok()? {
         let axis = units.axis.at()?;
         if axis.value == 0.0 {
-            let help = "give how far the axis goes, such as \"5 mm\"; negative for a motor mounted the other way round";
+            let help =
+                "give the distance of the axis, such as \"5 mm\"; negative for a motor mounted the other way round";
             report.error(axis.span, "`axis` must not be zero", help);
             return None;
         }
@@ -336,7 +337,7 @@ pub(super) fn refuse_by_program(file: &File, bus: &Bus, steps: Option<&[Step]>, 
         && bus.mode != BusMode::ProfileVelocity
     {
         let help = "write \"csp\", \"csv\" or \"pv\"";
-        report.error(span, "function blocks make the set-points themselves", help);
+        report.error(span, "function blocks generate the set-points themselves", help);
     }
     let (Some(program), Some(steps)) = (file.program.given(), steps) else { return };
     for (written, step) in program.0.iter().zip(steps) {

@@ -86,7 +86,7 @@ fn parameters(
     let is_fast = name == FaultName::Task(TaskFaultName::Fast);
     let needs_time = is_random || is_late || is_fast;
     if let (false, Some(span)) = (needs_time, given.by.span()) {
-        report.error(span, "`by` is for what is \"late\", has \"jitter\" or is \"fast\"", "");
+        report.error(span, "`by` is for the kinds \"late\", \"jitter\" and \"fast\"", "");
     }
     if let (false, Some(span)) = (is_random, given.seed.span()) {
         report.error(span, "`seed` is for \"jitter\"", "");
@@ -94,7 +94,7 @@ fn parameters(
     let by = match &given.by {
         _ if !needs_time => Some(0),
         Slot::Absent => {
-            let why = if is_fast { "how much too short a cycle is" } else { "how late it is" };
+            let why = if is_fast { "the time by which a cycle is too short" } else { "the delay" };
             report.missing_with_help("bus.fault", "by", given.span, why);
             None
         }

@@ -69,7 +69,7 @@ impl Context<'_> {
             Alternative::Use(_) => given.below.given().copied().map(Condition::Below),
             Alternative::Contradiction => None,
             Alternative::None => {
-                report.error(given.span, "this says nothing of when", "give `at`, `after`, `above` or `below`");
+                report.error(given.span, "this condition is empty", "give `at`, `after`, `above` or `below`");
                 None
             }
         }
@@ -93,7 +93,7 @@ impl Context<'_> {
         let Some(call) = self.instances.iter().position(|instance| instance.name == name && !name.is_empty()) else {
             let names = self.instances.iter().map(|instance| &*instance.name).filter(|name| !name.is_empty());
             let help = suggestion(name, names.collect::<Vec<_>>());
-            report.error(text.span, format!("there is no call `{name}`"), help);
+            report.error(text.span, format!("unknown call `{name}`"), help);
             return None;
         };
         let block = self.instances[call].block?;

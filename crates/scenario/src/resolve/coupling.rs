@@ -30,7 +30,7 @@ pub(super) fn resolve(file: &File, base_rate: Option<Rate>, report: &mut Report)
         Slot::Given(given) => given,
     };
     if matches!(file.fmu, Slot::Absent) {
-        report.error(given.span, "there is nothing to couple", "give `[[fmu]]`; `[axis.fmu]` has a `step` of its own");
+        report.error(given.span, "there is nothing to couple", "give `[[fmu]]`; `[axis.fmu]` has a separate `step`");
     }
     let given = &given.value;
     let every = match &given.step {

@@ -75,7 +75,7 @@ pub(super) fn resolve(
 fn operation(given: &file::Current, report: &mut Report) -> Result<operating_point::Params, Reported> {
     let strategy = given.strategy.optional()?.copied().unwrap_or_default();
     if let (Strategy::Mtpa, Some(span)) = (strategy, given.d_reference.span()) {
-        report.error(span, "with `strategy = \"mtpa\"` there is no `d_reference`", "leave one of them out");
+        report.error(span, "`strategy = \"mtpa\"` has no `d_reference`", "leave one of them out");
         return Err(Reported);
     }
     let is_weakened = given.field_weakening.optional()?.copied().unwrap_or(false);
@@ -130,7 +130,7 @@ fn has_torque(
     let believed = estimates.and_then(|given| given.motor.span()).unwrap_or(given.span);
     for (whose, span, motor) in [
         ("the motor", given.d_reference.span().unwrap_or(given.span), estimate::of_motor(None, motor)),
-        ("the motor that the drive believes in", believed, estimate::of_motor(estimates, motor)),
+        ("the motor of the drive's estimate", believed, estimate::of_motor(estimates, motor)),
     ] {
         if !strategy.has_torque(&motor, i_d) {
             let psi = motor.flux_linkage;

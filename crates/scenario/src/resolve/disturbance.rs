@@ -60,10 +60,10 @@ fn disturbance(
     };
     match (fixed, on.value) {
         (Some(_), DisturbedBody::Motor) => {
-            report.error(on.span, "the motor follows the set-point exactly and feels no disturbance", "");
+            report.error(on.span, "the motor follows the set-point exactly and takes no disturbance", "");
         }
         (Some(Fixed::Everything), DisturbedBody::Load) => {
-            let message = "the load is rigid with a motor that follows the set-point exactly and feels no disturbance";
+            let message = "the load is rigid with a motor that follows the set-point exactly and takes no disturbance";
             report.error(on.span, message, GIVE_STIFFNESS);
         }
         (Some(Fixed::Motor) | None, _) => {}
@@ -74,7 +74,7 @@ fn disturbance(
     };
     if let Some(span) = other.span() {
         let moves = if motion == Coordinate::Linear { "moves along a line" } else { "turns" };
-        report.error(span, format!("the {body} {moves} and feels no `{wrong}`"), format!("give a `{right}`"));
+        report.error(span, format!("the {body} {moves} and takes no `{wrong}`"), format!("give a `{right}`"));
         return None;
     }
     if matches!(slot, Slot::Absent) {
@@ -102,8 +102,7 @@ fn refuse_idle(given: &file::Disturbance, timing: &Timing, report: &mut Report) 
     let (Some(duration), Some(base_rate)) = (given.duration.at(), timing.base_rate) else { return };
     let start = given.start.given().copied().unwrap_or(0.0);
     if base_rate.tick_at(start) == base_rate.tick_at(start + duration.value) {
-        let message =
-            format!("there is no tick between its start and its end, ticks are {} s apart", base_rate.period());
+        let message = format!("no tick is between its start and its end: ticks are {} s apart", base_rate.period());
         report.error(duration.span, message, "");
     }
 }

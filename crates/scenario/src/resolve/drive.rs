@@ -296,7 +296,7 @@ fn position_feedback(drive: &file::Drive, report: &mut Report) -> Option<Feedbac
     match (&drive.position_feedback, encoder) {
         (Slot::Wrong(_), _) => None,
         (Slot::Given(at), None) if at.value == FeedbackEncoder::Load => {
-            report.error(at.span, "there is no encoder on the load", "add `[drive.load_encoder]`");
+            report.error(at.span, "the load has no encoder", "add `[drive.load_encoder]`");
             None
         }
         (Slot::Given(at), Some(encoder)) if at.value == FeedbackEncoder::Load => Some(Feedback::Load(encoder)),
@@ -343,11 +343,15 @@ fn feedforward(drive: &file::Drive) -> Option<Feedforward> {
 fn check_feedforward(drive: &file::Drive, belief: &Belief, model: EffortFeedforward, report: &mut Report) {
     let Some(span) = drive.feedforward.given().and_then(|feedforward| feedforward.effort.span()) else { return };
     if model != EffortFeedforward::Off && !belief.knows_inertia {
-        report.error(span, "the drive knows no inertia of this axis", "give `motor_inertia` in `[drive.estimate]`");
+        report.error(
+            span,
+            "the inertia of this axis is unknown to the drive",
+            "give `motor_inertia` in `[drive.estimate]`",
+        );
     }
     let is_elastic = belief.estimate.stiffness.is_finite() && belief.estimate.load_inertia > 0.0;
     if model == EffortFeedforward::TwoMass && belief.knows_inertia && !is_elastic {
         let help = "write \"rigid\", or give `stiffness` and `load_inertia` in `[drive.estimate]`";
-        report.error(span, "the axis is rigid: there are no two masses", help);
+        report.error(span, "the axis is rigid: it is a single mass", help);
     }
 }

@@ -11,11 +11,11 @@ use servobench_plant::EndStops;
 pub(super) fn resolve(axis: &file::Axis, report: &mut Report) -> Result<Option<EndStops>, Reported> {
     let Some(given) = axis.end_stops.optional()? else { return Ok(None) };
     if let Some(span) = axis.modulo.span() {
-        report.error(span, "an axis that turns on and on has no end stops", "leave out `modulo` or `[axis.end_stops]`");
+        report.error(span, "a modulo axis has no end stops", "leave out `modulo` or `[axis.end_stops]`");
     }
     let ends = [&given.negative, &given.positive].map(|slot| slot.optional().map(Option::<&f64>::copied));
     if let [Ok(None), Ok(None)] = ends {
-        report.error(given.span, "there is no end stop", "give `negative`, `positive` or both");
+        report.error(given.span, "the table has no end stop", "give `negative`, `positive` or both");
     }
     if let (Some(negative), Some(positive)) = (given.negative.at(), given.positive.at())
         && negative.value >= positive.value

@@ -102,16 +102,16 @@ pub(super) fn check_motor(given: &file::Estimate, motor: &Motor, report: &mut Re
         }
     };
     if !matches!(motor, Motor::Pmsm { .. }) {
-        refuse(given.motor.span(), "there is no synchronous motor to estimate");
-        refuse(given.dc_link.span(), "there is no inverter whose DC link could be estimated");
+        refuse(given.motor.span(), "the axis has no synchronous motor to estimate");
+        refuse(given.dc_link.span(), "the axis has no inverter whose DC link could be estimated");
     }
     match motor {
         Motor::IdealSource { source, .. } if source.output == SourceOutput::Effort => {
-            refuse(given.gain.span(), "the output of the source is its effort: there is no `gain` to estimate");
+            refuse(given.gain.span(), "the output of the source is its effort: it has no `gain` to estimate");
         }
         Motor::IdealSource { .. } => {}
         Motor::Pmsm { .. } | Motor::Prescribed => {
-            refuse(given.gain.span(), "there is no ideal source whose `gain` could be estimated");
+            refuse(given.gain.span(), "the axis has no ideal source whose `gain` could be estimated");
         }
     }
 }

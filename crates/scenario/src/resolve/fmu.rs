@@ -112,7 +112,7 @@ fn fmu<P: Port>(
             if ticks.is_multiple_of(every) {
                 return Some(ticks);
             }
-            let message = format!("`step` is {ticks} base ticks, no whole number of steps of `[coupling]`, {every}");
+            let message = format!("`step` is {ticks} base ticks, not a whole number of steps of `[coupling]`, {every}");
             report.error(at.span, message, "");
             None
         }),
@@ -120,20 +120,20 @@ fn fmu<P: Port>(
     let isolation = given.isolation.optional().ok().map(|isolation| isolation.copied().unwrap_or_default());
     if isolation == Some(IsolationKind::None) {
         let keys = [("call_timeout", given.call_timeout.span()), ("memory", given.memory.span())];
-        refuse(&keys, "is for an FMU in a process of its own", "leave `isolation` out", report);
+        refuse(&keys, "is for an FMU in a separate process", "leave `isolation` out", report);
     }
     let read = |text: &str| signal(text).ok_or_else(|| suggestion(text, signals.iter().copied()));
     let inputs = given
         .inputs
         .optional()
         .ok()
-        .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "no signal", report, read));
+        .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "not a signal", report, read));
     let outputs = given.outputs.optional().ok().and_then(|table| {
         let port = |text: &str| {
             let found = P::all().find(|port| port.name() == text);
             found.ok_or_else(|| suggestion(text, P::all().map(Port::name)))
         };
-        connections(table.map_or(&[][..], |table| &table.0), "nothing that an FMU can give here", report, port)
+        connections(table.map_or(&[][..], |table| &table.0), "not an output that an FMU can have here", report, port)
     });
     let start =
         given.parameters.optional().ok()?.map_or_else(Vec::new, |table| {
@@ -227,7 +227,7 @@ fn check_name(names: &[String], index: usize, given: &file::Fmu, report: &mut Re
         report.error(
             span,
             message,
-            "signals are called `name.variable`: give a `name` without a point that begins no channel's",
+            "signals are called `name.variable`: give a `name` without a point that does not begin the name of a channel",
         );
     }
 }
@@ -262,7 +262,7 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
                 report.error(
                     place(f, o),
                     format!("`{}` is given by another FMU too", port.name()),
-                    "efforts do not add up here: let one FMU sum them",
+                    "efforts are not added here: let one FMU sum them",
                 );
             } else {
                 taken.push((*port, place(f, o)));
@@ -274,7 +274,7 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
         let written = [("program", file.program.span()), ("call", file.call.span())];
         refuse(&written, "and a set-point from an FMU cannot be together", "give one of them", report);
         if file.run.given().is_some_and(|run| run.duration.span().is_none()) {
-            report.error(span, "nobody knows how long the set-point of an FMU lasts", "give `duration` in `[run]`");
+            report.error(span, "the duration of the set-point of an FMU is unknown", "give `duration` in `[run]`");
         }
     } else if let Some(span) = of(LoopSignal::SetpointVelocity).or(of(LoopSignal::SetpointAcceleration)) {
         report.error(span, "a set-point has a position", "connect `setpoint.position` too");
@@ -284,11 +284,7 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
         report.error(span, "a voltage has two parts", "connect `voltage.d` and `voltage.q`");
     }
     if let (Some(span), Some(_)) = (d.or(q), effort) {
-        report.error(
-            span,
-            "`effort.motor` stands for drive and motor, a voltage for the drive alone",
-            "connect one of them",
-        );
+        report.error(span, "`effort.motor` replaces drive and motor, a voltage the drive alone", "connect one of them");
     }
     if let Some(span) = d.or(q).or(effort) {
         controller(file, d.is_some(), span, known.actuator, report);

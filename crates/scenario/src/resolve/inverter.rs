@@ -100,7 +100,11 @@ pub(super) fn link(
         // Each key has its own bound: the remaining mistake is the relation of the brake's voltages.
         let span = given.brake.given().and_then(|brake| brake.off.span()).unwrap_or(given.span);
         let message = format!("`off` of {value} V must be {bound}");
-        report.error(span, message, "the link has `drive.dc_link` without load, and the brake has to go off above it");
+        report.error(
+            span,
+            message,
+            "the link has `drive.dc_link` without load, and the brake must switch off above it",
+        );
         return Err(Reported);
     }
     Ok(Some(params))

@@ -60,7 +60,7 @@ pub(super) fn velocity(
             if known.belief.is_some() && inertia.is_none() {
                 let span = given.bandwidth.span().unwrap_or(given.span);
                 let help = "give `motor_inertia` in `[drive.estimate]`, or `gain` here";
-                report.error(span, "the drive knows no inertia of this axis", help);
+                report.error(span, "the inertia of this axis is unknown to the drive", help);
             }
             given.bandwidth.given().zip(inertia).map(|(omega, inertia)| omega * inertia)
         }
@@ -106,7 +106,7 @@ fn integral_time(given: &file::Velocity, omega: Option<f64>, report: &mut Report
         (VelocityKind::Pi, None, None) => {
             // With a bandwidth, the missing inertia has already been reported.
             if given.gain.given().is_some() {
-                let help = "it cannot be derived: the drive knows no inertia of this axis";
+                let help = "it cannot be derived: the inertia of this axis is unknown to the drive";
                 report.missing_with_help("drive.velocity", "integral_time", given.span, help);
             }
             Err(Reported)

@@ -52,7 +52,7 @@ fn observer(given: &file::Velocity, known: &Known<'_>, report: &mut Report) -> R
     let (belief, rate) = (known.belief.ok_or(Reported)?, known.rate.ok_or(Reported)?);
     if !belief.knows_inertia {
         let help = "give `motor_inertia` in `[drive.estimate]`, or measure by differences";
-        report.error(written.span, "the drive knows no inertia of this axis", help);
+        report.error(written.span, "the inertia of this axis is unknown to the drive", help);
         return Err(Reported);
     }
     let bandwidth = *written.bandwidth.given().ok_or(Reported)?;
@@ -85,7 +85,7 @@ fn derivative(
     let filter = filter_time.optional()?.copied();
     let Some(time) = time.optional()?.copied() else {
         if let Some(span) = filter_time.span() {
-            report.error(span, "there is no derivative to filter", "give `derivative_time`");
+            report.error(span, "the loop has no derivative to filter", "give `derivative_time`");
             return Err(Reported);
         }
         return Ok(None);

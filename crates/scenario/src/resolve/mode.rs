@@ -41,7 +41,7 @@ pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut R
         let message = format!("a drive in the mode \"{name}\" cannot do this step");
         report.error(span, message, format!("it does {carries}; \"csp\" does everything"));
     } else if !is_sent_as_points(mode, generator) && is_planned_otherwise(&step.request) {
-        let message = format!("a drive in the mode \"{name}\" plans the way itself");
+        let message = format!("a drive in the mode \"{name}\" plans the profile itself");
         report.error(span, message, "leave out `method`, samples, shaper, averages and `duration`, or write \"csp\"");
     }
 }

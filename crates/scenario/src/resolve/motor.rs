@@ -68,7 +68,7 @@ pub(super) fn resolve(motor: &file::Motor, sources: &Sources, report: &mut Repor
             Some(Motor::IdealSource { source: ideal_source(motor, report)?, encoder: encoder? })
         }
         MotorKind::Prescribed => {
-            let why = "means nothing for a motor that follows the set-point exactly";
+            let why = "has no effect on a motor that follows the set-point exactly";
             refuse(electrical, why, "", report);
             refuse(ideal, why, "", report);
             refuse(&[("encoder", motor.encoder.span())], why, "", report);

@@ -258,11 +258,11 @@ fn doubtful(motor: &file::Motor, params: &pmsm::Params, data: &FluxData, map: &F
     let largest = data.psi_d.iter().fold(0.0, |most: f64, psi| most.max(psi.abs()));
     if (of_map - own).abs() > MAGNETS_DIFFER * own + f64::EPSILON * largest {
         let message = format!("without current the map has a flux linkage of {of_map} V s, the motor {own} V s");
-        report.warning(span, message, "the drive believes the motor's: is the map that of this motor?");
+        report.warning(span, message, "the drive's estimate is that of the motor: is the map that of this motor?");
     }
     let furthest = data.i_q.iter().fold(0.0, |most: f64, i| most.max(i.abs()));
     if let Some(most) = motor.max_current.given().filter(|most| **most > furthest * (1.0 + 1e-9)) {
         let message = format!("the map ends at i_q = {furthest} Apk, `max_current` is {most} Apk");
-        report.warning(span, message, "behind the map the flux goes on with its last inductances");
+        report.warning(span, message, "beyond the map the flux continues with its last inductances");
     }
 }

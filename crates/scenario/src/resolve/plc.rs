@@ -41,7 +41,7 @@ pub(super) fn resolve(file: &File, known: &Known<'_>, report: &mut Report) -> Op
     let (homing_required, ramp_start) = match file.plc.optional().ok()? {
         Some(plc) => {
             if !known.is_told_velocities {
-                let help = "elsewhere the drive is told positions";
+                let help = "elsewhere the drive receives positions";
                 refuse(&[("ramp_start", plc.ramp_start.span())], "is for the mode \"pv\"", help, report);
             }
             (plc.homing_required.optional().ok()?.copied(), plc.ramp_start.optional().ok()?.copied())
@@ -80,7 +80,7 @@ fn check_surroundings(file: &File, calls: &[At<file::Call>], report: &mut Report
     if let Some(run) = file.run.given()
         && matches!(run.duration, Slot::Absent)
     {
-        let help = "how long calls take is not known beforehand";
+        let help = "the duration of calls is not known beforehand";
         report.missing_with_help("run", "duration", run.span, help);
     }
     if let Some(setpoint) = file.setpoint.given() {
@@ -110,7 +110,7 @@ fn instances(calls: &[At<file::Call>], report: &mut Report) -> Vec<Instance> {
         let is_taken = instances.iter().any(|other| !name.is_empty() && other.name.eq_ignore_ascii_case(&name));
         if is_taken {
             let span = call.name.span().unwrap_or(call.span);
-            report.error(span, format!("there is a call `{name}` already"), "each has a `name` of its own");
+            report.error(span, format!("there is a call `{name}` already"), "each needs a different `name`");
         }
         instances.push(Instance { name, block, span: call.span, start: call.start.span() });
     }
@@ -122,7 +122,7 @@ fn check_name(name: &At<String>, report: &mut Report) {
     let mut letters = name.value.chars();
     let begins = letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == '_');
     if !begins || !letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_') {
-        let message = format!("\"{}\" is no name of an instance", name.value);
+        let message = format!("\"{}\" is not the name of an instance", name.value);
         report.error(name.span, message, "write letters, digits and `_`, a letter first");
     }
 }

@@ -81,12 +81,12 @@ pub(super) fn follow(
 ) -> Option<ProfileFollow> {
     let own = &table.value;
     let way = if is_told_velocities {
-        "it goes along the cubic spline, by \"plateaus\", or by \"steps\" along the spline"
+        "it follows the cubic spline, by \"plateaus\", or by \"steps\" along the spline"
     } else {
-        "it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with `mode = \"pv\"`"
+        "it follows the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with `mode = \"pv\"`"
     };
     if let Some(at) = own.velocities.at().filter(|at| at.value != VelocitiesKind::Continuous) {
-        report.error(at.span, "MC_PositionProfile does not choose its velocities so", way);
+        report.error(at.span, "MC_PositionProfile does not choose its velocities by this rule", way);
     }
     refuse(&[("passes", own.passes.span())], "is not for MC_PositionProfile", way, report);
     let kind = own.follow.optional().ok()?.copied();
@@ -115,7 +115,7 @@ pub(super) fn follow(
         }
         rule => {
             if let (Some(FollowKind::Steps), Some(span)) = (rule, own.follow.span()) {
-                report.error(span, "MC_PositionProfile does not follow its table so", way);
+                report.error(span, "MC_PositionProfile does not follow its table by this method", way);
             }
             refuse(&[("plateau_share", own.plateau_share.span())], "is for \"plateaus\"", "", report);
             Some(ProfileFollow::Spline)

@@ -48,7 +48,7 @@ pub(super) fn steps(file: &File, base_rate: Option<Rate>, sources: &Sources, rep
         steps.push(resolved);
     }
     if let (Before::Motion, Some(last)) = (before, program.0.last()) {
-        report.error(last.value.span, "the program ends in motion", "add a move to rest behind this one");
+        report.error(last.value.span, "the program ends in motion", "add a move to rest after this one");
     }
     steps.into_iter().collect()
 }
@@ -308,7 +308,11 @@ impl Context<'_> {
     /// Refuses keys that do not fit the start and the end of the move.
     fn check_ends(&self, step: &MoveStep, report: &mut Report) {
         if let (Before::Pause, Some(span)) = (self.before, self.step.aborts_after.span()) {
-            report.error(span, "there is no move to abort", "give the step before a move, or leave `aborts_after` out");
+            report.error(
+                span,
+                "this step has no move to abort",
+                "give the step before a move, or leave `aborts_after` out",
+            );
         }
         let starts_in_motion = self.before == Before::Motion || step.aborts_after.is_some();
         let is_in_motion = starts_in_motion || step.request.generator.ends_in_motion();

@@ -63,11 +63,11 @@ fn expectation(
     if let Occasion::Event(incident) = on
         && let Some(help) = known.rules_out(incident)
     {
-        report.error(*span, format!("`{incident}` cannot come"), help);
+        report.error(*span, format!("`{incident}` cannot occur"), help);
     }
     let (from, to) = (given.from.given().copied().unwrap_or(0.0), given.to.given().copied().unwrap_or(f64::INFINITY));
     if let (true, Some(span)) = (to <= from, given.to.span()) {
-        report.error(span, format!("`to` is {to} s and `from` {from} s: there is no time between"), "");
+        report.error(span, format!("`to` is {to} s and `from` {from} s: the interval is empty"), "");
     }
     if let (Some(duration), Some(span)) = (known.duration.filter(|duration| from >= *duration), given.from.span()) {
         report.error(span, format!("the run is over by then: it lasts {duration} s"), "");
@@ -103,7 +103,7 @@ fn fault(given: &file::Expect, span: Span, known: &Known<'_>, report: &mut Repor
     let parts = ["axis", "drive", "link"];
     if !parts.contains(&who.value.as_str()) && !calls().any(|name| name == who.value) {
         let names = parts.into_iter().chain(calls());
-        let message = format!("there is no `{}` that could have a fault", who.value);
+        let message = format!("unknown source of faults: `{}`", who.value);
         report.error(who.span, message, suggestion(&who.value, names));
     }
     let is_code = Expectation::code_of(&fault.value).is_some();
@@ -119,7 +119,7 @@ fn fault(given: &file::Expect, span: Span, known: &Known<'_>, report: &mut Repor
         _ => None,
     };
     if let Some(help) = objection {
-        report.error(fault.span, format!("\"{}\" is no fault of `{}`", fault.value, who.value), help);
+        report.error(fault.span, format!("\"{}\" is not a fault of `{}`", fault.value, who.value), help);
     }
     Some(Occasion::Fault { fault: fault.value.clone(), who: who.value.clone() })
 }

@@ -87,11 +87,7 @@ fn master_speed(own: &file::Rockwell, report: &mut Report) -> f64 {
     let in_master_units = own.jerk_master_units.span().or(own.deceleration_jerk_master_units.span());
     match (in_master_units, own.master_speed.span()) {
         (Some(span), None) => {
-            report.error(
-                span,
-                "jerk in master units needs `master_speed`",
-                "how many of them the master goes per second",
-            );
+            report.error(span, "jerk in master units needs `master_speed`", "give the master units per second");
         }
         (None, Some(span)) => {
             let help = "give `jerk_master_units`, or leave it out";

@@ -29,7 +29,7 @@ pub(super) fn encoder(
                     "lines_per_rev" => "give one `signal_period`",
                     _ => "",
                 };
-                report.error(span, format!("what moves along a line has no `{key}`"), help);
+                report.error(span, format!("an encoder along a line has no `{key}`"), help);
                 return Err(Reported);
             }
         }

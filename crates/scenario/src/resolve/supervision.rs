@@ -10,7 +10,7 @@ use servobench_drive::supervision::{Commutation, Params, Phases, Stall};
 pub(super) fn resolve(drive: &file::Drive, known: &Known<'_>, report: &mut Report) -> Result<Option<Params>, Reported> {
     let Some(given) = drive.supervision.optional()? else { return Ok(None) };
     if !known.has_bus {
-        report.error(given.span, "without a `[bus]` there is nobody to tell a fault", "add `[bus]`, or leave it out");
+        report.error(given.span, "without a `[bus]` no fault can be reported", "add `[bus]`, or leave it out");
         return Err(Reported);
     }
     if matches!(known.motor, Some(Motor::IdealSource { .. })) {

@@ -32,7 +32,7 @@ pub(super) fn check(file: &File, actuator: &Actuator, report: &mut Report) {
     for limit in tables.filter_map(Slot::given).flat_map(|LimitTable(limits)| limits) {
         if limit.value.metric == Name::TorquePeak && limit.value.max.is_some_and(|max| doubtful.contains(&max)) {
             let message = format!("a torque at `drive.{key}` exceeds this limit: the current loop overshoots");
-            let help = "`torque_peak` is what the motor gives; limit `torque_reference_peak`, what the drive asks for, or leave \
+            let help = "`torque_peak` is that of the motor; limit `torque_reference_peak`, that of the drive's command, or leave \
                         5 % and more above";
             report.warning(limit.span, message, help);
         }

@@ -118,7 +118,8 @@ fn keys_belong_to_modes() {
         (
             &bus("").replace("axis = \"1 um\"", "axis = \"0 um\""),
             &[
-                "3:29: `axis` must not be zero; give how far the axis goes, such as \"5 mm\"; negative for a motor mounted the other way round",
+                "3:29: `axis` must not be zero; give the distance of the axis, such as \"5 mm\"; negative for a motor mounted the \
+                 other way round",
             ],
         ),
         (
@@ -132,19 +133,19 @@ fn keys_belong_to_modes() {
         (
             &bus("mode = \"pp\"\nvelocity_offset = true\neffort_offset = \"rigid\"\n"),
             &[
-                "5:19: `velocity_offset` is for the modes \"csp\" and \"csv\"; the drive makes the way itself here",
-                "6:17: `effort_offset` is for the modes \"csp\" and \"csv\"; the drive makes the way itself here",
+                "5:19: `velocity_offset` is for the modes \"csp\" and \"csv\"; the drive generates the profile here",
+                "6:17: `effort_offset` is for the modes \"csp\" and \"csv\"; the drive generates the profile here",
             ],
         ),
         (
             &bus("trajectory_buffer = \"60C1h\"\n"),
             &[
-                "4:21: `trajectory_buffer` is for the mode \"ip\"; only there the drive goes through the points of a buffer",
+                "4:21: `trajectory_buffer` is for the mode \"ip\"; only there the drive moves through the points of a buffer",
             ],
         ),
         (
             &bus("point_time = \"10 ms\"\n"),
-            &["4:14: `point_time` is for the mode \"ip\"; only there the drive goes through the points of a buffer"],
+            &["4:14: `point_time` is for the mode \"ip\"; only there the drive moves through the points of a buffer"],
         ),
         (
             &bus("trajectory_buffer = \"60C2h\"\nmode = \"ip\"\n"),
@@ -167,7 +168,7 @@ fn modes_carry_some_steps_only() {
         ("`move_to` and `move_by`", "`reach_velocity`, and tables that are followed by \"plateaus\" or \"steps\"");
     let points = "`move_to` and `move_by` to rest that abort nothing, and tables that are followed by \"segments\"";
     let turning = "reach_velocity = \"1 m/min\"\n[[program]]\nreach_velocity = \"0 m/min\"";
-    let itself = "39:1: a drive in the mode \"pp\" plans the way itself; leave out `method`, samples, shaper, averages and \
+    let itself = "39:1: a drive in the mode \"pp\" plans the profile itself; leave out `method`, samples, shaper, averages and \
                   `duration`, or write \"csp\"";
     for (mode, step, expected) in [
         ("pp", "move_by = \"1 mm\"", vec![]),
@@ -197,22 +198,20 @@ fn modes_carry_some_steps_only() {
 #[test]
 fn a_bus_leads_to_a_drive() {
     let off = bare().replace("dc_link = \"320 V\"", "enabled = false");
-    let expected =
-        "1:1: the power stage is off for good; leave `enabled` out of `[drive]`: the master powers the drive";
+    let expected = "1:1: the power stage stays off; leave `enabled` out of `[drive]`: the master powers the drive";
     assert_eq!(said(&off, CYCLE)[0], [expected]);
     let prescribed = "[run]\nbase_rate = \"16 kHz\"\n[axis]\nmotion = \"linear\"\n[motor]\nkind = \"prescribed\"\n";
-    let expected = "1:1: the motor follows the set-point exactly: there is no drive on the bus";
+    let expected = "1:1: the motor follows the set-point exactly: the bus has no drive";
     assert_eq!(said(prescribed, CYCLE)[0], [expected]);
     let slow = bare().replace("[setpoint]\n", "[setpoint]\ninterpolation = { mode = \"cubic\", period = \"4 ms\" }\n");
-    let expected =
-        "35:17: with a fieldbus it is the master that interpolates; give `motion_cycle` and `interpolation` in `[bus]`";
+    let expected = "35:17: with a fieldbus the master interpolates; give `motion_cycle` and `interpolation` in `[bus]`";
     assert_eq!(said(&slow, CYCLE)[0], [expected]);
 }
 
 #[test]
 fn the_master_knows_what_it_feeds_forward() {
     let rigid = bare().replace("stiffness = \"43 N/um\"\ndamping = \"1659 N s/m\"\n", "");
-    let expected = "4:17: the axis is rigid: there are no two masses; write \"rigid\", or give `stiffness` and `load_inertia` \
+    let expected = "4:17: the axis is rigid: it is a single mass; write \"rigid\", or give `stiffness` and `load_inertia` \
                     in `[drive.estimate]`";
     assert_eq!(said(&rigid, &bus("effort_offset = \"two-mass\"\n"))[0], [expected]);
     let axis = bare();
@@ -243,18 +242,21 @@ fn faults_are_in_the_run_and_have_what_they_need() {
         (&fault("kind = \"drive-silent\"\nduration = \"20 ms\"\n"), &[]),
         (&fault("kind = \"jitter\"\nby = \"250 us\"\nseed = 0\n"), &[]),
         (&fault("cycles = 1\n"), &["4:1: missing `kind` in `bus.fault`"]),
-        (&fault("kind = \"late\"\n"), &["4:1: missing `by` in `bus.fault`; how late it is"]),
+        (&fault("kind = \"late\"\n"), &["4:1: missing `by` in `bus.fault`; the delay"]),
         (
             &fault("kind = \"late\"\nby = \"100 us\"\n"),
             &["6:6: `by` is 1.6000 base ticks, not a whole number; 125 us fits"],
         ),
         (
             &fault("kind = \"lost\"\nby = \"250 us\"\nseed = 3\n"),
-            &["6:6: `by` is for what is \"late\", has \"jitter\" or is \"fast\"", "7:8: `seed` is for \"jitter\""],
+            &["6:6: `by` is for the kinds \"late\", \"jitter\" and \"fast\"", "7:8: `seed` is for \"jitter\""],
         ),
         (&fault("kind = \"task-torn\"\n"), &[]),
         (&fault("kind = \"task-fast\"\nby = \"250 us\"\n"), &[]),
-        (&fault("kind = \"task-fast\"\n"), &["4:1: missing `by` in `bus.fault`; how much too short a cycle is"]),
+        (
+            &fault("kind = \"task-fast\"\n"),
+            &["4:1: missing `by` in `bus.fault`; the time by which a cycle is too short"],
+        ),
         (
             &fault("kind = \"task-fast\"\nby = \"1 ms\"\n"),
             &["6:6: nothing is left of the cycle of the motion task; make it shorter"],
@@ -282,15 +284,15 @@ fn objects_are_named_by_index_and_sub_index() {
         (
             &objects("\"6065\" = 1\n0x6065 = 1"),
             &[
-                "5:1: `6065` is no index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
-                "6:1: `0x6065` is no index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
+                "5:1: `6065` is not the index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
+                "6:1: `0x6065` is not the index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
             ],
         ),
         (
             &objects("\"607Dh.10\" = 1\n\"607Dh.100h\" = 1"),
             &[
-                "5:1: `607Dh.10` is no sub-index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
-                "6:1: `607Dh.100h` is no sub-index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
+                "5:1: `607Dh.10` is not the sub-index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
+                "6:1: `607Dh.100h` is not the sub-index of an object; write \"6065h\" = 10000, or \"607Dh.2\" with a sub-index",
             ],
         ),
         (

@@ -110,7 +110,7 @@ fn a_block_has_its_inputs_and_no_others() {
     check(&[
         (
             &call("MC_MoveAbsolut", "position = \"1 mm\""),
-            &["2:9: there is no function block \"MC_MoveAbsolut\"; did you mean `MC_MoveAbsolute`?"],
+            &["2:9: unknown function block \"MC_MoveAbsolut\"; did you mean `MC_MoveAbsolute`?"],
         ),
         ("[[call]]\nname = \"a\"\n", &["1:1: missing `block` in `call`"]),
         (
@@ -173,7 +173,7 @@ fn a_block_has_its_inputs_and_no_others() {
         ),
         (
             &call("MC_MoveAbsolute", "position = \"1 mm\"\nvelocity = \"0 m/s\""),
-            &["4:12: `velocity` of MC_MoveAbsolute must be above zero; the target says in which direction"],
+            &["4:12: `velocity` of MC_MoveAbsolute must be above zero; the target gives the direction"],
         ),
         (
             &call("MC_MoveContinuousAbsolute", "position = \"1 mm\"\nend_velocity = \"40 m/min\""),
@@ -191,14 +191,14 @@ fn directions_belong_to_blocks() {
     check(&[
         (
             &call("MC_MoveVelocity", "direction = \"shortest\""),
-            &["3:13: MC_MoveVelocity does not go this way; write \"positive\", \"negative\" or \"current\""],
+            &["3:13: MC_MoveVelocity does not have this direction; write \"positive\", \"negative\" or \"current\""],
         ),
         (
             &call("MC_TorqueControl", "torque = \"1 Nm\"\ndirection = \"shortest\""),
-            &["4:13: MC_TorqueControl does not go this way; write \"positive\", \"negative\" or \"current\""],
+            &["4:13: MC_TorqueControl does not have this direction; write \"positive\", \"negative\" or \"current\""],
         ),
     ]);
-    let ignored = "4:13: `direction` is ignored: on an axis with ends one way leads to a position; give the period `modulo` in \
+    let ignored = "4:13: `direction` is ignored: on an axis with ends only one direction leads to a position; give the period `modulo` in \
                    `[axis]`, or leave it out";
     let positive = call("MC_MoveAbsolute", "position = \"1 mm\"\ndirection = \"positive\"");
     assert_eq!(said(&positive), [strings(&[]), strings(&[ignored])]);
@@ -232,23 +232,23 @@ fn names_are_unique_identifiers() {
     check(&[
         (
             &call("MC_Reset", "name = \"POWER\""),
-            &["3:8: there is a call `POWER` already; each has a `name` of its own"],
+            &["3:8: there is a call `POWER` already; each needs a different `name`"],
         ),
         (
             &format!("{}{}", call("MC_Reset", "name = \"MC_Reset_1\""), call("MC_Reset", "")),
-            &["4:1: there is a call `MC_Reset_1` already; each has a `name` of its own"],
+            &["4:1: there is a call `MC_Reset_1` already; each needs a different `name`"],
         ),
         (
             &call("MC_Reset", "name = \"a.b\""),
-            &["3:8: \"a.b\" is no name of an instance; write letters, digits and `_`, a letter first"],
+            &["3:8: \"a.b\" is not the name of an instance; write letters, digits and `_`, a letter first"],
         ),
         (
             &call("MC_Reset", "name = \"1st\""),
-            &["3:8: \"1st\" is no name of an instance; write letters, digits and `_`, a letter first"],
+            &["3:8: \"1st\" is not the name of an instance; write letters, digits and `_`, a letter first"],
         ),
         (
             &call("MC_Reset", "name = \"\""),
-            &["3:8: \"\" is no name of an instance; write letters, digits and `_`, a letter first"],
+            &["3:8: \"\" is not the name of an instance; write letters, digits and `_`, a letter first"],
         ),
         (&format!("{}{}", call("MC_Reset", ""), call("MC_Halt", "start = \"MC_Reset_0.Done\"")), &[]),
     ]);
@@ -262,7 +262,7 @@ fn conditions_name_outputs_times_and_positions() {
         (&move_when("{ after = \"power.Status\", delay = \"50 ms\" }"), &[]),
         (&move_when("{ above = \"50 mm\" }"), &[]),
         (&move_when("{ below = \"-50 mm\" }"), &[]),
-        (&move_when("\"powr.Status\""), &["4:9: there is no call `powr`; did you mean `power`?"]),
+        (&move_when("\"powr.Status\""), &["4:9: unknown call `powr`; did you mean `power`?"]),
         (&move_when("\"power.Done\""), &["4:9: MC_Power has no output `Done`; its outputs are Status, Valid, Error"]),
         (
             &move_when("\"power\""),
@@ -278,7 +278,7 @@ fn conditions_name_outputs_times_and_positions() {
         (&format!("{}{}", move_when("\"power.Status\""), call("MC_Halt", "start = \"turn.CommandAborted\"")), &[]),
         (&move_when("{ at = \"2 s\" }"), &["4:16: the run is over by then: it lasts 2 s"]),
         (&move_when("{ after = \"power.Status\", delay = \"3 s\" }"), &["4:43: the run is over by then: it lasts 2 s"]),
-        (&move_when("{}"), &["4:9: this says nothing of when; give `at`, `after`, `above` or `below`"]),
+        (&move_when("{}"), &["4:9: this condition is empty; give `at`, `after`, `above` or `below`"]),
         (
             &move_when("{ above = \"1 mm\", below = \"2 mm\" }"),
             &["4:35: `above` and `below` in one condition; give one of them"],
@@ -351,7 +351,7 @@ fn updates_count_with_continuous_update() {
         ),
         (
             &moved("continuous_update = true\nupdates = [{ when = { at = \"1 s\" }, velocity = \"-1 m/min\" }]"),
-            &["5:48: `velocity` of MC_MoveAbsolute must be above zero; the target says in which direction"],
+            &["5:48: `velocity` of MC_MoveAbsolute must be above zero; the target gives the direction"],
         ),
     ]);
 }
@@ -363,7 +363,7 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
     assert_eq!(
         errors,
         [
-            "-41:1: missing `duration` in `run`; how long calls take is not known beforehand",
+            "-41:1: missing `duration` in `run`; the duration of calls is not known beforehand",
             "-2:1: missing table `[bus]`; function blocks command a drive on a fieldbus: give its `cycle`",
         ]
     );
@@ -387,7 +387,7 @@ fn calls_need_a_bus_and_a_duration_and_no_program() {
         &format!("{profile}{POWER}"),
         &halt,
     );
-    assert_eq!(errors, ["-7:8: function blocks make the set-points themselves; write \"csp\", \"csv\" or \"pv\""]);
+    assert_eq!(errors, ["-7:8: function blocks generate the set-points themselves; write \"csp\", \"csv\" or \"pv\""]);
     let [errors, _] =
         said_of(AXIS, "", "[plc]\nhoming_required = true\n[axis.switches]\n[[program]]\nmove_to = \"1 mm\"\n");
     assert!(
@@ -420,13 +420,13 @@ fn velocities_are_told_to_a_drive_in_profile_velocity() {
         said_in_pv(&steps(", plateau_share = \"auto\", velocities = \"average\""))[0],
         [
             "3:61: `plateau_share` is for \"plateaus\"",
-            "3:82: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, by \"plateaus\", or by \
+            "3:82: MC_PositionProfile does not choose its velocities by this rule; it follows the cubic spline, by \"plateaus\", or by \
              \"steps\" along the spline",
         ]
     );
     let bus = BUS.replace("[plc]\n", "[plc]\nramp_start = \"actual\"\n");
     let [errors, _] = said_of(&lasting(), &format!("{bus}{POWER}"), &call("MC_Halt", ""));
-    assert_eq!(errors, ["-4:14: `ramp_start` is for the mode \"pv\"; elsewhere the drive is told positions"]);
+    assert_eq!(errors, ["-4:14: `ramp_start` is for the mode \"pv\"; elsewhere the drive receives positions"]);
     let rate = "table = { file = \"x.csv\", command_rate = \"100 Hz\" }";
     assert!(
         said(&call("MC_PositionProfile", rate))[0][0].contains("`command_rate` is for a table that is followed by")

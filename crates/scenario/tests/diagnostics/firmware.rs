@@ -29,7 +29,7 @@ fn what_chooses_the_current_is_one_thing() {
     let current =
         |keys: &str| mistakes(&AXIS.replace("bandwidth = \"1 kHz\"", &format!("bandwidth = \"1 kHz\"\n{keys}")));
     assert_eq!(current("strategy = \"mtpa\"\nfield_weakening = true\nfield_weakening_feedback = \"10 Hz\""), [""; 0]);
-    says(&current("strategy = \"mtpa\"\nd_reference = \"-1 Apk\""), &["there is no `d_reference`"]);
+    says(&current("strategy = \"mtpa\"\nd_reference = \"-1 Apk\""), &["has no `d_reference`"]);
     let unused = AXIS.replace("bandwidth = \"1 kHz\"", "bandwidth = \"1 kHz\"\nfield_weakening_share = 0.9");
     says(&warnings(&unused), &["`field_weakening_share` is not used"]);
     says(&current("dead_time_compensation = { dead_time = \"2 us\" }"), &["missing `frequency`"]);
@@ -66,7 +66,7 @@ fn a_motor_without_magnets_needs_saliency_and_a_current_in_d() {
         says(&motor(unlike, mtpa, table), &[key]);
     }
     let believed = "[drive.estimate.motor]\nflux_linkage = \"0 V s\"";
-    says(&with(believed), &["the motor that the drive believes in has no torque"]);
+    says(&with(believed), &["the motor of the drive's estimate has no torque"]);
     says(&with(&believed.replace('0', "-1")), &["`flux_linkage` must be zero or more"]);
 }
 

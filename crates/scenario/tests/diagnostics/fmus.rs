@@ -68,24 +68,24 @@ fn files_names_and_signals_are_there() {
             &format!("{LOAD}{LOAD}"),
             &[
                 "5:1: a second FMU is called `a`; give each its own `name`",
-                "8:17: `disturbance.load` is given by another FMU too; efforts do not add up here: let one FMU sum them",
+                "8:17: `disturbance.load` is given by another FMU too; efforts are not added here: let one FMU sum them",
             ],
         ),
         (
             "[[fmu]]\nname = \"load\"\nfile = \"a.fmu\"\n",
             &[
-                "2:8: `load` cannot name an FMU; signals are called `name.variable`: give a `name` without a point that begins no channel's",
+                "2:8: `load` cannot name an FMU; signals are called `name.variable`: give a `name` without a point that does not begin the name of a channel",
             ],
         ),
         (
             "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = \"load.positon\" }\n",
-            &["3:16: `load.positon` is no signal; did you mean `load.position`?"],
+            &["3:16: `load.positon` is not a signal; did you mean `load.position`?"],
         ),
         (
             "[[fmu]]\nfile = \"a.fmu\"\noutputs = { x = \"load.position\" }\n",
-            &[
-                "3:17: `load.position` is nothing that an FMU can give here; known here: `disturbance.motor`, `disturbance.load`, `setpoint.position`, `setpoint.velocity`, `setpoint.acceleration`, `effort.motor`, `voltage.d`, `voltage.q`",
-            ],
+            &["3:17: `load.position` is not an output that an FMU can have here; known here: `disturbance.motor`, \
+                 `disturbance.load`, `setpoint.position`, `setpoint.velocity`, `setpoint.acceleration`, `effort.motor`, \
+                 `voltage.d`, `voltage.q`"],
         ),
         (
             "[[fmu]]\nfile = \"a.fmu\"\ninputs = { x = 3 }\n",
@@ -103,12 +103,12 @@ fn steps_fit_and_keys_belong_together() {
     check(&[
         (
             "[coupling]\nstep = \"1 ms\"\n",
-            &["1:1: there is nothing to couple; give `[[fmu]]`; `[axis.fmu]` has a `step` of its own"],
+            &["1:1: there is nothing to couple; give `[[fmu]]`; `[axis.fmu]` has a separate `step`"],
         ),
         (&format!("{LOAD}step = \"0.1 ms\"\n"), &["5:8: `step` is 1.6000 base ticks, not a whole number; 125 us fits"]),
         (
             &format!("{LOAD}step = \"3 ms\"\n[coupling]\nstep = \"2 ms\"\n"),
-            &["5:8: `step` is 48 base ticks, no whole number of steps of `[coupling]`, 32"],
+            &["5:8: `step` is 48 base ticks, not a whole number of steps of `[coupling]`, 32"],
         ),
         // For algebraic loops, which are possible with every method.
         (&format!("{LOAD}[coupling]\niterations = 3\ntolerance = 1e-5\n"), &[]),
@@ -119,7 +119,7 @@ fn steps_fit_and_keys_belong_together() {
         ),
         (
             &format!("{LOAD}isolation = \"none\"\ncall_timeout = \"1 s\"\n"),
-            &["6:16: `call_timeout` is for an FMU in a process of its own; leave `isolation` out"],
+            &["6:16: `call_timeout` is for an FMU in a separate process; leave `isolation` out"],
         ),
     ]);
 }
@@ -144,7 +144,7 @@ fn mechanics_need_their_engine_and_their_outputs() {
         (
             &fmu("x = \"load.position\""),
             &[
-                "4:11: no output is `shaft.position`; mechanics give the motor's position in its own coordinate, and the load's \
+                "4:11: no output is `shaft.position`; mechanics give the motor's position in the motor coordinate, and the load's \
                unless they are one body",
             ],
         ),
@@ -194,8 +194,10 @@ fn sensors_that_nothing_reads_are_mistakes() {
         ),
         (
             &format!("[drive.current.sensor]\noffset_a = \"0.1 A\"\n{}", of("x = \"measured.current.q\"", effort)),
-            &["2:12: `offset_a` is not used: no FMU is given the measured current; leave it out: an FMU that gives \
-               `effort.motor` stands for the motor, too"],
+            &[
+                "2:12: `offset_a` is not used: no FMU is given the measured current; leave it out: an FMU that gives `effort.motor` \
+               replaces the motor, too",
+            ],
         ),
         (&format!("[drive.current.sensor]\noffset_a = \"0.1 A\"\n{}", of("x = \"measured.current.q\"", voltage)), &[]),
     ]);

@@ -87,8 +87,7 @@ fn a_wrong_dimension_names_both() {
         (
             "dc_link = \"320 V\"",
             "dc_link = \"230 Vrms\"",
-            "24:11: `dc_link` must be a voltage, but \"230 Vrms\" is an amplitude or an effective value; plain `A` or `V` is \
-             wanted here",
+            "24:11: `dc_link` must be a voltage, but \"230 Vrms\" is an amplitude or an effective value; plain `A` or `V` is needed here",
         ),
     ];
     for (old, new, said) in cases {

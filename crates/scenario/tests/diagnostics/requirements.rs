@@ -36,7 +36,7 @@ fn requirements_are_lifted_by_name() {
 #[test]
 fn a_requirement_that_there_is_not_has_a_suggestion() {
     for (tables, expected) in [
-        ("[requirements]\narives = false", "2:1: there is no requirement `arives`; did you mean `arrives`?"),
+        ("[requirements]\narives = false", "2:1: unknown requirement `arives`; did you mean `arrives`?"),
         ("[requirements]\nstable = \"no\"", "2:10: `stable` must be true or false, got \"no\""),
         ("[requirements]\nstable = 0", "2:10: `stable` must be true or false, got 0"),
     ] {
@@ -70,16 +70,19 @@ fn an_expected_fault_is_one_that_there_can_be() {
         ("fault = \"ErrorStop\"\nwho = \"axis\"\nfrom = \"0.2 s\"\nto = \"0.6 s\"", vec![]),
         ("fault = \"positive limit switch\"\nwho = \"link\"", vec![]),
         ("fault = \"2001h\"\nwho = \"power\"", vec![]),
-        ("fault = \"8611\"\nwho = \"drive\"", vec![format!("2:9: \"8611\" is no fault of `drive`; {drive}")]),
-        ("fault = \"Standstill\"\nwho = \"axis\"", vec![format!("2:9: \"Standstill\" is no fault of `axis`; {axis}")]),
-        ("fault = \"Error\"\nwho = \"power\"", vec![format!("2:9: \"Error\" is no fault of `power`; {block}")]),
+        ("fault = \"8611\"\nwho = \"drive\"", vec![format!("2:9: \"8611\" is not a fault of `drive`; {drive}")]),
+        (
+            "fault = \"Standstill\"\nwho = \"axis\"",
+            vec![format!("2:9: \"Standstill\" is not a fault of `axis`; {axis}")],
+        ),
+        ("fault = \"Error\"\nwho = \"power\"", vec![format!("2:9: \"Error\" is not a fault of `power`; {block}")]),
         (
             "fault = \"8611h\"\nwho = \"drives\"",
-            vec!["3:7: there is no `drives` that could have a fault; did you mean `drive`?".into()],
+            vec!["3:7: unknown source of faults: `drives`; did you mean `drive`?".into()],
         ),
         (
             "fault = \"8611h\"\nwho = \"drive\"\nfrom = \"0.6 s\"\nto = \"0.2 s\"",
-            vec!["5:6: `to` is 0.2 s and `from` 0.6 s: there is no time between".into()],
+            vec!["5:6: `to` is 0.2 s and `from` 0.6 s: the interval is empty".into()],
         ),
         (
             "fault = \"8611h\"\nwho = \"drive\"\nfrom = \"2 s\"",
@@ -117,8 +120,8 @@ fn an_expected_event_is_one_of_the_list_that_the_axis_can_have() {
     let scenario = parse("axis.toml", &text, None).unwrap_or_else(|error| panic!("{error}")).scenario;
     let on = Occasion::Event(Incident::BufferOverflow);
     assert_eq!(scenario.requirements.expected, [Expectation { on, from: 0.1, to: 0.2 }]);
-    let ends = "1:1: `end_stop` cannot come; give `[axis.end_stops]`, or leave `[[expect]]` out";
-    let warmth = "1:1: `winding_temperature` cannot come; give `[motor.thermal]`, or leave `[[expect]]` out";
+    let ends = "1:1: `end_stop` cannot occur; give `[axis.end_stops]`, or leave `[[expect]]` out";
+    let warmth = "1:1: `winding_temperature` cannot occur; give `[motor.thermal]`, or leave `[[expect]]` out";
     for (keys, expected) in [
         ("on = \"event\"\nevent = \"internal_limit\"", vec![]),
         ("on = \"fault\"\nfault = \"8611h\"\nwho = \"drive\"", vec![]),

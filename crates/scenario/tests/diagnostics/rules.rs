@@ -185,7 +185,7 @@ fn loops_turn_with_the_faster_ones_below_them() {
 #[test]
 fn estimates_of_what_is_not_there() {
     let estimate = |key: &str| after("[measure]", &format!("[drive.estimate]\n{key}\n[measure]"));
-    assert_eq!(estimate("gain = \"2 Nm/V\""), ["48:8: there is no ideal source whose `gain` could be estimated"]);
+    assert_eq!(estimate("gain = \"2 Nm/V\""), ["48:8: the axis has no ideal source whose `gain` could be estimated"]);
     assert_eq!(estimate("lead = \"5 mm\"\ngear_ratio = 3\ndc_link = \"600 V\""), [""; 0]);
     let ideal = AXIS
         .replace("lead = \"10 mm\"\n", "")
@@ -197,9 +197,9 @@ fn estimates_of_what_is_not_there() {
         estimate("lead = \"5 mm\"\ngain = \"3 N/V\"\ndc_link = \"600 V\"\nmotor = { resistance = \"1 Ohm\" }"),
         [
             "43:8: the axis has no `lead` to estimate",
-            "44:8: the output of the source is its effort: there is no `gain` to estimate",
-            "45:11: there is no inverter whose DC link could be estimated",
-            "46:9: there is no synchronous motor to estimate",
+            "44:8: the output of the source is its effort: it has no `gain` to estimate",
+            "45:11: the axis has no inverter whose DC link could be estimated",
+            "46:9: the axis has no synchronous motor to estimate",
         ]
     );
     assert_eq!(estimate("gear_ratio = 3"), ["43:14: the axis has no `gear_ratio` to estimate"]);
@@ -230,7 +230,7 @@ fn contradictions() {
         (
             "force = \"100 N\"",
             "torque = \"1 Nm\"",
-            "46:10: the load moves along a line and feels no `torque`; give a `force`",
+            "46:10: the load moves along a line and takes no `torque`; give a `force`",
         ),
         (
             "dc_link = \"320 V\"",
@@ -245,7 +245,7 @@ fn contradictions() {
         (
             "dc_link = \"320 V\"",
             "dc_link = \"320 V\"\nposition_feedback = \"load\"",
-            "25:21: there is no encoder on the load; add `[drive.load_encoder]`",
+            "25:21: the load has no encoder; add `[drive.load_encoder]`",
         ),
         (
             "stiffness = \"43 N/um\"\n",
@@ -290,7 +290,7 @@ fn contradictions() {
     let pause = after("move_to = \"250 mm\"", "wait = \"1 s\"\nvelocity = \"1 m/s\"");
     assert_eq!(pause, ["44:12: a pause has no `velocity`"]);
     let rigid = AXIS.replace("stiffness = \"43 N/um\"\ndamping = \"1659 N s/m\"\n", "");
-    let said = "34:10: the axis is rigid: there are no two masses; write \"rigid\", or give `stiffness` and \
+    let said = "34:10: the axis is rigid: it is a single mass; write \"rigid\", or give `stiffness` and \
                 `load_inertia` in `[drive.estimate]`";
     assert_eq!(mistakes(&rigid), [said]);
 }
@@ -398,8 +398,8 @@ fn a_limit_of_the_torque_at_the_drives_own_is_doubtful() {
                 .replace("settling_time = \"50 ms\"", limit),
         )
     };
-    let doubt = "a torque at `drive.max_torque` exceeds this limit: the current loop overshoots; `torque_peak` is what the motor \
-                 gives; limit `torque_reference_peak`, what the drive asks for, or leave 5 % and more above";
+    let doubt = "a torque at `drive.max_torque` exceeds this limit: the current loop overshoots; `torque_peak` is that of the \
+                 motor; limit `torque_reference_peak`, that of the drive's command, or leave 5 % and more above";
     for limit in ["6 Nm", "6.29 Nm"] {
         let found = said(&format!("torque_peak = \"{limit}\""));
         assert!(found.len() == 1 && found[0].ends_with(doubt), "{limit}: {found:?}");

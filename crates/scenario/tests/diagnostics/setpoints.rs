@@ -43,7 +43,7 @@ fn what_can_follow_a_move_in_motion() {
     check(&[
         ("", &format!("{passing}{TO}"), &[]),
         ("", &format!("{turning}{passing}{TO}"), &[]),
-        ("", passing, &["1:1: the program ends in motion; add a move to rest behind this one"]),
+        ("", passing, &["1:1: the program ends in motion; add a move to rest after this one"]),
         (
             "",
             &format!("{turning}{wait}{TO}"),
@@ -54,7 +54,7 @@ fn what_can_follow_a_move_in_motion() {
         (
             "",
             "[[program]]\nmove_to = \"1 mm\"\naborts_after = \"0.1 s\"\n",
-            &["3:16: there is no move to abort; give the step before a move, or leave `aborts_after` out"],
+            &["3:16: this step has no move to abort; give the step before a move, or leave `aborts_after` out"],
         ),
         ("", &format!("{TO}[[program]]\nmove_to = \"1 mm\"\naborts_after = \"0.1 s\"\n"), &[]),
         (
@@ -128,7 +128,7 @@ fn keys_that_a_way_does_not_have() {
         (
             "",
             &rockwell("shape = \"s-curve\", jerk_master_units = 2"),
-            &["3:53: jerk in master units needs `master_speed`; how many of them the master goes per second"],
+            &["3:53: jerk in master units needs `master_speed`; give the master units per second"],
         ),
         (
             "",
@@ -187,7 +187,7 @@ fn tables_of_points() {
             &table("file = \"wrong.csv\""),
             &[
                 "2:18: HERE/wrong.csv:3:1: `time` is 0 s, not later than 0 s at the point before: sort the rows by time and give \
-             each a time of its own",
+                 each a different time",
             ],
         ),
         (

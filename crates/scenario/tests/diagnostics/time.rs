@@ -24,7 +24,7 @@ fn what_never_ends_is_refused_where_it_is_written() {
 #[test]
 fn a_disturbance_that_acts_on_no_tick_is_refused() {
     let during = |keys: &str| after("force = \"100 N\"", &format!("force = \"100 N\"\n{keys}"));
-    let said = ["47:12: there is no tick between its start and its end, ticks are 0.0000625 s apart"];
+    let said = ["47:12: no tick is between its start and its end: ticks are 0.0000625 s apart"];
     assert_eq!(during("duration = \"10 us\"\nstart = \"1.00001 s\""), said);
     assert_eq!(during("duration = \"62.5 us\"\nstart = \"0.1 s\""), [""; 0]);
     let ends = AXIS
@@ -45,9 +45,9 @@ fn what_cannot_move_by_itself_cannot_be_disturbed() {
     let pushed = |load: &str, on: &str| {
         mistakes(&prescribed(&format!("{load}\n[[disturbance]]\nforce = \"1 N\"\non = \"{on}\"")))
     };
-    let motor = "the motor follows the set-point exactly and feels no disturbance";
+    let motor = "the motor follows the set-point exactly and takes no disturbance";
     let load =
-        format!("the load is rigid with a motor that follows the set-point exactly and feels no disturbance; {help}");
+        format!("the load is rigid with a motor that follows the set-point exactly and takes no disturbance; {help}");
     assert_eq!(pushed(elastic, "motor"), [format!("12:6: {motor}")]);
     assert_eq!(pushed(rigid, "motor"), [format!("11:6: {motor}")]);
     assert_eq!(pushed(rigid, "load"), [format!("11:6: {load}")]);
@@ -123,7 +123,7 @@ fn end_stops_are_around_where_the_load_begins() {
     );
     for (keys, rest, expected) in [
         ("positive = \"1 mm\"", "", "15:1: missing `stiffness` in `axis.end_stops`"),
-        (stiff, "", "15:1: there is no end stop; give `negative`, `positive` or both"),
+        (stiff, "", "15:1: the table has no end stop; give `negative`, `positive` or both"),
         (
             &format!("{stiff}\nnegative = \"-1 mm\"\npositive = \"-1 mm\""),
             "[initial]\nload_position = \"-1 mm\"\n",
@@ -147,8 +147,5 @@ fn end_stops_are_around_where_the_load_begins() {
         "lead = \"10 mm\"\n",
         &format!("lead = \"10 mm\"\nmodulo = \"100 mm\"\nend_stops = {{ positive = \"1 mm\", {stiff} }}\n"),
     );
-    assert_eq!(
-        turning[0],
-        "8:10: an axis that turns on and on has no end stops; leave out `modulo` or `[axis.end_stops]`"
-    );
+    assert_eq!(turning[0], "8:10: a modulo axis has no end stops; leave out `modulo` or `[axis.end_stops]`");
 }

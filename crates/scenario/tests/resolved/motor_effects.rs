@@ -193,8 +193,8 @@ fn a_flux_map_is_read_from_its_file() {
     let warned = loaded(&table(71.0, 0.0)).unwrap().warnings;
     assert!(warned.iter().any(|one| one.message.contains("without current the map has")), "{warned:?}");
     for (table, expected) in [
-        (table(60.6, 1.0), "map.csv: the table would make energy: between i_d = -20 and -8 A, i_q = -30 and 0 A"),
-        (table(60.6, 0.0).replace("-8,5,", "-8,4,"), "map.csv:17:1: there is no row for i_d = -20 A and i_q = 4 A"),
+        (table(60.6, 1.0), "map.csv: the table would generate energy: between i_d = -20 and -8 A, i_q = -30 and 0 A"),
+        (table(60.6, 0.0).replace("-8,5,", "-8,4,"), "map.csv:17:1: missing row for i_d = -20 A and i_q = 4 A"),
         (table(60.6, 0.0).replace("mV s", "mV"), "map.csv:1:21: `psi_d` cannot be in `mV`"),
         (table(60.6, 0.0).replace("\n0,", "\n1,"), "map.csv: `i_d` must have 0 A among its currents, got -20 A to 9 A"),
         (table(60.6, 0.0).replace(",0,", ",1,"), "map.csv: `i_q` must have 0 A among its currents, got -30 A to 30 A"),

@@ -52,7 +52,7 @@ fn a_table_in_counts_or_steps_is_the_one_in_lengths() {
     assert!((reversed.knots[2].x + 0.004).abs() < 1e-15, "{:?}", reversed.knots);
     // Without a bus a count has no meaning.
     let said = table(COUNTS, "", "").unwrap_err();
-    assert!(said.contains("a scenario by the `units` of its `[bus]`"), "{said}");
+    assert!(said.contains("`units` to the `[bus]` of a scenario"), "{said}");
     assert_eq!(table(STEPS, BUS, ", relative = false").unwrap_err(), "a table of steps counts from where the axis is");
 }
 

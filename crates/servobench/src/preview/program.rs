@@ -139,7 +139,7 @@ impl PlannedProgram {
             Doubt::new(
                 "measure.window",
                 format!(
-                    "±{} is as large as the way of `{}`, {}: a load that never moved would be inside, so that settling is not \
+                    "±{} is as large as the distance of `{}`, {}: a load that never moved would be inside, so that settling is not \
                      judged there",
                     text(window),
                     smallest.label,

@@ -148,7 +148,7 @@ mod tests {
             ("setpoint.order=3", "there is no name with a colon"),
             (": setpoint.order=3", "a name is missing"),
             ("setpoint.shaper={kind: 1}", "a name is missing"),
-            ("a: setpoint.order", "there is no `=`"),
+            ("a: setpoint.order", "missing `=`"),
             ("a: setpoint.shaper=[1; 2", "a bracket is not closed"),
             ("a: description=\"x; name=y", "the quote \" is not closed"),
             ("a: name=[1]]; b=2", "the value begins like TOML"),

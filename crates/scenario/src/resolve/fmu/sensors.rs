@@ -32,7 +32,7 @@ pub(super) fn check(file: &File, all: &[Fmu], by_voltage: bool, report: &mut Rep
         let help = if by_voltage {
             "connect an input to `measured.current.d` or `measured.current.q`, or leave it out"
         } else {
-            "leave it out: an FMU that gives `effort.motor` stands for the motor, too"
+            "leave it out: an FMU that gives `effort.motor` replaces the motor, too"
         };
         refuse(&sensor.spans(), "is not used: no FMU is given the measured current", help, report);
     }

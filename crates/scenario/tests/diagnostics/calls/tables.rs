@@ -23,16 +23,16 @@ fn tables_of_profiles() {
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", velocities = \"average\", follow = \"steps\" }"),
             &[
-                "3:40: MC_PositionProfile does not choose its velocities so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" \
+                "3:40: MC_PositionProfile does not choose its velocities by this rule; it follows the cubic spline, or by \"plateaus\"; by \"steps\" \
                  over a bus with `mode = \"pv\"`",
-                "3:60: MC_PositionProfile does not follow its table so; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a \
+                "3:60: MC_PositionProfile does not follow its table by this method; it follows the cubic spline, or by \"plateaus\"; by \"steps\" over a \
                  bus with `mode = \"pv\"`",
             ],
         ),
         (
             &call("MC_PositionProfile", "table = { file = \"x.csv\", passes = 1, plateau_share = 0.3 }"),
             &[
-                "3:36: `passes` is not for MC_PositionProfile; it goes along the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with \
+                "3:36: `passes` is not for MC_PositionProfile; it follows the cubic spline, or by \"plateaus\"; by \"steps\" over a bus with \
                  `mode = \"pv\"`",
                 "3:55: `plateau_share` is for \"plateaus\"",
             ],
