@@ -81,7 +81,7 @@ pub struct Inputs<'a> {
 
 /// Values measured by the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate signal")]
 pub struct Measured {
     /// Position of the encoder, unwrapped (increments).
     pub increments: i64,
@@ -126,7 +126,7 @@ pub struct Outputs {
 
 /// State from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Stateful)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate state")]
 pub struct State {
     power: PowerMemory,
     /// Mode requested by the master, and the active one.

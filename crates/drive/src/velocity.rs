@@ -127,7 +127,7 @@ pub fn limited(p: &Params, available: EffortLimits, limits: EffortLimits, effort
     let (limit, available) =
         if effort > 0.0 { (own.forward, available.forward) } else { (own.backward, available.backward) };
     let cut = if limit <= available { Cut::Effort } else { Cut::Available };
-    #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the very same bits")]
+    #[expect(clippy::float_cmp, reason = "a clamp that does not bind returns the same bits")]
     Output { effort: given, cut: if given == effort { None } else { Some(cut) } }
 }
 

@@ -22,7 +22,7 @@ impl Request {
         // Adding zero makes −0 a positive zero.
         let mut distance = finite("distance", distance)? + 0.0;
         if distance != 0.0 {
-            distance = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?;
+            distance = in_range("distance", distance, "correct its unit, or request a distance of 0")?;
         }
         bounds[order.derivative()] = distance.abs();
         Ok(Self { distance, bounds })

@@ -104,7 +104,7 @@ impl Move {
         if distance == 0.0 {
             return Ok(Trajectory::new(Order::Third, Setpoint::default(), [], |_| Setpoint::default()));
         }
-        let length = in_range("distance", distance, "correct its unit, or ask for a distance of 0")?.abs();
+        let length = in_range("distance", distance, "correct its unit, or request a distance of 0")?.abs();
         let ramps = |v: f64| 0.5 * v * (up.duration(v) + down.duration(v));
         let peak = if ramps(speed) <= length {
             speed

@@ -276,7 +276,7 @@ impl MechanicsSetup {
             Model::Chain(chain) => (chain.bodies().len(), "none, or one for each body"),
             Model::Mjcf(file) if file.motor_joint == file.load_joint => (1, "none, or one: one joint is both"),
             Model::Mjcf(_) => (2, "none, or those of motor and load"),
-            Model::Fmu(_) => (0, "none: the start values of the FMU say where it begins"),
+            Model::Fmu(_) => (0, "none: the start values of the FMU set its initial state"),
         };
         let count = self.initial.len();
         if count != 0 && count != most {
@@ -345,7 +345,7 @@ pub enum MechanicsError {
         message: String,
     },
     /// The mechanics cannot save or restore their state, or nothing is saved yet.
-    #[error("engine `mechanics` failed: it has no saved state to go back to")]
+    #[error("engine `mechanics` failed: it has no saved state to restore")]
     NotSaved,
     /// The engine keeps its last state only, and another one is to be restored.
     #[error(

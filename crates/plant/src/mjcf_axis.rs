@@ -47,7 +47,7 @@ impl MjcfModel {
         let name = &self.actuator;
         let asked = if max_effort.is_finite() { format!("up to {max_effort} {unit}") } else { "any effort".into() };
         let message = format!(
-            "the drive asks actuator `{name}` for {asked}, and the model limits it to {low} … {high} {unit}; lower \
+            "the drive requests {asked} of actuator `{name}`, and the model limits it to {low} … {high} {unit}; lower \
              the limit of the drive, or widen the range in the file"
         );
         Some(Refusal { place: RefusedAt::Name(name.clone()), message })

@@ -112,7 +112,7 @@ pub enum StartRefused {
         errors: u8,
     },
     /// A move is active.
-    #[error("a move runs: wait for its end, or break it off")]
+    #[error("a move is active: wait for it to finish, or abort it")]
     Running,
     /// The axis would jump to the first point.
     #[error(

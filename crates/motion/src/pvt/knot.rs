@@ -48,7 +48,7 @@ pub(crate) fn checked(knots: &[Knot]) -> Result<(), PlanError> {
                 name: "t",
                 value: knot.t,
                 bound: "at least 1e-30 s later than at the point before",
-                remedy: "sort the points by time and give each a time of its own",
+                remedy: "sort the points by time and give each a different time",
             });
         }
         last = knot.t;

@@ -64,7 +64,7 @@ impl<const N: usize> MovingAverages<N> {
         let t = finite("t", t)?;
         let distance = finite("distance", distance)? + 0.0;
         if distance != 0.0 {
-            in_range("distance", distance, "correct its unit, or ask for a distance of 0")?;
+            in_range("distance", distance, "correct its unit, or request a distance of 0")?;
         }
         let duration = self.duration();
         if t < 0.0 {

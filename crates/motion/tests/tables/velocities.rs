@@ -143,7 +143,7 @@ fn refusals_name_the_point() {
     knots[2].t = 1.0;
     assert_eq!(
         average(&mut knots, 0.0, 0.0).unwrap_err().to_string(),
-        "point 2: `t` must be at least 1e-30 s later than at the point before, got 1: sort the points by time and give \
-         each a time of its own"
+        "point 2: `t` must be at least 1e-30 s later than at the point before, got 1: sort the points by time and give each a \
+         different time"
     );
 }

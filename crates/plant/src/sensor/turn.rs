@@ -15,7 +15,7 @@ pub(super) fn whole(x: f64) -> f64 {
 pub(super) fn rotation(turns: f64) -> Rotation {
     let quarters = whole(4.0 * turns);
     let Rotation { sin, cos } = ElectricalAngle(TAU * (turns - quarters / 4.0)).rotation();
-    #[expect(clippy::cast_possible_truncation, reason = "a whole number; nobody turns 2⁶¹ times")]
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number, well below 2⁶¹ turns")]
     let quarters = quarters as i64;
     let (sin, cos) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
     let signed = |value: f64, is_negative: bool| if is_negative { -value } else { value };

@@ -287,7 +287,7 @@ fn what_is_wrong_with_a_table_is_told() {
     assert!(matches!(curl, E::MakesEnergy { curl, d: [-3.0, -1.0], .. } if (curl - 0.2).abs() < 1e-12), "{curl}");
     let said = curl.to_string();
     assert!(
-        said.starts_with("the table would make energy: between i_d = ") && said.ends_with("10 % are allowed"),
+        said.starts_with("the table would generate energy: between i_d = ") && said.ends_with("10 % are allowed"),
         "{said}"
     );
     // Both grow with their own current alone, but not with both at once: L_dq above √(L_d·L_q).

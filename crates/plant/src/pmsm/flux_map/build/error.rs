@@ -97,7 +97,8 @@ pub enum FluxMapError {
         flux: [f64; 2],
     },
     /// A closed cycle makes energy.
-    #[error("the table would make energy: between i_d = {} and {} A, i_q = {} and {} A, the cross inductances dpsi_d/di_q and dpsi_q/di_d differ by {} % \
+    #[error("the table would generate energy: between i_d = {} and {} A, i_q = {} and {} A, the cross inductances dpsi_d/di_q and \
+             dpsi_q/di_d differ by {} % \
              of the mean inductance, {} % are allowed", .d[0], .d[1], .q[0], .q[1], percent(*.curl), percent(MOST_CURL))]
     MakesEnergy {
         /// The cell, i_d.
@@ -119,7 +120,7 @@ pub enum FluxMapError {
         inductance: [f64; 3],
     },
     /// The table cannot be continued beyond its edges.
-    #[error("no flux linkage that grows with the currents goes on where the table ends")]
+    #[error("no flux linkage that grows with the currents continues where the table ends")]
     NoFrame,
 }
 
@@ -134,9 +135,9 @@ impl FluxMapError {
             Self::WithoutZero { .. } => "the currents begin at zero; let the table begin or end there",
             Self::NoMirror { .. } => "give negative i_q, too, or set psi_q to 0 where i_q is 0",
             Self::Falls { .. } => "look for a wrong sign, or for psi_d and psi_q that are exchanged",
-            Self::MakesEnergy { .. } => "look for rows and columns that are exchanged, or smooth what was measured",
-            Self::NotIncreasing { .. } => "smooth what was measured, or use fewer currents",
-            Self::NoFrame => "smooth what was measured at the ends of the table",
+            Self::MakesEnergy { .. } => "look for rows and columns that are exchanged, or smooth the measured values",
+            Self::NotIncreasing { .. } => "smooth the measured values, or use fewer currents",
+            Self::NoFrame => "smooth the measured values at the ends of the table",
         }
     }
 }
