@@ -74,8 +74,8 @@ fn every_write_that_the_drive_refuses_is_told_at_its_place() {
     for (k, (code, message)) in [
         ("0609 0032h", "`Following error window` (6065h:00h) must be at least 1, got 0"),
         ("0601 0002h", "`Statusword` (6041h:00h) is read only"),
-        ("0602 0000h", "there is no object 2FFFh"),
-        ("0609 0011h", "there is no 6099h:03h: `Homing speeds` has sub-indices up to 02h"),
+        ("0602 0000h", "object 2FFFh does not exist"),
+        ("0609 0011h", "6099h:03h does not exist: `Homing speeds` has sub-indices up to 02h"),
         ("0609 0031h", "must be at most 65535, got 65536"),
         ("0609 0030h", "`Homing method` (6098h:00h) must be one of"),
         ("0609 0036h", "must be below 2147483647, the other end"),

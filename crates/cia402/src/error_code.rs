@@ -73,21 +73,21 @@ error_codes! {
     DcLinkUnderVoltage = 0x3220, drive(VOLTAGE), "DC link under-voltage",
         "The power was gone while the drive function was enabled, or the measured DC link below its threshold";
     ArmatureInterrupted = 0x3321, drive(VOLTAGE), "armature circuit interrupted",
-        "A phase of the motor had no current that it was to have";
+        "A phase of the motor lacked the current requested of it";
     Temperature = 0x4310, drive(TEMPERATURE), "excess temperature of the motor",
         "The measured temperature of the winding was above its threshold";
     MotorBlocked = 0x7121, drive(PROFILE), "motor blocked",
-        "The motor stood although the loops were at their limit";
+        "The motor was stalled although the loops were at their limit";
     Commutation = 0x7122, drive(PROFILE), "motor error or commutation malfunction",
         "The motor gained speed against its torque-producing current";
     IncrementalSensor = 0x7305, drive(PROFILE), "incremental sensor 1 fault",
-        "The encoder of the motor failed, or a velocity or an effort that is no number was measured";
+        "The encoder of the motor failed, or a measured velocity or effort was not a number";
     IncrementalSensor2 = 0x7306, drive(PROFILE), "incremental sensor 2 fault",
         "The encoder of the load failed";
     Speed = 0x7310, drive(PROFILE), "speed",
         "The motor was faster than its threshold";
     DriveTimeout = 0x8130, Source::Link, "drive time-out",
-        "The drive was silent, or did not do what it was told, for longer than the drive time-out";
+        "The drive was silent, or did not follow its commands, for longer than the drive time-out";
     FollowingError = 0x8611, drive(PROFILE), "following error",
         "The following error was outside its window (6065h) for longer than its time-out (6066h)";
     SyncController = 0x8700, drive(PROFILE | COMMUNICATION), "sync controller",
@@ -95,7 +95,7 @@ error_codes! {
     External = 0x9000, Source::Link, "external fault",
         "The external fault signal came";
     DriveLeftOperation = 0xFF01, Source::Link, "drive left Operation enabled",
-        "The drive left Operation enabled without having been told to and without a fault";
+        "The drive left Operation enabled without a command and without a fault";
     NegativeLimitSwitch = 0xFF02, Source::Link, "negative limit switch",
         "A motion went into the switch of the negative end";
     PositiveLimitSwitch = 0xFF03, Source::Link, "positive limit switch",
@@ -103,7 +103,7 @@ error_codes! {
     PositionLost = 0xFF04, Source::Link, "position lost",
         "A position was read that its counter cannot show, or so far from the one before that counts are lost";
     Command = 0xFF05, Source::Link, "command that cannot be followed",
-        "The motion task gave a value that is no number, or one that the drive's units cannot express";
+        "The motion task gave a value that is not a number, or one that the drive's units cannot express";
 }
 
 impl ErrorCode {

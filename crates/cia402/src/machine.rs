@@ -52,7 +52,7 @@ impl PowerMemory {
 
 /// Inputs from the drive at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own, and most are bits of the statusword")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate signal, and most are bits of the statusword")]
 pub struct PowerInputs {
     /// The self-test is over.
     pub initialised: bool,

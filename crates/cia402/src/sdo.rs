@@ -63,13 +63,13 @@ impl fmt::Display for AbortCode {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum SdoError {
     /// An index that does not exist in the drive.
-    #[error("there is no object {index:04X}h: take one of the drive's object dictionary")]
+    #[error("object {index:04X}h does not exist: take one of the drive's object dictionary")]
     NoObject {
         /// Rejected index.
         index: u16,
     },
     /// A sub-index that does not exist in the object.
-    #[error("there is no {object}: `{name}` has sub-indices up to {highest:02X}h")]
+    #[error("{object} does not exist: `{name}` has sub-indices up to {highest:02X}h")]
     NoSubindex {
         /// Rejected object.
         object: Object,
@@ -95,7 +95,7 @@ pub enum SdoError {
         name: &'static str,
     },
     /// A write of a read-only object.
-    #[error("`{name}` ({object}) is read only: it tells what the drive does")]
+    #[error("`{name}` ({object}) is read only: it reports the state of the drive")]
     ReadOnly {
         /// The object.
         object: Object,
@@ -189,7 +189,7 @@ pub enum SdoError {
         bound: i32,
     },
     /// A factor that is inconsistent with the others.
-    #[error("{object} = {value} does not go with the other objects of the factor group: {reason}")]
+    #[error("{object} = {value} does not fit the other objects of the factor group: {reason}")]
     FactorGroup {
         /// The object.
         object: Object,
@@ -210,8 +210,7 @@ pub enum SdoError {
     },
     /// A write that would change an active motion.
     #[error(
-        "`{name}` ({object}) cannot be written while a motion of {} is under way: wait for its end, or take bit 4 of the \
-         controlword back",
+        "`{name}` ({object}) cannot be written while a motion of {} is under way: wait for its end, or clear bit 4 of the controlword",
         mode.abbreviation()
     )]
     UnderWay {

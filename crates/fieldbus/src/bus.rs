@@ -131,7 +131,7 @@ pub struct State {
 
 /// A cycle of the bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a fault of its own, and any of them may come together")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate fault, and any of them may come together")]
 pub struct Cycle {
     /// Number, from 0.
     pub number: u64,

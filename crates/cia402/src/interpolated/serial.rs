@@ -77,7 +77,7 @@ pub enum RecordError {
         bits: u16,
     },
     /// Values behind a command.
-    #[error("`values` must be none behind a command, got {values}: send the command as a word of its own")]
+    #[error("`values` must be none behind a command, got {values}: send the command as a separate word")]
     BehindCommand {
         /// Number of values.
         values: usize,

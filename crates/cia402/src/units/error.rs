@@ -100,7 +100,7 @@ pub enum UnitError {
     },
     /// Two readings so far apart that the direction between them is ambiguous.
     #[error(
-        "the counter went from {from} to {to}, {step} counts the nearest way, at most {largest_step} tell the \
+        "the counter went from {from} to {to}, {step} counts by the shorter distance, at most {largest_step} determine the \
          direction: read it more often, take a wider counter or start again from a known position"
     )]
     StepTooLong {

@@ -69,7 +69,7 @@ fn every_word_is_understood_or_refused() {
     );
     assert_eq!(
         Record::decode(0x8000, &[5]).unwrap_err().to_string(),
-        "`values` must be none behind a command, got 1: send the command as a word of its own"
+        "`values` must be none behind a command, got 1: send the command as a separate word"
     );
     assert_eq!(
         Record::decode(0x000A, &[]).unwrap_err().to_string(),

@@ -41,7 +41,7 @@ fn factors_that_do_not_multiply_are_refused_together() {
     let refused = dictionary.write(at, Value::Unsigned32(4_294_967_279), DISABLED).unwrap_err();
     assert_eq!(refused.abort_code(), AbortCode::Incompatible);
     let message = refused.to_string();
-    assert!(message.starts_with("6096h:02h = 4294967279 does not go with the other objects of the factor group: "));
+    assert!(message.starts_with("6096h:02h = 4294967279 does not fit the other objects of the factor group: "));
     assert!(message.ends_with("choose factors that have more in common, or a coarser unit"), "{message}");
     assert_eq!(dictionary.read(at), Ok(Value::Unsigned32(1)));
 }

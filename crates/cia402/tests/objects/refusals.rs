@@ -21,13 +21,13 @@ fn objects_that_are_not_there() {
     let dictionary = Dictionary::new();
     for index in [0, 0x1002, 0x6042, 0x60FB, 0xFFFF] {
         let refused = dictionary.read(object(index, 0)).unwrap_err();
-        let message = format!("there is no object {index:04X}h: take one of the drive's object dictionary");
+        let message = format!("object {index:04X}h does not exist: take one of the drive's object dictionary");
         assert_refused(refused, 0x0602_0000, &message);
     }
     let refused = dictionary.read(object(0x6041, 1)).unwrap_err();
-    assert_refused(refused, 0x0609_0011, "there is no 6041h:01h: `Statusword` has sub-indices up to 00h");
+    assert_refused(refused, 0x0609_0011, "6041h:01h does not exist: `Statusword` has sub-indices up to 00h");
     let refused = dictionary.read(object(0x6091, 3)).unwrap_err();
-    assert_refused(refused, 0x0609_0011, "there is no 6091h:03h: `Gear ratio` has sub-indices up to 02h");
+    assert_refused(refused, 0x0609_0011, "6091h:03h does not exist: `Gear ratio` has sub-indices up to 02h");
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn accesses_that_are_not_given() {
         (object(0x1018, 1), "`Vendor-ID` (1018h:01h)"),
         (object(0x607D, 0), "`Highest sub-index supported` (607Dh:00h)"),
     ] {
-        let message = format!("{name} is read only: it tells what the drive does");
+        let message = format!("{name} is read only: it reports the state of the drive");
         assert_refused(refused(at, 0_u8), 0x0601_0002, &message);
     }
 }
@@ -99,8 +99,8 @@ fn a_search_that_is_under_way() {
     let actuals = Actuals { statusword: Statusword::of(state), mode: 6, ..Actuals::default() };
     dictionary.mirror(&Commands::default(), &actuals);
     let refused = dictionary.write(object(0x6098, 0), Value::Integer8(17), state).unwrap_err();
-    let message = "`Homing method` (6098h:00h) cannot be written while a motion of hm is under way: wait for its end, or take \
-                   bit 4 of the controlword back";
+    let message = "`Homing method` (6098h:00h) cannot be written while a motion of hm is under way: wait for its end, or clear \
+                   bit 4 of the controlword";
     assert_refused(refused, 0x0800_0022, message);
 }
 

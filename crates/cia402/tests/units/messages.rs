@@ -88,7 +88,7 @@ fn readings_that_cannot_be_are_refused() {
     let mut axis = Unwrapped::new(counter, 7).unwrap();
     assert_eq!(
         message(axis.follow(32_775)),
-        "the counter went from 7 to 32775, -32768 counts the nearest way, at most 32767 tell the direction: read it \
+        "the counter went from 7 to 32775, -32768 counts by the shorter distance, at most 32767 determine the direction: read it \
          more often, take a wider counter or start again from a known position"
     );
 }

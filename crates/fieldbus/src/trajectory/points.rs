@@ -43,7 +43,7 @@ pub enum Unsendable {
     },
     /// A sub-mode with constant time, for points that have individual times.
     #[error(
-        "points by {} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got {code}: send the \
+        "points by {} carry their times: the interpolation sub-mode (60C0h) must be -2 or -3, got {code}: send the \
          points by 60C1h, or write another sub-mode",
         by.name()
     )]
@@ -55,7 +55,7 @@ pub enum Unsendable {
     },
     /// A point that the master sends too late: earlier ones fill the buffer or are on their way, or the points are closer than its cycles.
     #[error(
-        "point {point} of the table arrives after the drive has asked for it: with a delay of {delay} cycles the trajectory buffer runs \
+        "point {point} of the table arrives after the drive needs it: with a delay of {delay} cycles the trajectory buffer runs \
          empty; {}",
         Longest(*longest)
     )]
@@ -222,10 +222,10 @@ fn point(number: usize, encoding: PointEncoding, exact: &Exact) -> Result<Point,
     let is_by_segment = encoding.transfer == PointTransfer::MoveSegment;
     let is_line = encoding.is_sent_as_line(line.is_some());
     if is_by_segment && !is_line && place.abs() > FINE {
-        return refuse("a way in counts of", place, "±8388607", Help::MorePoints);
+        return refuse("a distance in counts of", place, "±8388607", Help::MorePoints);
     }
     if place.abs() > bits_32 {
-        let what = if is_relative { "a way in counts of" } else { "a position in counts of" };
+        let what = if is_relative { "a distance in counts of" } else { "a position in counts of" };
         return refuse(what, place, "±2147483647", Help::CoarserUnit);
     }
     let sent = if is_line {
@@ -242,7 +242,7 @@ fn point(number: usize, encoding: PointEncoding, exact: &Exact) -> Result<Point,
             return refuse(
                 "a jump of velocity in 0.1 counts/s to",
                 sent,
-                "no linear ways in sub-mode -3",
+                "no linear segments in sub-mode -3",
                 Help::LinearWays,
             );
         }

@@ -52,7 +52,7 @@ pub(crate) fn settings() -> Settings {
 
 /// An ideal drive: it is at its target one cycle later.
 #[derive(Debug, Clone, Copy)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a signal of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a separate signal")]
 pub(crate) struct Drive {
     pub(crate) power: PowerParams,
     pub(crate) memory: PowerMemory,

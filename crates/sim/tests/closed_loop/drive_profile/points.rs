@@ -201,7 +201,7 @@ fn points_that_the_object_does_not_hold_are_refused() {
         assert_eq!(
             refused(object, "\"60C0h\" = 0\n"),
             format!(
-                "points by {object} have times of their own: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
+                "points by {object} carry their times: the interpolation sub-mode (60C0h) must be -2 or -3, got 0: \
                  send the points by 60C1h, or write another sub-mode (`bus.trajectory_buffer`, `drive.objects.60C0h`)"
             )
         );
