@@ -32,7 +32,7 @@ pub enum CouplingError<E> {
     },
     /// A block returned from a step at an impossible time.
     #[error(
-        "`{block}` was asked to go from {from} s to {to} s and says that it is at {at} s, after {parts} parts of the step"
+        "`{block}` was requested to step from {from} s to {to} s and reports {at} s, after {parts} parts of the step"
     )]
     Astray {
         /// Name of the block.
@@ -48,7 +48,7 @@ pub enum CouplingError<E> {
     },
     /// An iteration did not converge.
     #[error(
-        "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; let them be more (`iterations`), let the loop agree less well (`tolerance`), or take a smaller step than {length} s"
+        "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; raise `iterations` or `tolerance`, or take a smaller step than {length} s"
     )]
     NotConverged {
         /// Blocks or outputs of the loop.
@@ -70,7 +70,7 @@ pub enum CouplingError<E> {
     },
     /// A signal of a loop grows, and faster than its exchange can follow.
     #[error(
-        "the coupling `{connection}` is unstable in communication step {step} ({time} s): what the exchange did not expect grew {growth:.0}-fold in {exchanges} exchanges, to more than half of the signal; take a smaller step than {length} s, {help}"
+        "the coupling `{connection}` is unstable in communication step {step} ({time} s): the error of the extrapolated exchange grew {growth:.0}-fold in {exchanges} exchanges, to more than half of the signal; take a smaller step than {length} s, {help}"
     )]
     Unstable {
         /// The connection, as `a.x -> b.u`.

@@ -133,7 +133,7 @@ pub enum NetworkError {
     },
     /// Outputs that follow each other without a step.
     #[error(
-        "algebraic loop {cycle}: each follows the one before without a step; let the loop be solved, or put a block with a state into it"
+        "algebraic loop {cycle}: each follows the one before without a step; solve the loop, or put a block with a state into it"
     )]
     AlgebraicLoop {
         /// The outputs of the loop.

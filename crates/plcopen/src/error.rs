@@ -121,7 +121,7 @@ impl ErrorId {
             Self::DriveFault => "the drive or its link reports a fault",
             Self::PowerLost => "the power failed, or never came back",
             Self::HomingFailed => "the drive did not find its reference",
-            Self::PermissionLost => "MC_Power took the permission for the direction of the running motion away",
+            Self::PermissionLost => "MC_Power withdrew the permission for the direction of the running motion",
             Self::Overspeed => "the axis ran faster than the input Velocity of MC_TorqueControl",
             Self::Profile => "a profile gave no set-point in a cycle, or one beyond the limits of the axis",
             Self::PlanLost => "a waiting move that had been accepted could not be planned when it became active",
@@ -226,7 +226,7 @@ pub enum BlockError {
         state: AxisState,
     },
     /// The axis has no reference.
-    #[error("{block}: `Position` {value} means nothing on an axis without a reference: execute MC_Home first")]
+    #[error("{block}: `Position` {value} has no meaning on an axis without a reference: execute MC_Home first")]
     NotHomed {
         /// The block.
         block: BlockName,
@@ -312,7 +312,7 @@ pub enum AxisError {
         state: AxisState,
     },
     /// The reference was not found.
-    #[error("the drive did not find its reference: see to its switches, and call MC_Reset")]
+    #[error("the drive did not find its reference: check its switches, and call MC_Reset")]
     HomingFailed,
     /// The axis moved in a direction that is no longer permitted.
     #[error("the axis moves at {velocity} while `{input}` of MC_Power is FALSE: stop it before")]

@@ -70,7 +70,7 @@ impl Ledger {
         self.last = self.last.wrapping_add(1).max(1);
         let entry = Entry { id: CommandId(self.last), block, progress: Progress::Buffered, failure: None };
         let free = self.open.iter_mut().find(|place| place.is_none());
-        debug_assert!(free.is_some(), "a command that is over was not said to be");
+        debug_assert!(free.is_some(), "a command that is over was not reported");
         if let Some(place) = free {
             *place = Some(entry);
         }

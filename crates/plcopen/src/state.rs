@@ -57,7 +57,7 @@ impl AxisState {
             Self::Homing => {
                 "wait for Done of MC_Home, end steps of homing with MC_FinishHoming, or leave it with MC_Stop"
             }
-            Self::Stopping => "wait for Done of MC_Stop and let its Execute fall",
+            Self::Stopping => "wait for Done of MC_Stop and reset its Execute",
             Self::ErrorStop => "remove the cause that MC_ReadAxisError names and call MC_Reset",
         }
     }

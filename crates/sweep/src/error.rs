@@ -16,7 +16,7 @@ pub enum SweepError {
     },
     /// A range on a logarithmic scale that has no logarithm.
     #[error(
-        "`{key}`: from {from} to {to} there is no logarithmic scale; both ends must have the same sign, and neither may be 0"
+        "`{key}`: a scale from {from} to {to} cannot be logarithmic; both ends must have the same sign, and neither may be 0"
     )]
     NoLogarithm {
         /// The key that varies.
@@ -27,7 +27,7 @@ pub enum SweepError {
         to: f64,
     },
     /// A range with fewer than two values.
-    #[error("`{key}`: a range needs at least 2 values, `count` is {count}; a single one stands in `values`")]
+    #[error("`{key}`: a range needs at least 2 values, `count` is {count}; write a single one in `values`")]
     TooFew {
         /// The key that varies.
         key: String,

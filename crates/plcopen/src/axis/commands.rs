@@ -105,7 +105,7 @@ impl Axis {
         }
         let before = self.queue.last().or(self.activity.command().map(|(_, command)| command));
         if command.begins_at_standstill() && before.is_some_and(|before| !before.ends_at_standstill()) {
-            return Err(command.wrong_buffer_mode("behind a command that ends at Standstill"));
+            return Err(command.wrong_buffer_mode("after a command that ends at Standstill"));
         }
         Ok(match self.state {
             _ if before.is_some_and(Command::is_homing_step) => AxisState::Homing,

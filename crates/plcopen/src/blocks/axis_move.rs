@@ -191,7 +191,7 @@ fn said(inputs: [Option<f64>; 4], input: &'static str) -> Result<Option<Jerk>, B
     let mut given = inputs.into_iter().enumerate().filter_map(|(way, value)| Some((way, value?)));
     let Some((way, value)) = given.next() else { return Ok(None) };
     if let Some((_, value)) = given.next() {
-        let bound = "said in one way: as a value, a part of the time, a part of that of the axis, or a time";
+        let bound = "given in one form: as a value, a part of the time, a part of that of the axis, or a time";
         return Err(BlockError::Input { block: BlockName::AxisMove, input, value, bound });
     }
     Ok(Some(match way {

@@ -154,7 +154,7 @@ impl PositionProfileInputs<'_> {
                 return refuse("Follow", share, "a share above 0 and at most 0.5");
             }
             Follow::Steps(rate) if axis.params().velocity_ramps.is_none() => {
-                return refuse("Follow", rate, "the spline itself on an axis that is told positions");
+                return refuse("Follow", rate, "the spline itself on an axis that receives positions");
             }
             Follow::Steps(rate) if !(1e-15..=1e15).contains(&rate) => {
                 return refuse("Follow", rate, "a positive number of velocities per second, from 1e-15 to 1e15");

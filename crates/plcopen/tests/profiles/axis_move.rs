@@ -120,7 +120,7 @@ fn what_it_refuses_is_named() {
         (AxisMoveInputs { jerk_time: Some(-1.0), ..s_curve }, "MAM: "),
         (
             AxisMoveInputs { jerk: Some(1.0), jerk_time: Some(1.0), ..s_curve },
-            "MAM: `AccelJerk` must be said in one way",
+            "MAM: `AccelJerk` must be given in one form",
         ),
         (
             AxisMoveInputs { jerk_time: Some(1.0), ..printed(ShapeKind::Trapezoid) },

@@ -115,7 +115,7 @@ fn an_absolute_table_needs_a_reference() {
     let inputs = PositionProfileInputs { execute: true, ..PositionProfileInputs::along(&PAIRS) };
     assert!(bench.cycle(|axis| block.step(axis, &inputs)).error);
     let refused = block.error().unwrap().to_string();
-    assert!(refused.starts_with("MC_PositionProfile: `Position` 0.1 means nothing"), "{refused}");
+    assert!(refused.starts_with("MC_PositionProfile: `Position` 0.1 has no meaning"), "{refused}");
     let relative = TimePosition { pairs: &PAIRS, is_absolute: false };
     bench.cycle(|axis| block.step(axis, &PositionProfileInputs { execute: false, ..inputs }));
     let inputs = PositionProfileInputs { time_position: relative, ..inputs };

@@ -225,7 +225,7 @@ fn steps_are_for_an_axis_that_is_told_velocities() {
     let inputs =
         PositionProfileInputs { execute: true, follow: Follow::Steps(100.0), ..PositionProfileInputs::along(&PAIRS) };
     assert!(bench.cycle(|axis| block.step(axis, &inputs)).error);
-    let said = "MC_PositionProfile: `Follow` must be the spline itself on an axis that is told positions, got 100: correct the \
+    let said = "MC_PositionProfile: `Follow` must be the spline itself on an axis that receives positions, got 100: correct the \
                 input";
     assert_eq!(block.error().unwrap().to_string(), said);
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -171,8 +171,7 @@ fn stop_holds_the_axis_until_execute_falls() {
     assert_eq!(refused.error_id, ErrorId::State);
     assert_eq!(
         go.error().unwrap().to_string(),
-        "MC_MoveVelocity: the state of the axis, Stopping, does not allow it: wait for Done of MC_Stop and let its \
-         Execute fall"
+        "MC_MoveVelocity: the state of the axis, Stopping, does not allow it: wait for Done of MC_Stop and reset its Execute"
     );
     assert_eq!(bench.cycle(|axis| stop.step(axis, &halted(false))), StopOutputs::default());
     assert_eq!(bench.axis.state(), AxisState::Standstill);

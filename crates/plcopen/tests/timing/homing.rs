@@ -110,7 +110,7 @@ fn homing_blends_with_nothing() {
 #[test]
 fn homing_does_not_wait_for_what_never_stands_still() {
     let refused =
-        "MC_Home: `BufferMode` must be behind a command that ends at Standstill, got mcBuffered: correct the input";
+        "MC_Home: `BufferMode` must be after a command that ends at Standstill, got mcBuffered: correct the input";
     let (mut bench, mut run, mut home) = (Bench::standstill(), MoveVelocity::default(), Home::default());
     let (_, outputs) = bench.cycle(|axis| (run.step(axis, &running(0.5)), home.step(axis, &buffered())));
     assert_eq!((outputs.error_id, home.error().unwrap().to_string().as_str()), (ErrorId::BufferMode, refused));

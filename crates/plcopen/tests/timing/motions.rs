@@ -201,7 +201,7 @@ fn homing_gives_the_reference_that_absolute_moves_need() {
     assert_eq!(bench.cycle(|axis| go.step(axis, &to(0.5))).error_id, ErrorId::NotHomed);
     assert_eq!(
         go.error().unwrap().to_string(),
-        "MC_MoveAbsolute: `Position` 0.5 means nothing on an axis without a reference: execute MC_Home first"
+        "MC_MoveAbsolute: `Position` 0.5 has no meaning on an axis without a reference: execute MC_Home first"
     );
     let homing = HomeInputs { execute: true, position: 2.0, ..HomeInputs::default() };
     bench.feedback.homing = Homing::Attained;
