@@ -82,7 +82,7 @@ def thin_out(random: Random, case: Case) -> None:
 def broken(run: dict) -> set[str]:
     """Requirements and limits that a run is said to break; `expected` is a fault that did not come."""
     heads = {re.split(r"[^a-z_]", reason, maxsplit=1)[0] for reason in run["reasons"]}
-    if any("expected, but did not come" in reason for reason in run["reasons"]):
+    if any("expected, but did not occur" in reason for reason in run["reasons"]):
         heads.add("expected")
     return heads | {name for name, of in run.get("requirements", {}).items() if of["standing"] in ("broken", "missed")}
 

@@ -56,7 +56,7 @@ pub enum Absence {
     },
     /// A load that never moves is inside the window.
     #[error(
-        "the window of ±{} is as large as the way of `{label}`, {}: a load that never moved would be inside",
+        "the window of ±{} is as large as the distance of `{label}`, {}: a load that never moved would be inside",
         Quantity::new(*window, unit), Quantity::new(*distance, unit)
     )]
     WindowIsTheWay {
@@ -144,10 +144,10 @@ pub enum Absence {
     #[error("the drive follows no points of a trajectory")]
     NoPoints,
     /// The metric needs a drive on a fieldbus.
-    #[error("no fieldbus tells what the drive limits")]
+    #[error("no fieldbus reports the limits of the drive")]
     NoBus,
     /// The scenario orders no fault on its bus.
-    #[error("no fault of the bus is ordered")]
+    #[error("the scenario has no fault of the bus")]
     NoBusFault,
     /// No FMU beside the axis exchanges a continuous signal.
     #[error("no continuous signal is exchanged with an FMU, or too few times")]
@@ -200,7 +200,7 @@ fn only_where(signal: Signal) -> &'static str {
         },
         (Presence::WithSwitching, _) => "; only an inverter that switches has ripple",
         (Presence::WithInverter, _) => "; only an inverter that is not ideal has losses",
-        (Presence::WithLink, _) => "; only a link with a capacitor of its own changes",
+        (Presence::WithLink, _) => "; only a link with a capacitor changes",
         (Presence::WithEndStops, _) => "; only an axis with end stops has it",
         (Presence::WithThermalModel, _) => "; only a motor with a thermal model warms up",
         _ => "",

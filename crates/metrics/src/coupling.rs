@@ -19,7 +19,7 @@ pub(crate) fn warning(recording: &Recording) -> Option<String> {
     (*error > COUPLING_ERROR_WARNED).then(|| {
         let percent = 100.0 * error;
         format!(
-            "coupling: the exchange `{connection}` is off by about {percent:.2} % of what it carries; take a smaller `coupling.step`, or \
+            "coupling: the exchange `{connection}` is off by about {percent:.2} % of its signal; take a smaller `coupling.step`, or \
              another `method` or `extrapolation`"
         )
     })

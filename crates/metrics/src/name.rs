@@ -179,7 +179,7 @@ impl Name {
 
 /// A name that no metric has.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("there is no metric `{name}`; docs/metrics.md lists them")]
+#[error("unknown metric `{name}`; docs/metrics.md lists them")]
 pub struct UnknownMetric {
     /// Rejected name.
     pub name: String,
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn an_unknown_name_is_quoted() {
         let e = "settling".parse::<Name>().unwrap_err();
-        assert_eq!(e.to_string(), "there is no metric `settling`; docs/metrics.md lists them");
+        assert_eq!(e.to_string(), "unknown metric `settling`; docs/metrics.md lists them");
     }
 
     #[test]

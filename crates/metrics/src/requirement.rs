@@ -330,7 +330,7 @@ pub(crate) mod tests {
         let verdict = judge_requirements(&recording, &Rules { expected: &expected, ..rules() });
         assert_eq!(
             verdict.reasons().collect::<Vec<_>>(),
-            ["expected, but did not come: 8611h of `drive` from 0.2 s to 0.6 s"]
+            ["expected, but did not occur: 8611h of `drive` from 0.2 s to 0.6 s"]
         );
     }
 

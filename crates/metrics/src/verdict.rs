@@ -95,7 +95,7 @@ impl Verdict {
         let broken = self.requirements.iter().filter(|(_, result)| result.standing == Standing::Broken);
         let broken = broken.flat_map(|(name, result)| result.reasons.iter().map(move |why| format!("{name}: {why}")));
         let missing = self.expected.iter().filter(|expected| expected.met.is_none());
-        let missing = missing.map(|expected| format!("expected, but did not come: {}", expected.expectation));
+        let missing = missing.map(|expected| format!("expected, but did not occur: {}", expected.expectation));
         misses.chain(broken).chain(missing)
     }
 }

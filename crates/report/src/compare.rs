@@ -195,7 +195,7 @@ mod tests {
         slow is out: arrives: the load ended 200 mm short of 200 mm (window ±5 µm);
         effort limit bound for 1.99 s
         slow is out: executed: `jog` was never executed: `home.Done` did not come
-        slow is out: expected, but did not come: 8611h of `drive` from 0.5 s on
+        slow is out: expected, but did not occur: 8611h of `drive` from 0.5 s on
         slow is out: stable: the velocity loop has a pole outside the unit circle
         (lifted)
         "#);

@@ -56,7 +56,7 @@ pub(crate) fn other_failures(run: &RunResult) -> Vec<String> {
         reasons.iter().take(MOST).map(move |why| format!("{name}: {why}")).chain(more)
     });
     let missing = run.expected.iter().filter(|expected| expected.met_at.is_none());
-    broken.chain(missing.map(|expected| format!("expected, but did not come: {}", expected.words()))).collect()
+    broken.chain(missing.map(|expected| format!("expected, but did not occur: {}", expected.words()))).collect()
 }
 
 /// Everything that is lifted: in one sentence the requirements that would hold, each that would not with its reason, then calls with

@@ -278,7 +278,7 @@ mod tests {
                    arrives: the load ended 200 mm short of 200 mm (window ±5 µm);
                      effort limit bound for 1.99 s
                    executed: `jog` was never executed: `home.Done` did not come
-                   expected, but did not come: 8611h of `drive` from 0.5 s on
+                   expected, but did not occur: 8611h of `drive` from 0.5 s on
                    lifted: stable: the velocity loop has a pole outside the unit
                      circle
                    lifted: 8611h of `drive` from 0.5 s on

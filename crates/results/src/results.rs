@@ -426,7 +426,7 @@ mod tests {
             |met| verdict_of((Standing::Met, vec![]), &[], vec![Expected { expectation: expectation.clone(), met }]);
         let (missing, came) = (of(None), of(Some(0.75)));
         assert_eq!((missing.verdict, came.verdict), (Outcome::Failed, Outcome::Passed));
-        assert_eq!(missing.reasons, ["expected, but did not come: 8611h of `drive` from 0.5 s on"]);
+        assert_eq!(missing.reasons, ["expected, but did not occur: 8611h of `drive` from 0.5 s on"]);
         assert_eq!(missing.expected[0].words(), "8611h of `drive` from 0.5 s on");
         let json = value(&Results::new(vec![came]));
         let expected = json!({ "fault": "8611h", "who": "drive", "from": 0.5, "to": null, "met_at": 0.75 });

@@ -187,7 +187,7 @@ pub fn short() -> RunResult {
     run.reasons = vec![
         format!("arrives: {short}"),
         format!("executed: {jog}"),
-        "expected, but did not come: 8611h of `drive` from 0.5 s on".into(),
+        "expected, but did not occur: 8611h of `drive` from 0.5 s on".into(),
     ];
     run.warnings = vec!["two frames were lost".into()];
     run.events =

@@ -234,7 +234,7 @@ pub fn write_row(now: &Instant, to: Row<'_>) {
 
 /// A name that no signal has.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("there is no signal `{name}`")]
+#[error("unknown signal `{name}`")]
 pub struct UnknownSignal {
     /// Rejected name.
     pub name: String,

@@ -62,7 +62,7 @@ fn an_expected_event_has_its_time() {
     assert_eq!(reasons(0.3, 0.4), [""; 0]);
     let [harm, missing] = &reasons(1.0, 2.0)[..] else { panic!() };
     assert!(harm.starts_with("no_harm: the load meets the positive end stop at 78"), "{harm}");
-    assert_eq!(missing, "expected, but did not come: the event `end_stop` from 1 s to 2 s");
+    assert_eq!(missing, "expected, but did not occur: the event `end_stop` from 1 s to 2 s");
 }
 
 /// In both files the contact is meant, or nobody's doing: no lift and no expectation keeps them green. Pressed at a stop in another
@@ -89,7 +89,7 @@ fn what_harms_nothing_can_be_expected_too() {
         assert_eq!(reasons(incident), [""; 0], "{name}");
         assert_eq!(
             reasons(Incident::BufferOverflow),
-            ["expected, but did not come: the event `buffer_overflow`"],
+            ["expected, but did not occur: the event `buffer_overflow`"],
             "{name}"
         );
     }

@@ -112,7 +112,7 @@ fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
             CallFate::Failed { time, id, message } => {
                 Some((*time, level, format!("{who} failed: {message} (ErrorID {id:X}h)")))
             }
-            CallFate::Unfinished(why) => Some((run.end(), level, format!("{who} did not come to its end: {why}"))),
+            CallFate::Unfinished(why) => Some((run.end(), level, format!("{who} did not finish: {why}"))),
             CallFate::Executed => None,
         }
     };

@@ -61,7 +61,7 @@ fn silent(task: &Task<'_>) -> Option<String> {
     });
     let pair = pairs.find(|pair| !is_done(task, &pair[0], &pair[1]))?;
     let [from, to] = [pair[1].rows.start, pair[1].rows.end - 1].map(|row| task.time(row));
-    Some(format!("the task requests nothing from {from} to {to}, and what was planned is not made"))
+    Some(format!("the task requests nothing from {from} to {to}, and the planned motion is not executed"))
 }
 
 /// True if nothing remained planned when the task fell `silent`, or the load does it nevertheless.
@@ -112,7 +112,7 @@ fn wrong(call: &Call, expected: &[Expectation]) -> Option<String> {
         CallFate::Executed => None,
         CallFate::NeverExecuted(_) | CallFate::Unfinished(_) if call.is_optional => None,
         CallFate::NeverExecuted(why) => Some(why.clone()),
-        CallFate::Unfinished(why) => Some(format!("`{name}` ({block}) did not come to its end: {why}")),
+        CallFate::Unfinished(why) => Some(format!("`{name}` ({block}) did not finish: {why}")),
         CallFate::Failed { .. } if expected.iter().any(|expectation| fits(expectation, call).is_some()) => None,
         CallFate::Failed { time, id, message } => {
             Some(format!("`{name}` ended in Error {id:04X}h at {}: {message}", Quantity::new(*time, "s")))
@@ -160,7 +160,7 @@ mod tests {
         let enabled = silent(0.5, "Operation enabled", halfway);
         assert_eq!(
             found(&enabled, &rules(), &[]).unwrap(),
-            ["the task requests nothing from 500 ms to 2.00 s, and what was planned is not made"]
+            ["the task requests nothing from 500 ms to 2.00 s, and the planned motion is not executed"]
         );
         let came = Expected { expectation: expecting("drive", "8611h", 0.0, 1.0), met: Some(0.5) };
         assert_eq!(found(&enabled, &rules(), &[came]), None);
@@ -206,7 +206,7 @@ mod tests {
             [
                 "`call_1` was not executed: `home.Done` did not become TRUE",
                 "`call_2` ended in Error 2002h at 250 ms: the axis has no reference",
-                "`call_3` (MC_MoveAbsolute) did not come to its end: its `Done` did not become TRUE",
+                "`call_3` (MC_MoveAbsolute) did not finish: its `Done` did not become TRUE",
             ]
         );
     }

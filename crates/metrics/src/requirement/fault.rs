@@ -101,7 +101,7 @@ fn words(fault: &Occurrence, recording: &Recording) -> String {
             let at_once = |start: f64| (start - fault.start).abs() <= recording.rate.period();
             let why = recording.events.iter().find(|event| event.source == "axis" && at_once(event.start));
             let why = why.map_or_else(String::new, |event| format!(": {}", event.message));
-            format!("the axis goes to ErrorStop at {time}{why}")
+            format!("the axis enters ErrorStop at {time}{why}")
         }
     }
 }
@@ -149,7 +149,7 @@ mod tests {
     fn every_fault_that_is_not_expected_is_named() {
         assert_eq!(
             found(&following_error(), &[]).unwrap(),
-            ["the drive has the fault 8611h at 300 ms", "the axis goes to ErrorStop at 302 ms: the drive has a fault",]
+            ["the drive has the fault 8611h at 300 ms", "the axis enters ErrorStop at 302 ms: the drive has a fault",]
         );
         let healthy = recording(&[("drive", "fault", &[(0.0, "none")]), ("axis", "state", &[(0.0, "Standstill")])]);
         assert_eq!(found(&healthy, &[]).unwrap(), [""; 0]);
@@ -173,7 +173,7 @@ mod tests {
         // A second ErrorStop, when the expected fault is gone, is separate.
         let mut again = following_error();
         again.signals[2].changes.push((0.9, "ErrorStop".into()));
-        assert_eq!(found(&again, &expected).unwrap(), ["the axis goes to ErrorStop at 900 ms"]);
+        assert_eq!(found(&again, &expected).unwrap(), ["the axis enters ErrorStop at 900 ms"]);
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
         let (off, row) = way.worst;
         (off.is_nan() || off > bound).then(|| {
             format!(
-                "the load is {} from where the loop would bring it at {}{}: more than {} on a way of {}{}",
+                "the load is {} from the response of the loop at {}{}: more than {} on a path of {}{}",
                 task.length(off),
                 task.time(row),
                 task.within(row),
@@ -98,8 +98,9 @@ mod tests {
         assert_eq!(
             found(&recording, &rules(), &[]),
             [
-                "the load is 200 mm from where the loop would bring it at 499 ms in `move to 0.2 m`: more than 49.9 mm on a way of 200 mm; effort limit bound for 300 ms",
-                "the load is 200 mm from where the loop would bring it at 500 ms in `move to 0 m`: more than 49.9 mm on a way of 200 mm",
+                "the load is 200 mm from the response of the loop at 499 ms in `move to 0.2 m`: more than 49.9 mm on a path of \
+                 200 mm; effort limit bound for 300 ms",
+                "the load is 200 mm from the response of the loop at 500 ms in `move to 0 m`: more than 49.9 mm on a path of 200 mm",
             ]
             .map(str::to_owned)
         );

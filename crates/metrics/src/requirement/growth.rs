@@ -40,7 +40,7 @@ pub(super) fn growth(recording: &Recording, rules: &Rules<'_>) -> Option<String>
         let (swings, shortest, what) = of(recording, position, calm, rules);
         let (from, to) = grows(&swings, shortest)?;
         let (from, to) = (Quantity::new(recording.time_of(from), "s"), Quantity::new(recording.time_of(to), "s"));
-        Some(format!("the {what} of the motor swings further and further from {from} to {to}"))
+        Some(format!("the {what} of the motor oscillates with growing amplitude from {from} to {to}"))
     })
 }
 
@@ -133,7 +133,7 @@ mod tests {
             assert_eq!(found.is_some(), is_found, "{rate}: {found:?}");
         }
         let found = found(|t| 1e-4 * (3.0 * t).exp() * (TAU * 33.0 * t).sin()).unwrap();
-        assert!(found.starts_with("the position of the motor swings further and further from "), "{found}");
+        assert!(found.starts_with("the position of the motor oscillates with growing amplitude from "), "{found}");
     }
 
     /// A beat grows too, but less and less, in any part of it; so does a driven oscillation. A drift does not swing,

@@ -24,7 +24,7 @@ pub(super) fn misplaced(task: &Task<'_>) -> Option<String> {
     let off = (zero - home_at).abs();
     (off.is_nan() || off > bound).then(|| {
         format!(
-            "after homing the position counts from {} of the machine, not from {} as the scenario says (window ±{}): correct the home switch, or give MC_Home the `position` at which it is",
+            "after homing the position counts from {} of the machine, not from {} as the scenario requires (window ±{}): correct the home switch, or give MC_Home the `position` at which it is",
             task.length(zero),
             task.length(home_at),
             task.length(bound)
@@ -60,7 +60,7 @@ mod tests {
         let rules = Rules { home_at: Some(0.012), window: Some(2e-5), ..rules() };
         assert_eq!(
             found(&homed(0.013, "TRUE"), &rules).unwrap(),
-            "after homing the position counts from 13.0 mm of the machine, not from 12.0 mm as the scenario says (window ±20.0 µm): correct the home switch, or give MC_Home the `position` at which it is"
+            "after homing the position counts from 13.0 mm of the machine, not from 12.0 mm as the scenario requires (window ±20.0 µm): correct the home switch, or give MC_Home the `position` at which it is"
         );
         assert_eq!(found(&homed(f64::NAN, "TRUE"), &rules).map(|_| ()), Some(()));
         assert_eq!(found(&homed(0.013, "FALSE"), &rules), None, "`executed` says that homing did not end");

@@ -66,7 +66,7 @@ fn ringing(recording: &Recording, position: &[f64], rest: &Calm, rules: &Rules<'
     let unit = recording.about.axis_unit.as_str();
     let [from, to] = [earlier.first()?.end, later.last()?.end].map(|row| Quantity::new(recording.time_of(row), "s"));
     let size = Quantity::new(mean(later), unit);
-    Some(format!("the motor goes on to swing by {size} after a motion, from {from} to {to}"))
+    Some(format!("the motor keeps oscillating by {size} after a motion, from {from} to {to}"))
 }
 
 /// Decay of the pole that oscillates and fades last, or of the slowest one where none does (1/s), of a loop that is known.

@@ -71,7 +71,7 @@ pub(super) fn broken(task: &Task<'_>) -> Option<Vec<String>> {
             let off = (rows.load[row] - place).abs();
             if off.is_nan() || off > bound {
                 reasons.push(format!(
-                    "the load is {} from where it stands at {}: more than {}{}",
+                    "the load is {} from its rest position at {}: more than {}{}",
                     task.length(off),
                     task.time(row),
                     task.length(bound),

@@ -49,7 +49,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Velocity of the load between the rows `from` and `to`; 0 if there is no time between them.
+    /// Velocity of the load between the rows `from` and `to`; 0 if they coincide.
     pub(super) fn load_velocity(&self, from: usize, to: usize) -> f64 {
         if to <= from { 0.0 } else { (self.load[to] - self.load[from]) / ((to - from) as f64 * self.h) }
     }

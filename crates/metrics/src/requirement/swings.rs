@@ -40,14 +40,14 @@ pub(super) fn between_limits(recording: &Recording, rules: &Rules<'_>) -> Option
     let Some((limit, swinging)) = worst.max_by_key(|(_, swinging)| swinging.excess) else { return not_known };
     let Swinging { times, first, last, .. } = swinging;
     let (first, last) = (Quantity::new(first, "s"), Quantity::new(last, "s"));
-    Some(format!("it goes from one {limit} to the other {times} times from {first} to {last}"))
+    Some(format!("it alternates from one {limit} to the other {times} times from {first} to {last}"))
 }
 
 /// Reason if there are more alternations than are kept, and the last one that is kept counts: the others may be unexplained.
 fn words_of_unknown(limit: &str, times: &[f64], counting: &[f64]) -> Option<String> {
     let last = times.get(LimitReversals::MOST - 1).filter(|last| counting.last() == Some(*last))?;
     let (most, last) = (LimitReversals::MOST, Quantity::new(*last, "s"));
-    Some(format!("it has gone from one {limit} to the other {most} times by {last}, and what follows is not judged"))
+    Some(format!("it has alternated from one {limit} to the other {most} times by {last}, and the rest is not judged"))
 }
 
 /// A part of a run in which a quantity swings.
@@ -168,7 +168,7 @@ mod tests {
         }
         assert_eq!(
             between_limits(&reversing(9, 1e-3, |_| 0.0), &rules()).unwrap(),
-            "it goes from one effort limit to the other 9 times from 100 ms to 180 ms"
+            "it alternates from one effort limit to the other 9 times from 100 ms to 180 ms"
         );
     }
 
@@ -234,7 +234,7 @@ mod tests {
             let times = (0..count).map(|k| 1e-4 * k as f64).collect();
             recording.limit_reversals = vec![LimitReversals { limit: "effort limit".into(), times }];
             let found = between_limits(&recording, &Rules { increment, ..rules() });
-            let is_unknown = found.as_ref().is_some_and(|found| found.contains("what follows is not judged"));
+            let is_unknown = found.as_ref().is_some_and(|found| found.contains("the rest is not judged"));
             assert_eq!((found.is_some(), is_unknown), (is_found, is_found), "{increment} {count}: {found:?}");
         }
     }
