@@ -57,7 +57,7 @@ pub static CURRENT_RMS: Physical = physical("a current (Arms or Apk)", "Arms", &
 pub static CURRENT_OF_A_PHASE: Physical = physical("a current (A)", "A", &[(D::AMPERE, 1.0), (AMPERE_PEAK, 1.0)]);
 /// Effective value of a noise.
 pub static CURRENT_NOISE: Physical =
-    physical("a current (A, effective)", "A", &[(D::AMPERE, 1.0), (AMPERE_PEAK, 1.0 / SQRT_2)]);
+    physical("a current (A, RMS)", "A", &[(D::AMPERE, 1.0), (AMPERE_PEAK, 1.0 / SQRT_2)]);
 /// Ohms.
 pub static RESISTANCE: Physical = physical("a resistance", "Ohm", &[(D::VOLT.times(D::AMPERE, -1), 1.0)]);
 /// Henries.

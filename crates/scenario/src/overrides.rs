@@ -221,7 +221,7 @@ impl Setting<'_> {
             Value::Array(items) => {
                 let count = items.len();
                 let Ok(at) = part.name.parse::<usize>() else {
-                    let help = format!("say which: `{}[0].{}`", self.of.up_to(index - 1), part.name);
+                    let help = format!("choose an element: `{}[0].{}`", self.of.up_to(index - 1), part.name);
                     self.refuse_with(index, "is a list", &help);
                     return;
                 };

@@ -57,9 +57,9 @@ fn other(is: Dimension, wanted: &[&Physical]) -> (String, &'static str) {
     let angle_per_second = Dimension::RADIAN.times(Dimension::SECOND, -1);
     if accepted().any(|own| own.without_amplitude() == is.without_amplitude()) {
         return if is == is.without_amplitude() {
-            ("neither an amplitude nor an effective value".to_owned(), "write `Arms` or `Apk`, `Vrms` or `Vpk`")
+            ("neither an amplitude nor an RMS value".to_owned(), "write `Arms` or `Apk`, `Vrms` or `Vpk`")
         } else {
-            ("an amplitude or an effective value".to_owned(), "plain `A` or `V` is needed here")
+            ("an amplitude or an RMS value".to_owned(), "plain `A` or `V` is needed here")
         };
     }
     let help = if is == Dimension::KILOGRAM && accepts(Dimension::METRE.times(Dimension::SECOND, -2)) {

@@ -199,7 +199,7 @@ fn refuse_home_at(file: &File, report: &mut Report) {
     let homes = |call: &At<crate::file::Call>| call.value.block.given().is_none_or(|block| block.homes());
     let is_homed = file.call.given().is_some_and(|calls| calls.0.iter().any(homes));
     if !is_homed {
-        let message = "`home_at` is where homing puts the zero, and nothing homes the axis";
+        let message = "`home_at` is the position of the zero after homing, and nothing homes the axis";
         report.error(at.span, message, "call \"MC_Home\", or leave `home_at` out");
     }
     if let Some(axis) = file.axis.given()
@@ -292,7 +292,7 @@ fn one_of(keys: &[(&str, Option<Span>)], report: &mut Report) -> Alternative {
     let mut ours = there().filter(|(.., span)| span.source.authority() == first);
     match (ours.next(), ours.next()) {
         (Some((_, first, _)), Some((_, second, span))) => {
-            report.error(span, format!("`{first}` and `{second}` say the same thing"), "give one of them");
+            report.error(span, format!("`{first}` and `{second}` give the same quantity"), "give one of them");
             Alternative::Contradiction
         }
         (Some((i, ..)), None) => Alternative::Use(i),

@@ -118,7 +118,7 @@ fn a_mistake_is_told_with_its_place_on_the_command_line() {
         ("setpoint.velocity=1", "`velocity` needs a unit, got the bare number 1; write \"1 m/s\""),
         ("setpoint.velocity.x=1", "`setpoint.velocity` is a string and has no parts"),
         ("program[2].wait=1 s", "`program[2]` does not exist; `program` has 2 elements, `program[0]` to `program[1]`"),
-        ("program.wait=1 s", "`program` is a list; say which: `program[0].wait`"),
+        ("program.wait=1 s", "`program` is a list; choose an element: `program[0].wait`"),
         (
             "call[0].velocity=1 m/s",
             "unknown list `call`; known here: `run`, `axis`, `motor`, `drive`, `setpoint`, `program`, `record`",
@@ -174,7 +174,7 @@ fn a_key_is_set_once() {
 #[test]
 fn of_two_overrides_that_say_the_same_none_is_preferred() {
     let said = mistakes(TEXT, &["drive.velocity.gain=3000 N s/m", "drive.velocity.bandwidth=20 Hz"]);
-    assert!(said[0].contains("say the same thing"), "{said:?}");
+    assert!(said[0].contains("give the same quantity"), "{said:?}");
 }
 
 /// The broken part of a file may contain the key that the override needs.

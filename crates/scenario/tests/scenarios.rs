@@ -336,8 +336,8 @@ fn describe_blocks(schema: &Json, out: &mut String) {
     let choices = &schema["properties"]["call"]["items"]["properties"]["block"]["oneOf"];
     let _ = write!(
         out,
-        "\n### Blocks\n\nWhat `call.block` can name. `start` and `stop` say when `Execute` or `Enable` is TRUE; conditions can name \
-         the outputs.\n\n| block | what it does | inputs | outputs |\n|---|---|---|---|\n"
+        "\n### Blocks\n\nFunction blocks for `call.block`. `start` and `stop` set `Execute` or `Enable`; conditions can name the \
+         outputs.\n\n| block | function | inputs | outputs |\n|---|---|---|---|\n"
     );
     for choice in choices.as_array().unwrap() {
         let list = |key: &str| {
@@ -356,7 +356,7 @@ fn describe_channels(schema: &Json, out: &mut String) {
     let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["oneOf"];
     let _ = write!(
         out,
-        "\n### Channels\n\nWhat `record.channels` can name. U is the unit of the axis, m or rad; E that of the motor's torque \
+        "\n### Channels\n\nChannels for `record.channels`. U is the unit of the axis, m or rad; E that of the motor's torque \
          or force, N m or N; F that of the load's. Currents and voltages are amplitudes.\n\n| channel | unit | meaning |\n\
          |---|---|---|\n"
     );

@@ -101,10 +101,8 @@ fn d_reference(slot: &Slot<f64>, known: &Known<'_>, report: &mut Report) -> Resu
     };
     let Some(Motor::Pmsm { motor, max_current, .. }) = known.motor else { return Ok(at.value) };
     if at.value.abs() >= *max_current {
-        let message = format!(
-            "`d_reference` of {:.5} A (peak) leaves nothing of the current limit, {max_current:.5} A",
-            at.value
-        );
+        let message =
+            format!("`d_reference` of {:.5} A (peak) uses up the current limit, {max_current:.5} A", at.value);
         report.error(at.span, message, "`motor.max_current` bounds the vector of both axes; give less");
         return Err(Reported);
     }

@@ -277,11 +277,11 @@ fn check_ports(file: &File, given: &[At<file::Fmu>], all: &[Fmu], known: Known<'
             report.error(span, "the duration of the set-point of an FMU is unknown", "give `duration` in `[run]`");
         }
     } else if let Some(span) = of(LoopSignal::SetpointVelocity).or(of(LoopSignal::SetpointAcceleration)) {
-        report.error(span, "a set-point has a position", "connect `setpoint.position` too");
+        report.error(span, "a set-point needs a position", "connect `setpoint.position` too");
     }
     let (d, q, effort) = (of(LoopSignal::VoltageD), of(LoopSignal::VoltageQ), of(LoopSignal::Effort));
     if let (Some(span), None) | (None, Some(span)) = (d, q) {
-        report.error(span, "a voltage has two parts", "connect `voltage.d` and `voltage.q`");
+        report.error(span, "a voltage needs both parts", "connect `voltage.d` and `voltage.q`");
     }
     if let (Some(span), Some(_)) = (d.or(q), effort) {
         report.error(span, "`effort.motor` replaces drive and motor, a voltage the drive alone", "connect one of them");

@@ -31,7 +31,7 @@ fn dry(keys: &FrictionKeys<'_>, motion: Coordinate, report: &mut Report) -> Opti
         return None;
     }
     if let (Slot::Absent, Some(span)) = (breakaway, stribeck_velocity.span()) {
-        report.warning(span, "`stribeck_velocity` does nothing without `static`", "");
+        report.warning(span, "`stribeck_velocity` has no effect without `static`", "");
     }
     let coulomb = or_zero(coulomb)?;
     let breakaway = breakaway.optional().ok()?.copied().unwrap_or(coulomb);

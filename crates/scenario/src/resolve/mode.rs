@@ -38,8 +38,8 @@ pub(super) fn refuse_step(mode: BusMode, step: &Step, span: Span, report: &mut R
         }
     };
     if !is_carried {
-        let message = format!("a drive in the mode \"{name}\" cannot do this step");
-        report.error(span, message, format!("it does {carries}; \"csp\" does everything"));
+        let message = format!("a drive in the mode \"{name}\" does not support this step");
+        report.error(span, message, format!("it supports {carries}; \"csp\" supports every step"));
     } else if !is_sent_as_points(mode, generator) && is_planned_otherwise(&step.request) {
         let message = format!("a drive in the mode \"{name}\" plans the profile itself");
         report.error(span, message, "leave out `method`, samples, shaper, averages and `duration`, or write \"csp\"");

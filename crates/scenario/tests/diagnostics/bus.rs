@@ -162,7 +162,9 @@ fn keys_belong_to_modes() {
 fn modes_carry_some_steps_only() {
     let axis = |step: &str| bare().replace("move_to = \"250 mm\"", step);
     let cannot = |mode: &str, does: &str| {
-        format!("39:1: a drive in the mode \"{mode}\" cannot do this step; it does {does}; \"csp\" does everything")
+        format!(
+            "39:1: a drive in the mode \"{mode}\" does not support this step; it supports {does}; \"csp\" supports every step"
+        )
     };
     let (positions, velocities) =
         ("`move_to` and `move_by`", "`reach_velocity`, and tables that are followed by \"plateaus\" or \"steps\"");
@@ -264,7 +266,7 @@ fn faults_are_in_the_run_and_have_what_they_need() {
         (&fault("kind = \"task-late\"\nby = \"1 ms\"\nseed = 3\n"), &["7:8: `seed` is for \"jitter\""]),
         (
             &fault("kind = \"lost\"\ncycles = 3\nduration = \"2 ms\"\n"),
-            &["7:12: `cycles` and `duration` say the same thing; give one of them"],
+            &["7:12: `cycles` and `duration` give the same quantity; give one of them"],
         ),
         (
             &fault("kind = \"lost\"\nstart = \"100 us\"\nduration = \"200 us\"\n"),

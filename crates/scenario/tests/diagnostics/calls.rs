@@ -454,8 +454,8 @@ fn the_jerks_of_rockwells_move() {
                 "jerk_time = \"1 ms\"\njerk_of_time = 1\ndeceleration_jerk = \"1 m/s3\"\ndeceleration_jerk_time = \"1 ms\"",
             ),
             &[
-                "5:13: `jerk_of_time` and `jerk_time` say the same thing; give one of them",
-                "8:26: `deceleration_jerk` and `deceleration_jerk_time` say the same thing; give one of them",
+                "5:13: `jerk_of_time` and `jerk_time` give the same quantity; give one of them",
+                "8:26: `deceleration_jerk` and `deceleration_jerk_time` give the same quantity; give one of them",
             ],
         ),
         (

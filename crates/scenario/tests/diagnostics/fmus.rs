@@ -128,8 +128,8 @@ fn steps_fit_and_keys_belong_together() {
 fn what_an_fmu_stands_for_has_no_double() {
     let of = |outputs: &str| format!("[[fmu]]\nfile = \"a.fmu\"\noutputs = {{ {outputs} }}\n");
     check(&[
-        (&of("x = \"setpoint.velocity\""), &["3:17: a set-point has a position; connect `setpoint.position` too"]),
-        (&of("u = \"voltage.d\""), &["3:17: a voltage has two parts; connect `voltage.d` and `voltage.q`"]),
+        (&of("x = \"setpoint.velocity\""), &["3:17: a set-point needs a position; connect `setpoint.position` too"]),
+        (&of("u = \"voltage.d\""), &["3:17: a voltage needs both parts; connect `voltage.d` and `voltage.q`"]),
         (&of("u = \"voltage.d\", v = \"voltage.q\""), &[]),
     ]);
 }
@@ -150,7 +150,7 @@ fn mechanics_need_their_engine_and_their_outputs() {
         ),
         (
             &fmu("x = \"shaft.position\", v = \"load.velocity\""),
-            &["4:39: a load with a velocity has a position; connect `load.position` too"],
+            &["4:39: a load with a velocity needs a position; connect `load.position` too"],
         ),
         (
             "[axis.fmu]\nfile = \"a.fmu\"\noutputs = { x = \"shaft.position\" }\n",

@@ -104,7 +104,7 @@ fn errors_in_a_model_point_into_the_model() {
             (
                 "axis.toml",
                 7,
-                "`max_current` must be a current (Arms or Apk), but \"1 A\" is neither an amplitude nor an effective value"
+                "`max_current` must be a current (Arms or Apk), but \"1 A\" is neither an amplitude nor an RMS value"
             ),
             ("mine.toml", 4, "`resistance` needs a unit, got the bare number 1.6"),
             ("mine.toml", 5, "unknown key `inductence` in `motor`"),

@@ -81,13 +81,13 @@ fn a_wrong_dimension_names_both() {
         (
             "max_current = \"13.3 Arms\"",
             "max_current = \"13.3 A\"",
-            "22:15: `max_current` must be a current (Arms or Apk), but \"13.3 A\" is neither an amplitude nor an effective \
-             value; write `Arms` or `Apk`, `Vrms` or `Vpk`",
+            "22:15: `max_current` must be a current (Arms or Apk), but \"13.3 A\" is neither an amplitude nor an RMS value; write \
+             `Arms` or `Apk`, `Vrms` or `Vpk`",
         ),
         (
             "dc_link = \"320 V\"",
             "dc_link = \"230 Vrms\"",
-            "24:11: `dc_link` must be a voltage, but \"230 Vrms\" is an amplitude or an effective value; plain `A` or `V` is needed here",
+            "24:11: `dc_link` must be a voltage, but \"230 Vrms\" is an amplitude or an RMS value; plain `A` or `V` is needed here",
         ),
     ];
     for (old, new, said) in cases {

@@ -55,7 +55,7 @@ fn what_is_missing_is_said_at_the_header_of_its_table() {
 /// A zero without homing has no place, and one on a modulo axis recurs every turn.
 #[test]
 fn a_place_of_the_zero_needs_homing() {
-    let homeless = "49:11: `home_at` is where homing puts the zero, and nothing homes the axis; call \"MC_Home\", or leave \
+    let homeless = "49:11: `home_at` is the position of the zero after homing, and nothing homes the axis; call \"MC_Home\", or leave \
                     `home_at` out";
     let with = |more: &str| after("window = \"10 um\"\n", &format!("window = \"10 um\"\nhome_at = \"2 mm\"\n{more}"));
     assert_eq!(with(""), [homeless]);
@@ -98,7 +98,7 @@ fn a_motor_turns_or_is_linear_by_its_own_keys() {
         (
             "flux_linkage = \"0.06 V s\"",
             "force_constant = \"80 N/A\"",
-            "19:18: `force_constant` must be a force constant (N/Arms or N/Apk), but \"80 N/A\" is neither an amplitude nor an effective value; write `Arms` or `Apk`, `Vrms` or `Vpk`",
+            "19:18: `force_constant` must be a force constant (N/Arms or N/Apk), but \"80 N/A\" is neither an amplitude nor an RMS value; write `Arms` or `Apk`, `Vrms` or `Vpk`",
         ),
         (
             "flux_linkage = \"0.06 V s\"\n",
@@ -214,7 +214,7 @@ fn contradictions() {
         (
             "gain = \"80 1/s\"",
             "gain = \"80 1/s\"\nbandwidth = \"10 Hz\"",
-            "33:8: `bandwidth` and `gain` say the same thing; give one of them",
+            "33:8: `bandwidth` and `gain` give the same quantity; give one of them",
         ),
         (
             "move_to = \"250 mm\"",
@@ -384,7 +384,7 @@ fn what_is_doubtful_is_a_warning() {
     let said = "25:1: the encoder on the load is not used; write `position_feedback = \"load\"` in `[drive]`";
     assert_eq!(warnings(&encoder), [said]);
     let narrow = AXIS.replace("static = \"32 N\"\n", "");
-    assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` does nothing without `static`"]);
+    assert_eq!(warnings(&narrow), ["13:21: `stribeck_velocity` has no effect without `static`"]);
 }
 
 /// `max_torque` bounds the drive's request, not the motor's torque: a limit from there to 5 % above is missed whenever the torque
@@ -417,7 +417,7 @@ fn a_current_of_the_d_axis_leaves_some_for_the_other() {
     };
     assert_eq!(said("-13.2 Arms"), [""; 0]);
     let found = said("-13.3 Arms");
-    assert!(found.len() == 1 && found[0].contains("leaves nothing of the current limit, 18.80904 A"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("uses up the current limit, 18.80904 A"), "{found:?}");
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn keys_that_a_way_does_not_have() {
         (
             "",
             &rockwell("shape = \"s-curve\", jerk_of_time = 1, jerk_of_maximum = 1"),
-            &["3:69: `jerk_of_time` and `jerk_of_maximum` say the same thing; give one of them"],
+            &["3:69: `jerk_of_time` and `jerk_of_maximum` give the same quantity; give one of them"],
         ),
         ("", &rockwell("shape = \"s-curve\", jerk_time = \"1 ms\", deceleration_jerk_of_time = \"25 %\""), &[]),
         (

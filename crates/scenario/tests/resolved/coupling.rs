@@ -49,7 +49,7 @@ fn a_frequency_and_a_damping_ratio_are_another_way_to_say_it() {
 fn what_contradicts_itself_or_overflows_is_refused() {
     let twice = SWAYING.replace("stiffness =", "frequency = \"17 Hz\"\nstiffness =");
     let message = parse("test.toml", &twice, None).unwrap_err().to_string();
-    assert!(message.contains("`stiffness` and `frequency` say the same thing"), "{message}");
+    assert!(message.contains("`stiffness` and `frequency` give the same quantity"), "{message}");
     let message = with(&["axis.load.frequency=1e20 Hz"]).unwrap_err();
     assert!(message.contains("the stiffness that follows from it: the number is too large"), "{message}");
     let message = with(&["axis.load.mass=1e-20 kg", "axis.load.frequency=1e-9 Hz"]).unwrap_err();

@@ -116,7 +116,7 @@ pub(in crate::resolve) fn mechanics(file: &File, known: Known<'_>, report: &mut 
         }
         if gives(load_velocity) && !gives(load) {
             let span = place(load_velocity).unwrap_or(*span);
-            report.error(span, "a load with a velocity has a position", "connect `load.position` too");
+            report.error(span, "a load with a velocity needs a position", "connect `load.position` too");
             return None;
         }
         let effort = fmu.inputs.iter().any(|(_, signal)| *signal == InputSource::Signal(Signal::EffortMotor));
