@@ -48,7 +48,8 @@ pub enum CouplingError<E> {
     },
     /// An iteration did not converge.
     #[error(
-        "the loop {cycle} did not agree in communication step {step} ({time} s): `{output}` still changed by {change} after {iterations} iterations, allowed is {allowed}; raise `iterations` or `tolerance`, or take a smaller step than {length} s"
+        "the loop {cycle} did not converge in communication step {step} ({time} s): `{output}` still changed by {change} after \
+         {iterations} iterations, allowed is {allowed}; raise `iterations` or `tolerance`, or take a smaller step than {length} s"
     )]
     NotConverged {
         /// Blocks or outputs of the loop.

@@ -34,7 +34,7 @@ pub enum Absence {
     },
     /// The run or the pause is too short for a metric of the time after a profile.
     #[error(
-        "the load is seen for {} at rest; this metric takes {}, two periods of its slowest mode and 20 rows",
+        "the load is recorded for {} at rest; this metric needs {}, two periods of its slowest mode and 20 rows",
         Quantity::new(*rest, "s"), Quantity::new(*needed, "s")
     )]
     RestTooShort {
@@ -153,7 +153,7 @@ pub enum Absence {
     #[error("no continuous signal is exchanged with an FMU, or too few times")]
     NotCoupled,
     /// The mode dies before it has shown enough periods.
-    #[error("the mode is damped so strongly that {periods:.1} of its periods are visible; this takes {needed}")]
+    #[error("the mode is damped so strongly that {periods:.1} of its periods are visible; this needs {needed}")]
     Damped {
         /// Periods until its envelope has fallen to 5 %.
         periods: f64,

@@ -117,7 +117,7 @@ fn serial_messages_that_are_malformed_say_which_word_and_what_is_allowed() {
     let (mut port, mut buffer) = (Port::default(), Buffer::default());
     let mut refusal =
         |parameter, word, values: &[i32]| port.write(&mut buffer, parameter, word, values).unwrap_err().to_string();
-    assert_eq!(refusal(0x116, 0, &[]), "parameter 0x116 is not known here: 0x0c8 and 0x115 are");
+    assert_eq!(refusal(0x116, 0, &[]), "parameter 0x116 is not supported: 0x0c8 and 0x115 are");
     assert_eq!(
         refusal(0xC8, 2, &[]),
         "trajectory mode (C8h) must be 3, PVT, as a word without values, got 2 and 0 values"
@@ -129,7 +129,7 @@ fn serial_messages_that_are_malformed_say_which_word_and_what_is_allowed() {
     );
     assert_eq!(
         port.command(&mut buffer, 18).unwrap_err().to_string(),
-        "op-code 18 is not known here: 17, start move, is"
+        "op-code 18 is not supported: 17, start move, is"
     );
     assert_eq!(buffer, Buffer::default(), "nothing of it came through");
     port.write(&mut buffer, 0x115, 5, &[7]).unwrap();

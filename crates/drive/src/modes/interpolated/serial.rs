@@ -12,13 +12,13 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum SerialError {
     /// An unsupported parameter.
-    #[error("parameter {parameter:#05x} is not known here: {TRAJECTORY_MODE:#05x} and {TRAJECTORY_BUFFER:#05x} are")]
+    #[error("parameter {parameter:#05x} is not supported: {TRAJECTORY_MODE:#05x} and {TRAJECTORY_BUFFER:#05x} are")]
     Parameter {
         /// Rejected parameter.
         parameter: u16,
     },
     /// An unsupported command.
-    #[error("op-code {op_code} is not known here: {START_MOVE}, start move, is")]
+    #[error("op-code {op_code} is not supported: {START_MOVE}, start move, is")]
     OpCode {
         /// Rejected op-code.
         op_code: u8,
