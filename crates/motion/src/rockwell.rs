@@ -52,9 +52,9 @@ servobench_config::choices! {
         Trapezoid = "trapezoid",
         /// acceleration with a separately given jerk
         SCurve {
-            /// Of the acceleration.
+            /// Jerk of the acceleration.
             acceleration: Jerk,
-            /// Of the deceleration.
+            /// Jerk of the deceleration.
             deceleration: Jerk,
         } = "s-curve",
     }

@@ -22,7 +22,7 @@ pub struct BodyState {
     pub velocity: f64,
 }
 
-/// How the motor body is moved.
+/// Kind of drive of the motor body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Drive {
     /// By an effort: a torque or a force.
@@ -31,20 +31,20 @@ pub enum Drive {
     Prescribed,
 }
 
-/// What moves the motor body from tick k to k+1.
+/// Actuation of the motor body from tick k to k+1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Actuation {
     /// Torque (N·m) or force (N) in the motor's coordinate, constant over the tick. For [`Drive::Effort`].
     Effort(f64),
-    /// Motion of the motor body at tick k **in the axis coordinate**; it goes on as [`Setpoint::after`] says until
-    /// tick k+1. For [`Drive::Prescribed`].
+    /// Motion of the motor body at tick k **in the axis coordinate**; it continues as in [`Setpoint::after`] until tick k+1. For
+    /// [`Drive::Prescribed`].
     Motion(Setpoint),
 }
 
 /// Everything that acts on the mechanics from tick k to k+1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
-    /// What the motor does.
+    /// Actuation by the motor.
     pub actuation: Actuation,
     /// Disturbing force or torque on the motor body, in the motor's coordinate (N or N·m).
     pub motor_disturbance: f64,
@@ -98,7 +98,7 @@ pub fn check_states(engine: EngineName, bodies: impl Iterator<Item = BodyState>)
     if total < FARTHEST { Ok(()) } else { Err(diverged(engine, total)) }
 }
 
-/// Of states whose magnitudes are `total`.
+/// Error for states whose magnitudes sum up to `total`.
 #[cold]
 fn diverged(engine: EngineName, total: f64) -> MechanicsError {
     let message = if total.is_finite() {
@@ -109,12 +109,12 @@ fn diverged(engine: EngineName, total: f64) -> MechanicsError {
     MechanicsError::Diverged { engine, message }
 }
 
-/// What a foreign model says of itself, in its own words.
+/// A message of a foreign model, in its wording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogMessage {
-    /// Simulation time at which it said it (s).
+    /// Simulation time of the message (s).
     pub time: f64,
-    /// How much it matters.
+    /// Severity of the message.
     pub severity: Severity,
     /// A line of text.
     pub text: String,
@@ -170,10 +170,10 @@ pub trait Mechanics: Send {
         self.restored()
     }
 
-    /// Frees what it holds of somebody else's, after which only its log is taken. What goes wrong with that is in its log.
+    /// Frees foreign resources, after which only the log is taken. Failures of this are in the log.
     fn end(&mut self) {}
 
-    /// What it has said since the last time, also after an error.
+    /// Messages since the last call, also after an error.
     fn take_log(&mut self) -> Vec<LogMessage> {
         Vec::new()
     }
@@ -185,21 +185,21 @@ pub trait Mechanics: Send {
     }
 }
 
-/// An end of a joint's range, as a user's own model gives it.
+/// An end of a joint's range in a user's model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointLimit {
-    /// What is so while it binds: "joint `x` is at the upper end of its range, 0.3 m".
+    /// Statement that is true while it binds: "joint `x` is at the upper end of its range, 0.3 m".
     pub text: String,
-    /// Whether it binds.
+    /// True while it binds.
     pub binds: bool,
 }
 
-/// What an engine simulates.
+/// A model that an engine simulates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Model {
     /// A chain of lumped bodies.
     Chain(Chain),
-    /// A user's own MJCF file.
+    /// A user's MJCF file.
     Mjcf(MjcfModel),
     /// An FMU.
     Fmu(Box<FmuModel>),
@@ -217,7 +217,7 @@ pub enum ModelKind {
 }
 
 impl Model {
-    /// Which kind it is.
+    /// Kind of the model.
     #[must_use]
     pub const fn kind(&self) -> ModelKind {
         match self {
@@ -228,12 +228,12 @@ impl Model {
     }
 }
 
-/// A user's own MJCF file and which of its parts are the axis.
+/// A user's MJCF file, and the parts of it that are the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MjcfModel {
     /// The file's text.
     pub xml: String,
-    /// Where it came from, for messages and for the files it includes.
+    /// Path of the file, for messages and for the files it includes.
     pub path: PathBuf,
     /// Joint whose coordinate is the motor's (hinge: rad, slide: m).
     pub motor_joint: String,
@@ -245,28 +245,28 @@ pub struct MjcfModel {
     /// Axis coordinate per motor coordinate: where one joint is both motor and load, an effort on the load acts through
     /// it.
     pub transmission: f64,
-    /// What the file has to fit; `None` where nobody says.
+    /// Axis that the file has to fit; `None` if unknown.
     pub axis: Option<MjcfAxis>,
     /// True where dry friction, contacts and the ends of joints' ranges are left out.
     pub is_smooth: bool,
 }
 
-/// What it takes to build mechanics.
+/// Parameters to build mechanics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MechanicsSetup {
     /// The bodies and their couplings.
     pub model: Model,
-    /// How the motor body is moved.
+    /// Kind of drive of the motor body.
     pub drive: Drive,
     /// Length of a base tick (s).
     pub step: f64,
     /// State of each body at tick 0; empty for all at rest at zero. For MJCF models: motor, then load. For an FMU always empty:
-    /// its start values say where it begins.
+    /// its start values set its initial state.
     pub initial: Vec<BodyState>,
 }
 
 impl MechanicsSetup {
-    /// Checks what every engine needs; each of them asks for it in [`Engine::build`](crate::Engine::build).
+    /// Checks the requirements of every engine; each calls it in [`Engine::build`](crate::Engine::build).
     ///
     /// # Errors
     /// [`ParamError`] names the first field that is wrong.
@@ -290,42 +290,42 @@ impl MechanicsSetup {
     }
 }
 
-/// Why an engine could not be built or could not go on.
+/// Reason why an engine could not be built or could not continue.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MechanicsError {
     /// A parameter of the chain is out of its bound.
     #[error(transparent)]
     Parameter(#[from] ParamError),
-    /// The engine has no such thing.
+    /// The engine lacks a feature.
     #[error("engine `{engine}` does not support {what}; {help}")]
     Unsupported {
         /// Engine name.
         engine: EngineName,
-        /// What was asked for.
+        /// The feature.
         what: String,
-        /// What to do instead.
+        /// The way out.
         help: String,
     },
-    /// There is something in a user's own MJCF file that the engine does not simulate: all of it.
+    /// Elements of a user's MJCF file that the engine does not simulate.
     #[error("engine `{engine}` refuses {}: {}; {help}", path.display(), in_one_line(refusals))]
     Refused {
         /// Engine name.
         engine: EngineName,
         /// The file.
         path: PathBuf,
-        /// What is refused, at least one thing.
+        /// The refused elements, at least one.
         refusals: Vec<Refusal>,
-        /// What to do instead.
+        /// The way out.
         help: &'static str,
     },
-    /// An FMU is not what it is to be: everything that is wrong with it.
+    /// An FMU does not fit: all its mistakes.
     #[error("engine `{engine}` refuses {}: {}", path.display(), in_one_line(mistakes))]
     Fmu {
         /// Engine name.
         engine: EngineName,
         /// The file.
         path: PathBuf,
-        /// What is wrong, at least one thing.
+        /// The mistakes, at least one.
         mistakes: Vec<FmuMistake>,
     },
     /// The model text is wrong.
@@ -333,7 +333,7 @@ pub enum MechanicsError {
     Model {
         /// Engine name.
         engine: EngineName,
-        /// The engine's own words.
+        /// Message of the engine.
         message: String,
     },
     /// A state left the finite numbers, or the engine warned that it would.
@@ -341,7 +341,7 @@ pub enum MechanicsError {
     Diverged {
         /// Engine name.
         engine: EngineName,
-        /// What was seen.
+        /// Observation, in words.
         message: String,
     },
     /// The mechanics cannot save or restore their state, or nothing is saved yet.

@@ -134,7 +134,7 @@ table! {
 table! {
     /// Settings of the metrics.
     pub(crate) struct Measures {
-        /// Settling window around the target, ± (axis coordinate). Without it there is no settling time.
+        /// Settling window around the target, ± (axis coordinate). Without it the settling time is absent.
         window: f64 = positive(InAxis(&POSITION), "10 um"),
         /// Position in the machine at which homing must put the task's zero (axis coordinate); default: any.
         home_at: f64 = any(InAxis(&POSITION), "-2 mm"),

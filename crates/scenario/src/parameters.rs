@@ -1,4 +1,4 @@
-//! What a scenario file says, models merged in: key by key and as it is written, so that two runs can be told apart.
+//! Keys and values of a scenario file as written, with models merged in: they distinguish two runs.
 use crate::diagnostic::Report;
 use crate::quantity;
 use crate::source::{Authority, SourceId, Sources};
@@ -63,7 +63,7 @@ fn flatten(path: &str, node: &Node, sources: &Sources, all: &mut Vec<Parameter>)
     }
 }
 
-/// Every key of a TOML text with its value as it is written, in the order of the text; what is wrong with the text is left out.
+/// Every key of a TOML text with its value as it is written, in the order of the text; mistakes in the text are left out.
 #[must_use]
 pub fn written_values(text: &str) -> Vec<(String, String)> {
     fn list(path: &str, node: &Node, all: &mut Vec<(String, String)>) {

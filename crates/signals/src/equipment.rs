@@ -85,7 +85,7 @@ pub enum Amplifier {
 /// Declares [`Presence`] once: variant and meaning.
 macro_rules! presences {
     ($($variant:ident $meaning:literal,)+) => {
-        /// When an axis has a signal.
+        /// Condition on which an axis has a signal.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Presence {
             $(#[doc = $meaning] $variant,)+

@@ -1,4 +1,4 @@
-//! Parts that somebody else simulates.
+//! Parts that FMUs simulate.
 use servobench_fmu_file::FmuFile;
 use servobench_signals::Signal;
 

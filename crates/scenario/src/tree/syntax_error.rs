@@ -31,7 +31,7 @@ impl SyntaxError {
 }
 
 impl Kind {
-    /// The crate `toml` has a single error type, and only the message tells the errors apart: this is the only place that reads it, and
+    /// The crate `toml` has a single error type, and only the message distinguishes the errors: this is the only place that reads it, and
     /// tests of the tree fail when a release changes the wording.
     fn of(message: &str) -> Self {
         const KINDS: [(&str, Kind); 5] = [
