@@ -2,6 +2,7 @@
 //!
 //! The crate `mujoco-rs` calls the functions of the library by their names. Here each of them is defined under its name and passes the call
 //! on to the loaded library, so that no program is linked with it.
+#![expect(non_snake_case, reason = "the names are those of the library")]
 use libloading::Library;
 use mujoco_rs::mujoco_c::{mjData, mjLogConfig, mjModel, mjSpec, mjVFS, mjfLogHandler, mjtNum};
 use std::env::{current_exe, var_os};
