@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(model.too_strong([f64::NEG_INFINITY, f64::INFINITY]), None);
         for range in [[-7.3, 7.29], [-7.29, 8.0], [0.0, 8.0]] {
             let refusal = model.too_strong(range).unwrap();
-            assert!(refusal.message.contains("up to 7.3 N,"), "{refusal}");
+            assert!(refusal.message.contains("up to 7.3 N of"), "{refusal}");
         }
         let endless = MjcfModel { axis: Some(MjcfAxis { max_effort: f64::INFINITY, ..model.axis.unwrap() }), ..model };
         assert!(endless.too_strong([-5.0, 5.0]).unwrap().message.contains("any effort"));

@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn what_is_no_range_is_refused_by_name() {
         let refusal = |ends, count, spacing| spaced("load.mass", ends, count, spacing).unwrap_err().to_string();
-        assert!(refusal([0.0, 1.0], 3, Spacing::Logarithmic).contains("`load.mass`: from 0 to 1"));
+        assert!(refusal([0.0, 1.0], 3, Spacing::Logarithmic).contains("`load.mass`: a scale from 0 to 1"));
         assert!(refusal([-1.0, 1.0], 3, Spacing::Logarithmic).contains("the same sign"));
         assert!(refusal([f64::NAN, 1.0], 3, Spacing::Linear).contains("`from` is NaN"));
         assert!(refusal([0.0, f64::INFINITY], 3, Spacing::Linear).contains("`to` is inf"));

@@ -224,7 +224,10 @@ fn what_does_not_fit_the_axis_is_refused_before_the_run() {
     else {
         panic!("the drive is stronger than the actuator")
     };
-    assert!(name == "servo" && message.contains("up to 8.5 N, and the model limits it to -9 … 7 N"), "{message}");
+    assert!(
+        name == "servo" && message.contains("up to 8.5 N of actuator `servo`, and the model limits it to -9 … 7 N"),
+        "{message}"
+    );
     let [one] = &refusals(axis(Coordinate::Rotary, Coordinate::Linear, 7.0))[..] else {
         panic!("one joint, one refusal")
     };
