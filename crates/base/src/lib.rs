@@ -8,6 +8,7 @@ extern crate std;
 // The derived code can then name this crate as in every other crate.
 extern crate self as servobench_base;
 
+mod axis_name;
 mod coordinate;
 mod ending;
 mod frames;
@@ -24,6 +25,7 @@ mod step_end;
 mod time;
 mod wide_registers;
 
+pub use axis_name::{AxisName, AxisNameError};
 pub use coordinate::Coordinate;
 pub use ending::Ending;
 pub use frames::{AlphaBeta, Dq, ElectricalAngle, KnownRotation, Rotation};

@@ -109,8 +109,7 @@ fn first_gap(values: &[f64]) -> Option<usize> {
 
 /// Unit of a channel; empty when the recording lacks it.
 pub(crate) fn unit(recording: &Recording, signal: Signal) -> &str {
-    let of = recording.channels.iter().find(|channel| channel.spec.name == signal.name());
-    of.map_or("", |channel| channel.spec.unit.as_str())
+    recording.find(signal).map_or("", |channel| channel.spec.unit.as_str())
 }
 
 /// Largest magnitude of `values`.

@@ -26,7 +26,8 @@ impl Build {
     /// Adds a channel that is `value(t)`.
     pub(crate) fn channel(mut self, name: impl AsRef<str>, unit: &str, value: impl Fn(f64) -> f64) -> Self {
         let rate = self.recording.rate;
-        let spec = ChannelSpec { name: name.as_ref().into(), unit: unit.into(), writer: "test".into(), rate };
+        let spec =
+            ChannelSpec { axis: None, name: name.as_ref().into(), unit: unit.into(), writer: "test".into(), rate };
         let values = (0..self.rows).map(|k| value(k as f64 * rate.period())).collect();
         self.recording.channels.push(Channel { spec, values });
         self

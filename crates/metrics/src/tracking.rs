@@ -96,7 +96,7 @@ fn velocity_error_peak(recording: &Checked<'_>, rows: Range<usize>) -> Result<f6
 
 /// The `rows` at whose instant `signal` was written; at the others it was held.
 fn written(recording: &Checked<'_>, signal: Signal, rows: Range<usize>) -> impl Iterator<Item = usize> + use<> {
-    let of = recording.channels.iter().find(|other| other.spec.name == signal.name());
+    let of = recording.find(signal);
     let row_rate = recording.rate.hertz();
     let rate = of.map_or(row_rate, |channel| channel.spec.rate.hertz());
     // Row k is one when k·rate is a multiple of the rate of the rows.

@@ -96,7 +96,7 @@ fn recording(profile: &Profile, omega: f64) -> Recording {
     let rows = 2 * RATE;
     let states: Vec<Knot> = (0..rows).map(|k| at(f64::from(k) * rate.period())).collect();
     let channel = |name: &str, value: &dyn Fn(&Knot) -> f64| Channel {
-        spec: ChannelSpec { name: name.into(), unit: "m".into(), writer: "closed form".into(), rate },
+        spec: ChannelSpec { axis: None, name: name.into(), unit: "m".into(), writer: "closed form".into(), rate },
         values: states.iter().map(value).collect(),
     };
     let peaks = profile.peaks();

@@ -264,7 +264,13 @@ mod tests {
     /// A recording of one move with a ramp as following error.
     fn recording() -> Recording {
         let rate = Rate::new(1000).unwrap();
-        let spec = ChannelSpec { name: "following_error.load".into(), unit: "m".into(), writer: "test".into(), rate };
+        let spec = ChannelSpec {
+            axis: None,
+            name: "following_error.load".into(),
+            unit: "m".into(),
+            writer: "test".into(),
+            rate,
+        };
         Recording {
             about: About {
                 scenario: "ramp".into(),

@@ -1,9 +1,9 @@
 //! A signal of the axis, by its name.
+use crate::axis_name::{PATTERN, suggestion_on, within};
 use crate::diagnostic::Report;
 use crate::field::{Field, key, written};
 use crate::tree::Node;
 use serde_json::{Value as Json, json};
-use servobench_files::suggestion;
 use servobench_signals::Signal;
 
 impl Field for Signal {
@@ -15,10 +15,10 @@ impl Field for Signal {
             report.error(node.span, message, "");
             return None;
         };
-        let found = text.parse().ok();
+        let found = within(text, report.axis_name).parse().ok();
         if found.is_none() {
             let message = format!("\"{text}\" is not a value of `{}`", key(path));
-            report.error(node.span, message, suggestion(text, names()));
+            report.error(node.span, message, suggestion_on(text, report.axis_name, names()));
         }
         found
     }
@@ -26,6 +26,9 @@ impl Field for Signal {
     fn schema((): &()) -> Json {
         let description = |signal: &Self| format!("[{}] {}", signal.unit(), signal.meaning());
         let each = Self::ALL.iter().map(|signal| json!({ "const": signal.name(), "description": description(signal) }));
-        json!({ "oneOf": each.collect::<Vec<_>>() })
+        // With the name of the axis in front; which axis that is, a schema cannot tell.
+        let of_axis = format!("^{PATTERN}[.][a-z_]+([.][a-z_]+)+$");
+        let of_axis = json!({ "type": "string", "pattern": of_axis });
+        json!({ "anyOf": [{ "oneOf": each.collect::<Vec<_>>() }, of_axis] })
     }
 }

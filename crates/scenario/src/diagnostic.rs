@@ -2,7 +2,7 @@
 use crate::access::FileAccess;
 use crate::points::Counts;
 use crate::source::{SourceId, Sources, Span};
-use servobench_base::{Coordinate, Rate};
+use servobench_base::{AxisName, Coordinate, Rate};
 use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
@@ -153,6 +153,8 @@ pub(crate) struct Report {
     pub(crate) points: usize,
     /// Meaning of a count of the bus, once known.
     pub(crate) counts: Option<Counts>,
+    /// Name of the axis, once known.
+    pub(crate) axis_name: Option<AxisName>,
     /// Coordinate of the axis, once known.
     pub(crate) axis: Option<Coordinate>,
     /// Coordinate of the motor, once known.

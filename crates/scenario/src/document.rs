@@ -1,5 +1,6 @@
 //! A scenario file that is read once for any number of sets of overrides.
 use crate::access::FileAccess;
+use crate::axis_name::axis_name;
 use crate::diagnostic::{Invalid, LoadError, Report};
 use crate::display_units::display_units;
 use crate::field::Field;
@@ -143,6 +144,7 @@ impl Reading {
     fn resolved(self, name: &str, overrides: &[Override]) -> Result<Loaded, LoadError> {
         let Self { mut sources, table, mut report, syntax, broken } = self;
         (report.axis, report.motor) = motions(&table);
+        report.axis_name = axis_name(&table);
         let root = Node { value: Value::Table(table), span: Span::new(SourceId::SCENARIO, &(0..0)) };
         let scenario =
             File::decode("", &root, &(), &mut report).and_then(|file| resolve::scenario(&file, &sources, &mut report));

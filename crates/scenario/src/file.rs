@@ -93,7 +93,8 @@ table! {
         tolerance: Tolerance = (),
         /// Faults that belong to the run; `[[expect]]` for each.
         expect: Many<Expect> = (),
-        /// Limits by metric: the largest allowed magnitude, or a range `{ min = …, max = … }`.
+        /// Limits by metric: the largest allowed magnitude, or a range `{ min = …, max = … }`. Those of an axis named `x` may stand in
+        /// `[limits.x]`.
         limits: LimitTable = (),
     }
 }

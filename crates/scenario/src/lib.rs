@@ -8,6 +8,7 @@
 
 mod access;
 mod argument;
+mod axis_name;
 mod block;
 mod channel;
 mod diagnostic;

@@ -353,7 +353,7 @@ fn describe_blocks(schema: &Json, out: &mut String) {
 
 /// Recordable channels, as Markdown.
 fn describe_channels(schema: &Json, out: &mut String) {
-    let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["oneOf"];
+    let choices = &schema["properties"]["record"]["properties"]["channels"]["anyOf"][0]["anyOf"][0]["oneOf"];
     let _ = write!(
         out,
         "\n### Channels\n\nChannels for `record.channels`. U is the unit of the axis, m or rad; E that of the motor's torque \

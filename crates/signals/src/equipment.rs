@@ -1,9 +1,11 @@
 //! Equipment of an axis, and thereby its signals, their writers and rates.
-use servobench_base::{Coordinate, Rate};
+use servobench_base::{AxisName, Coordinate, Rate};
 
 /// Equipment of an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Equipment {
+    /// Name of the axis, where it has one.
+    pub name: Option<AxisName>,
     /// Coordinate of the load.
     pub axis: Coordinate,
     /// Coordinate of the motor.

@@ -214,6 +214,7 @@ impl Signal {
     pub fn spec(self, equipment: &Equipment, rates: &Rates) -> ChannelSpec {
         let writer = self.writer();
         ChannelSpec {
+            axis: equipment.name,
             name: self.name().into(),
             unit: self.unit().symbol(equipment),
             writer: writer.name(equipment).into(),

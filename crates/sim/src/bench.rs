@@ -284,6 +284,7 @@ fn equipment(scenario: &Scenario, table: bool) -> Equipment {
         }),
     };
     Equipment {
+        name: scenario.axis.name,
         axis: scenario.axis.motion,
         motor_coordinate: scenario.axis.motor_motion,
         disturbed: [scenario::DisturbedBody::Motor, scenario::DisturbedBody::Load]

@@ -54,7 +54,7 @@ mod tests {
     fn recording(rows: u32) -> Recording {
         let rate = Rate::new(1000).unwrap();
         let channel = |name: &str, value: fn(u32) -> f64| Channel {
-            spec: ChannelSpec { name: name.into(), unit: String::new(), writer: "test".into(), rate },
+            spec: ChannelSpec { axis: None, name: name.into(), unit: String::new(), writer: "test".into(), rate },
             values: (0..rows).map(value).collect(),
         };
         Recording {

@@ -16,7 +16,8 @@ fn main() {
 /// Damped oscillations of different frequencies: smooth and never repeating, as the signals of an axis are.
 fn recording() -> Recording {
     let rate = Rate::new(16_000).expect("not zero");
-    let spec = |k| ChannelSpec { name: format!("channel.{k}"), unit: "m".into(), writer: "bench".into(), rate };
+    let spec =
+        |k| ChannelSpec { axis: None, name: format!("channel.{k}"), unit: "m".into(), writer: "bench".into(), rate };
     let about = About {
         scenario: "bench".into(),
         engine: "none".into(),

@@ -23,7 +23,7 @@ pub(crate) fn schema(recording: &Recording) -> Option<String> {
         let spec = &channel.spec;
         let rate = format!("{} Hz", spec.rate.hertz());
         let metadata = [("unit", spec.unit.clone()), ("writer", spec.writer.clone()), ("rate", rate)];
-        field(&spec.name, DataType::Float64, false, &metadata)
+        field(&spec.full_name(), DataType::Float64, false, &metadata)
     });
     encoded(std::iter::once(time).chain(channels).collect())
 }
@@ -62,7 +62,7 @@ mod tests {
         };
         let mut recording = Recording::new(about, rate);
         for (name, unit) in [("load.position", "m"), ("ratio", "")] {
-            let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "plant".into(), rate };
+            let spec = ChannelSpec { axis: None, name: name.into(), unit: unit.into(), writer: "plant".into(), rate };
             recording.channels.push(Channel { spec, values: vec![0.0].into() });
         }
         recording

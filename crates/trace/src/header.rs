@@ -3,7 +3,7 @@
 //! | key | value |
 //! |---|---|
 //! | `servobench.format` | version of this layout, [`FORMAT`] |
-//! | `servobench.recording` | JSON: all of a [`Recording`] except the values |
+//! | `servobench.recording` | JSON: all of a [`Recording`] except the values; a channel of an axis with a name has the axis beside its name |
 //! | `ARROW:schema` | unit, writer and rate of each column for readers of Apache Arrow, see [`arrow`](crate::arrow) |
 //! | `servobench.seal` | digest of the whole file, see [`seal`](crate::seal) |
 use crate::channel::{Channel, ChannelSpec};
@@ -12,6 +12,7 @@ use crate::recording::{About, Call, CouplingEstimate, Event, LimitReversals, Mov
 use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use servobench_base::Rate;
+use std::borrow::Cow;
 
 /// Version of the layout.
 pub(crate) const FORMAT: &str = "3";
@@ -81,9 +82,9 @@ impl Header {
         }
     }
 
-    /// Names of the channels, in order.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = &str> {
-        self.channels.iter().map(|channel| channel.name.as_str())
+    /// Names of the columns of the channels, in order.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = Cow<'_, str>> {
+        self.channels.iter().map(ChannelSpec::full_name)
     }
 
     /// The recording without its values.

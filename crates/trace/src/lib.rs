@@ -29,6 +29,7 @@ pub use log::LogEntry;
 pub use recorder::{BLOCK, Column, Mark, Recorder, Row, SignalId};
 pub use recording::{
     About, BoundLimit, Call, CallFate, CouplingEstimate, Event, IncidentMark, LimitReversals, Move, Recording, Signal,
+    of_axis,
 };
 pub use seal::{seal_of, verified_seal_of};
 pub use servobench_base::Ending;

@@ -12,6 +12,7 @@ use parquet::file::metadata::{FileMetaData, ParquetMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::SchemaDescriptor;
 use servobench_files::{named, with_short_quotes};
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fs::File;
 use std::io;
@@ -56,24 +57,25 @@ fn decode(mut file: File, path: &Path, is_sealed: bool) -> Result<Recording, Tra
         .map_err(|error| TraceError::NotParquet { path: path.into(), reason: error.to_string() })?;
     let metadata = reader.metadata().file_metadata();
     let header = header(metadata, path)?;
-    let mut names = HashSet::from([TIME]);
-    if let Some(name) = header.columns().find(|name| !names.insert(name)) {
-        return Err(damaged(path, format!("two columns in `{RECORDING_KEY}` are named `{}`", named(name))));
+    let mut names = HashSet::from([Cow::Borrowed(TIME)]);
+    if let Some(name) = header.columns().find(|name| !names.insert(name.clone())) {
+        return Err(damaged(path, format!("two columns in `{RECORDING_KEY}` are named `{}`", named(&name))));
     }
     let schema = metadata.schema_descr();
-    let indices = header.columns().map(|name| column(schema, name, path)).collect::<Result<Vec<_>, _>>()?;
+    let indices = header.columns().map(|name| column(schema, &name, path)).collect::<Result<Vec<_>, _>>()?;
     if !is_sealed {
         return Err(missing_key(seal::KEY, path));
     }
     let instants = header.instants;
     for (name, index) in header.columns().zip(&indices) {
         let held = holds(&mut file, reader.metadata(), *index, instants as u64).map_err(io)?;
-        held.map_err(|why| damaged(path, format!("column `{}`: {why}", named(name))))?;
+        held.map_err(|why| damaged(path, format!("column `{}`: {why}", named(&name))))?;
     }
     let mut recording = header.into_recording();
     for (channel, index) in recording.channels.iter_mut().zip(indices) {
         channel.values = values(&reader, index, instants).map_err(|error| {
-            damaged(path, format!("column `{}`: {}", named(&channel.spec.name), with_short_quotes(&error.to_string())))
+            let name = channel.spec.full_name();
+            damaged(path, format!("column `{}`: {}", named(&name), with_short_quotes(&error.to_string())))
         })?;
     }
     Ok(recording)

@@ -279,7 +279,7 @@ mod tests {
     }
 
     fn spec(name: &str) -> ChannelSpec {
-        ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate: rate() }
+        ChannelSpec { axis: None, name: name.into(), unit: "m".into(), writer: "test".into(), rate: rate() }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::number;
 #[cfg(doc)]
 use crate::values::Values;
 use serde::{Deserialize, Serialize};
-use servobench_base::{Ending, Rate, Tick};
+use servobench_base::{AxisName, Ending, Rate, Tick};
 
 /// Description of a recorded run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -23,17 +23,17 @@ pub struct About {
 }
 
 impl About {
-    /// Title of the run, in words: `slide on exact with setpoint.jerk=200 m/s3`.
-    #[must_use]
-    pub fn title(&self) -> String {
-        format!("{} on {}{}", self.scenario, self.engine, self.overridden())
-    }
-
     /// ` with setpoint.jerk=200 m/s3`; empty if every key has the value of the file.
     #[must_use]
     pub fn overridden(&self) -> String {
         if self.overrides.is_empty() { String::new() } else { format!(" with {}", self.overrides.join(", ")) }
     }
+}
+
+/// ` (axis x)`, as titles and tables write it behind the name of a scenario; empty if the axis has no name.
+#[must_use]
+pub fn of_axis(axis: Option<AxisName>) -> String {
+    axis.map_or_else(String::new, |axis| format!(" (axis {axis})"))
 }
 
 /// One move of the program, as planned.
@@ -288,12 +288,40 @@ impl Recording {
         }
     }
 
-    /// Values of the channel `name`. [`release`](Self::release) frees memory that was taken to read others.
+    /// Values of the channel `name`, by either of its names, as in [`find`](Self::find). [`release`](Self::release) frees memory that was
+    /// taken to read others.
     #[must_use]
     pub fn channel(&self, name: impl AsRef<str>) -> Option<&[f64]> {
-        let name = name.as_ref();
         self.release();
-        self.channels.iter().find(|channel| channel.spec.name == name).map(|channel| &*channel.values)
+        self.find(name).map(|channel| &*channel.values)
+    }
+
+    /// Channel called `name`, by its name within the axis, `load.position`, or among the channels of all axes, `x.load.position`. `None` if
+    /// several axes have a channel of that name.
+    #[must_use]
+    pub fn find(&self, name: impl AsRef<str>) -> Option<&Channel> {
+        let name = name.as_ref();
+        let mut within = self.channels.iter().filter(|channel| channel.spec.name == name);
+        let Some(first) = within.next() else {
+            let below = |axis: AxisName| axis.strip(name);
+            return self.channels.iter().find(|Channel { spec, .. }| spec.axis.and_then(below) == Some(&spec.name));
+        };
+        within.all(|other| other.spec.axis == first.spec.axis).then_some(first)
+    }
+
+    /// Name of the recorded axis; `None` if it has none, or if there are several axes.
+    #[must_use]
+    pub fn axis(&self) -> Option<AxisName> {
+        let mut axes = self.channels.iter().map(|channel| channel.spec.axis);
+        let first = axes.next()??;
+        axes.all(|axis| axis == Some(first)).then_some(first)
+    }
+
+    /// Title of the run, in words: `slide on exact with setpoint.jerk=200 m/s3`; of an axis with a name `slide (axis x) on exact`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let About { scenario, engine, .. } = &self.about;
+        format!("{}{} on {engine}{}", scenario, of_axis(self.axis()), self.about.overridden())
     }
 
     /// Frees memory that was taken to read channels which are in files, [`Values::release`].

@@ -12,6 +12,7 @@ use parquet::file::metadata::{
     ColumnChunkMetaData, FileMetaData, KeyValue, ParquetMetaData, ParquetMetaDataWriter, RowGroupMetaData,
 };
 use parquet::schema::types::{SchemaDescriptor, Type, TypePtr};
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::io::Write;
 use std::path::Path;
@@ -74,15 +75,15 @@ impl Recording {
     fn check_columns(&self) -> Result<(), TraceError> {
         let mut taken = HashSet::new();
         for channel in &self.channels {
-            let (name, found, expected) = (&channel.spec.name, channel.values.len(), self.len());
+            let (name, found, expected) = (channel.spec.full_name(), channel.values.len(), self.len());
             if name == TIME {
-                return Err(TraceError::NameTaken { name: name.clone(), by: "the column of instants" });
+                return Err(TraceError::NameTaken { name: name.into_owned(), by: "the column of instants" });
             }
-            if !taken.insert(name) {
-                return Err(TraceError::NameTaken { name: name.clone(), by: "another channel" });
+            if !taken.insert(name.clone()) {
+                return Err(TraceError::NameTaken { name: name.into_owned(), by: "another channel" });
             }
             if found != expected {
-                return Err(TraceError::UnequalLength { name: name.clone(), found, expected });
+                return Err(TraceError::UnequalLength { name: name.into_owned(), found, expected });
             }
         }
         Ok(())
@@ -143,9 +144,10 @@ impl Recording {
     }
 
     fn schema(&self) -> ParquetResult<TypePtr> {
-        let names = std::iter::once(TIME).chain(self.channels.iter().map(|channel| channel.spec.name.as_str()));
-        let column = |name| {
-            let column = Type::primitive_type_builder(name, PhysicalType::DOUBLE);
+        let names = self.channels.iter().map(|channel| channel.spec.full_name());
+        let names = std::iter::once(TIME.into()).chain(names);
+        let column = |name: Cow<'_, str>| {
+            let column = Type::primitive_type_builder(&name, PhysicalType::DOUBLE);
             column.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
         };
         let columns = names.map(column).collect::<ParquetResult<_>>()?;
@@ -177,7 +179,7 @@ mod tests {
         let mut random = servobench_testkit::Random::seeded(7);
         let mut recording = Recording::new(about, rate);
         let mut channel = |name: &str, values: Vec<f64>| {
-            let spec = ChannelSpec { name: name.into(), unit: "m".into(), writer: "test".into(), rate };
+            let spec = ChannelSpec { axis: None, name: name.into(), unit: "m".into(), writer: "test".into(), rate };
             recording.channels.push(Channel { spec, values: values.into() });
         };
         channel("rest", vec![0.25; rows]);

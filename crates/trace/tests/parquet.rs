@@ -81,14 +81,15 @@ fn log_entry() -> impl Strategy<Value = LogEntry> {
 }
 
 fn spec() -> impl Strategy<Value = ChannelSpec> {
-    ("c\\.[a-zµ_]{1,9}(\\.[a-z_]{1,9})?", any::<String>(), any::<String>(), rate())
-        .prop_map(|(name, unit, writer, rate)| ChannelSpec { name, unit, writer, rate })
+    let axis = prop::option::of("[A-Za-z0-9_-]{1,32}".prop_map(|name| name.parse().unwrap()));
+    (axis, "c\\.[a-zµ_]{1,9}(\\.[a-z_]{1,9})?", any::<String>(), any::<String>(), rate())
+        .prop_map(|(axis, name, unit, writer, rate)| ChannelSpec { axis, name, unit, writer, rate })
 }
 
 fn channels() -> impl Strategy<Value = Vec<Channel>> {
     (prop::collection::vec(spec(), 0..6), 0..300_usize).prop_flat_map(|(mut specs, instants)| {
-        specs.sort_by(|one, two| one.name.cmp(&two.name));
-        specs.dedup_by(|one, two| one.name == two.name);
+        specs.sort_by(|one, two| one.full_name().cmp(&two.full_name()));
+        specs.dedup_by(|one, two| one.full_name() == two.full_name());
         let values = prop::collection::vec(prop::collection::vec(number(), instants), specs.len());
         values.prop_map(move |values| {
             let pairs = specs.iter().cloned().zip(values);
@@ -136,7 +137,7 @@ fn assert_same(one: &Recording, two: &Recording) {
 fn small(instants: u32) -> Recording {
     let rate = Rate::new(12_000).unwrap();
     let channel = |name: &str, values: &dyn Fn(f64) -> f64| Channel {
-        spec: ChannelSpec { name: name.into(), unit: "m".into(), writer: "mechanics".into(), rate },
+        spec: ChannelSpec { axis: None, name: name.into(), unit: "m".into(), writer: "mechanics".into(), rate },
         values: (0..instants).map(|k| values(f64::from(k) / 12e3)).collect(),
     };
     Recording {
@@ -195,6 +196,50 @@ proptest! {
             prop_assert!(matches!(refused, TraceError::NotParquet { .. } | TraceError::Missing { .. }), "{}", refused);
         }
     }
+}
+
+/// Two axes in one file need nothing that one with a name does not.
+#[test]
+fn channels_of_axes_with_names_are_found_by_both_of_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.parquet");
+    let unnamed = small(20);
+    let mut recording = unnamed.clone();
+    for channel in &mut recording.channels {
+        channel.spec.axis = Some("x".parse().unwrap());
+    }
+    recording.write_parquet(&path).unwrap();
+    let read = Recording::read_parquet(&path).unwrap();
+    assert_same(&read, &recording);
+    assert_eq!(columns(&path), ["time", "x.motor.position", "x.load.position"]);
+    assert_eq!((read.axis().unwrap().as_str(), unnamed.axis()), ("x", None));
+    assert_eq!((read.title().as_str(), unnamed.title().as_str()), ("small (axis x) on exact", "small on exact"));
+    for name in ["load.position", "x.load.position"] {
+        assert_eq!(read.channel(name), unnamed.channel("load.position"), "{name}");
+    }
+    assert_eq!(unnamed.channel("x.load.position"), None);
+    assert_eq!((read.channel("y.load.position"), read.channel("x.x.load.position")), (None, None));
+
+    let second = unnamed.channels.iter().cloned().map(|mut channel| {
+        channel.spec.axis = Some("y".parse().unwrap());
+        channel.values.to_mut().reverse();
+        channel
+    });
+    recording.channels.extend(second);
+    recording.write_parquet(&path).unwrap();
+    let read = Recording::read_parquet(&path).unwrap();
+    assert_same(&read, &recording);
+    assert_eq!((read.axis(), read.channel("load.position")), (None, None), "of which axis?");
+    assert_ne!(read.channel("x.load.position"), read.channel("y.load.position"));
+    assert_eq!(read.channel("x.load.position"), unnamed.channel("load.position"));
+}
+
+/// Names of the columns of a file.
+fn columns(path: &Path) -> Vec<String> {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    schema.columns().iter().map(|column| column.name().to_owned()).collect()
 }
 
 /// Recordings of builds before this one were compressed by zstd. Values by hand: 10 m/s² from rest for 10 ms, then −10 m/s².
@@ -303,6 +348,13 @@ fn a_foreign_parquet_file_is_told_what_it_lacks() {
     let json = r#"{"scenario":"s","engine":"e","axis_unit":"m","bodies":[],"rate":1,"instants":0,"channels":[{"name":"y","unit":"m","writer":"w","rate":1}],"moves":[],"events":[],"signals":[]}"#;
     let keys = [format, ("servobench.recording", json)];
     assert_eq!(refusal(&keys).to_string(), lacks("the column `y` of type DOUBLE, without nulls"));
+    for axis in ["", "a.b", "a\u{1b}[2J", "ä", &"a".repeat(10_000)] {
+        let axis = serde_json::to_string(axis).unwrap();
+        let json = json.replace(r#"{"name":"y""#, &format!(r#"{{"axis":{axis},"name":"y""#));
+        let damage = refusal(&[format, ("servobench.recording", &json)]).to_string();
+        assert!(damage.contains("cannot be read: the name of an axis ") && damage.len() < 400, "{damage}");
+        assert!(!damage.contains('\u{1b}'), "{damage}");
+    }
     let damage = refusal(&[format, ("servobench.recording", "{}")]).to_string();
     assert!(damage.contains("`servobench.recording` cannot be read: missing field `scenario`"), "{damage}");
     let format = ("servobench.format", "3");

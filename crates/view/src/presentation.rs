@@ -33,10 +33,10 @@ pub struct Presentation<'a> {
 }
 
 impl<'a> Presentation<'a> {
-    /// One run. Entities are `/position/load`, `/current/q`, `/axis/motor` and so on.
+    /// One run. Entities are `/position/load`, `/current/q`, `/axis/motor` and so on; of an axis named `x` `/x/position/load`.
     #[must_use]
     pub fn of_run(recording: &'a Recording, options: &ViewOptions) -> Self {
-        let name = recording.about.title();
+        let name = recording.title();
         Self::plan(name, vec![Run { label: None, recording }], options)
     }
 

@@ -1,6 +1,7 @@
 //! One run of a presentation.
 use crate::rerun::{EntityPath, EntityPathPart};
 use servobench_trace::{Channel, Recording};
+use servobench_view_request::check_labels;
 
 /// A recording and the place of its entities.
 #[derive(Debug, Clone, Copy)]
@@ -12,16 +13,20 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Entity path of `parts` in this run.
+    /// Entity path of `parts` in this run, below the name of its axis where it has one.
     pub(crate) fn path(&self, parts: &[&str]) -> EntityPath {
-        let parts = self.label.iter().chain(parts);
-        EntityPath::new(parts.map(|part| EntityPathPart::new(*part)).collect())
+        // Views of the motor and of bounds have some names to themselves.
+        let axis = self.recording.axis().map(|axis| match self.label {
+            None if check_labels(&[axis.as_str()]).is_err() => format!("axis-{axis}"),
+            _ => axis.to_string(),
+        });
+        let parts = self.label.into_iter().chain(axis.as_deref()).chain(parts.iter().copied());
+        EntityPath::new(parts.map(EntityPathPart::new).collect())
     }
 
     /// The first of the channels `names` that was recorded.
     pub(crate) fn first_of(&self, names: &[&str]) -> Option<&'a Channel> {
-        let named = |name: &&str| self.recording.channels.iter().find(|channel| channel.spec.name == **name);
-        names.iter().find_map(named)
+        names.iter().find_map(|name| self.recording.find(name))
     }
 
     /// `text`, and in a comparison the run that it is about.

@@ -127,7 +127,13 @@ mod tests {
         };
         let rate = Rate::new(10).unwrap();
         let mut recording = Recording::new(about, rate);
-        let spec = ChannelSpec { name: "load.position".into(), unit: "m".into(), writer: "mechanics".into(), rate };
+        let spec = ChannelSpec {
+            axis: None,
+            name: "load.position".into(),
+            unit: "m".into(),
+            writer: "mechanics".into(),
+            rate,
+        };
         recording.channels.push(Channel { spec, values: vec![0.0; rows].into() });
         recording
     }

@@ -161,11 +161,7 @@ fn peak(efforts: &[f64]) -> f64 {
 /// `the load meets the positive end stop at 312 mm/s, which pushes back with 4.70 kN at most`
 fn words(recording: &Recording, Contact { rows, speed, peak }: &Contact, does: &str) -> Event {
     let unit = &recording.about.axis_unit;
-    let effort_unit = recording
-        .channels
-        .iter()
-        .find(|channel| channel.spec.name == Signal::EffortEndStop.name())
-        .map_or("", |channel| channel.spec.unit.as_str());
+    let effort_unit = recording.find(Signal::EffortEndStop).map_or("", |channel| channel.spec.unit.as_str());
     // A stop pushes the load back.
     let end = if *peak < 0.0 { "positive" } else { "negative" };
     let speed = speed.map_or_else(String::new, |speed| format!(" at {}", Quantity::new(speed, &format!("{unit}/s"))));

@@ -12,7 +12,7 @@ const SHOWN_BY: [Signal; 2] = [Signal::EffortEndStop, Signal::TemperatureWinding
 pub(super) fn broken(recording: &Recording, rules: &Rules<'_>) -> Option<Vec<String>> {
     let does_harm = |event: &&Event| Incident::of(event).is_some_and(Incident::is_harm);
     let mut events = recording.events.iter().filter(does_harm).peekable();
-    let is_shown = recording.channels.iter().any(|channel| SHOWN_BY.iter().any(|one| channel.spec.name == one.name()));
+    let is_shown = SHOWN_BY.iter().any(|one| recording.find(one).is_some());
     if events.peek().is_none() && !is_shown && recording.signal("drive", "buffer").is_none() {
         return None;
     }

@@ -38,8 +38,13 @@ pub(crate) fn logic(source: &str, name: &str, times: &[f64]) -> Signal {
 
 /// A channel with these values.
 pub(crate) fn channel(name: &str, unit: &str, values: Vec<f64>) -> Channel {
-    let spec =
-        ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate: Rate::new(1000).unwrap() };
+    let spec = ChannelSpec {
+        axis: None,
+        name: name.into(),
+        unit: unit.into(),
+        writer: "test".into(),
+        rate: Rate::new(1000).unwrap(),
+    };
     Channel { spec, values: values.into() }
 }
 

@@ -3,7 +3,7 @@ use super::fmu::Fmu;
 use crate::field::Slot;
 use crate::simple::OneOf;
 use crate::table::table;
-use servobench_base::Coordinate;
+use servobench_base::{AxisName, Coordinate};
 use servobench_config::Kind::{Axis as InAxis, Plain};
 use servobench_config::quantities::{FREQUENCY, INERTIA, LEAD, MASS, POSITION, RATIO};
 use servobench_config::{any, not_negative, positive};
@@ -12,6 +12,9 @@ use servobench_plant::{ChainParameter, EndStopParameter, FrictionParameter};
 table! {
     /// The mechanics: up to three bodies in a row, `motor_side` – `table` – `load`, or a user's MJCF file.
     pub(crate) struct Axis {
+        /// Name of this axis: signals may then be called `x.load.position` beside `load.position`. Recording, results and viewer show it.
+        /// 1 to 32 letters, digits, `_` and `-`; default: none.
+        name: AxisName = (),
         /// Name of an axis in `models/axes`, whose values the other keys override.
         model: String = (),
         /// Source of the values.

@@ -11,7 +11,7 @@ use crate::resolve::fmu::Mechanics;
 use crate::resolve::{Alternative, end_stops, friction, need, one_of};
 use crate::scenario::{Axis, AxisMechanics};
 use crate::source::{At, Sources, Span};
-use servobench_base::Coordinate;
+use servobench_base::{AxisName, Coordinate};
 use servobench_files::FileRole;
 use servobench_plant::{Body, Chain, Friction, Link, MjcfModel, Switches};
 use std::f64::consts::TAU;
@@ -45,6 +45,7 @@ pub(super) fn resolve(
         None if fmu.is_some() && !has_bodies(axis) => Some(AxisMechanics::InTheFmu),
         None => bodies(axis, motor, motor_motion, transmission, report).map(AxisMechanics::Bodies),
     };
+    let name = axis.name.optional().ok().map(Option::<&AxisName>::copied);
     let switches = switches(axis, motor_motion, report);
     let modulo = axis.modulo.optional().ok().map(Option::<&f64>::copied);
     let end_stops = end_stops::resolve(axis, report);
@@ -54,6 +55,7 @@ pub(super) fn resolve(
         None => None,
     };
     Some(Axis {
+        name: name?,
         motion,
         motor_motion,
         transmission,

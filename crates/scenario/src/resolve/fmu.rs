@@ -5,6 +5,7 @@ mod sensors;
 pub(super) use mechanics::{Mechanics, mechanics};
 
 use crate::access::Refused;
+use crate::axis_name::{suggestion_on, within};
 use crate::diagnostic::Report;
 use crate::field::Slot;
 use crate::file::{self, File};
@@ -14,7 +15,7 @@ use crate::scenario::{Actuator, Fmu, InputSource, LoopSignal};
 use crate::source::{At, Place, Sources, Span};
 use servobench_base::Rate;
 use servobench_coupling::Settings;
-use servobench_files::{FileRole, suggestion};
+use servobench_files::FileRole;
 use servobench_fmu_file::{Bounds, FmuFile, Isolation, IsolationKind};
 use servobench_signals::Signal;
 use std::path::{Path, PathBuf};
@@ -122,7 +123,9 @@ fn fmu<P: Port>(
         let keys = [("call_timeout", given.call_timeout.span()), ("memory", given.memory.span())];
         refuse(&keys, "is for an FMU in a separate process", "leave `isolation` out", report);
     }
-    let read = |text: &str| signal(text).ok_or_else(|| suggestion(text, signals.iter().copied()));
+    let axis = report.axis_name;
+    let read =
+        |text: &str| signal(within(text, axis)).ok_or_else(|| suggestion_on(text, axis, signals.iter().copied()));
     let inputs = given
         .inputs
         .optional()
@@ -130,8 +133,8 @@ fn fmu<P: Port>(
         .and_then(|table| connections(table.map_or(&[][..], |table| &table.0), "not a signal", report, read));
     let outputs = given.outputs.optional().ok().and_then(|table| {
         let port = |text: &str| {
-            let found = P::all().find(|port| port.name() == text);
-            found.ok_or_else(|| suggestion(text, P::all().map(Port::name)))
+            let found = P::all().find(|port| port.name() == within(text, axis));
+            found.ok_or_else(|| suggestion_on(text, axis, P::all().map(Port::name)))
         };
         connections(table.map_or(&[][..], |table| &table.0), "not an output that an FMU can have here", report, port)
     });
@@ -222,6 +225,8 @@ fn check_name(names: &[String], index: usize, given: &file::Fmu, report: &mut Re
         Signal::ALL.iter().any(|signal| signal.name().split_once('.').is_some_and(|(group, _)| group == name));
     if names[..index].iter().any(|before| before == name) {
         report.error(span, format!("a second FMU is called `{name}`"), "give each its own `name`");
+    } else if report.axis_name.is_some_and(|axis| axis.as_str() == name) {
+        report.error(span, format!("an FMU and the axis are called `{name}`"), "give each its own `name`");
     } else if name.is_empty() || name.contains('.') || is_of_signals || name == "time" || name == "shaft" {
         let message = format!("`{name}` cannot name an FMU");
         report.error(

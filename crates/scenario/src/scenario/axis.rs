@@ -1,10 +1,12 @@
 //! The mechanics: bodies and their couplings.
-use servobench_base::Coordinate;
+use servobench_base::{AxisName, Coordinate};
 use servobench_plant::{Chain, EndStops, FmuModel, MjcfModel, Switches};
 
 /// The mechanics of the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
+    /// Its name, where it has one.
+    pub name: Option<AxisName>,
     /// Coordinate of the load.
     pub motion: Coordinate,
     /// Coordinate of the motor.

@@ -56,6 +56,30 @@ fn fmus_beside_the_axis_are_right() {
     ]);
 }
 
+/// Signals of the axis `x`, with its name in front and without.
+#[test]
+fn signals_of_an_axis_with_a_name() {
+    let said = |addition: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.fmu"), "").unwrap();
+        let path = folder.path().join("axis.toml");
+        std::fs::write(&path, AXIS.replace("[axis]\n", "[axis]\nname = \"x\"\n") + addition).unwrap();
+        match load(&path) {
+            Ok(loaded) => Ok(loaded.scenario.fmus.into_iter().map(|fmu| (fmu.inputs, fmu.outputs)).collect::<Vec<_>>()),
+            Err(error) => Err(error.to_string()),
+        }
+    };
+    let own = said(LOAD).unwrap();
+    let full = LOAD.replace("\"load.position", "\"x.load.position").replace("disturbance", "x.disturbance");
+    assert_eq!(said(&full).unwrap(), own);
+    let other = said(&LOAD.replace("\"load.position", "\"y.load.position")).unwrap_err();
+    assert!(other.ends_with("`y.load.position` is not a signal; there is no axis `y`; the axes are: `x`"), "{other}");
+    let other = said(&LOAD.replace("disturbance", "y.disturbance")).unwrap_err();
+    assert!(other.ends_with("there is no axis `y`; the axes are: `x`"), "{other}");
+    let taken = said(&format!("{LOAD}name = \"x\"\n")).unwrap_err();
+    assert!(taken.ends_with("an FMU and the axis are called `x`; give each its own `name`"), "{taken}");
+}
+
 #[test]
 fn files_names_and_signals_are_there() {
     check(&[

@@ -1,6 +1,7 @@
 //! Names of keys, values and models; values of the wrong type.
-use crate::{after, mistakes};
+use crate::{AXIS, after, mistakes};
 use servobench_scenario::{LoadError, Sources, parse};
+use servobench_signals::Signal;
 use std::path::Path;
 
 #[test]
@@ -115,4 +116,86 @@ fn errors_in_a_model_point_into_the_model() {
 fn at<'a>(sources: &'a Sources, one: &'a servobench_scenario::Diagnostic) -> (&'a str, usize, &'a str) {
     let name = Path::new(sources.name(one.source)).file_name().unwrap().to_str().unwrap();
     (name, sources.line_and_column(one.source, one.span.start).0, &one.message)
+}
+
+/// The axis with `name = NAME`, and `addition` at the end.
+fn named(name: &str, addition: &str) -> Vec<String> {
+    mistakes(&(AXIS.replace("[axis]\n", &format!("[axis]\nname = {name}\n")) + addition))
+}
+
+#[test]
+fn names_of_axes() {
+    for name in ["\"x\"", "\"X_2-b\"", "\"load\"", "\"0\"", &format!("\"{}\"", "x".repeat(32))] {
+        assert_eq!(named(name, ""), [""; 0], "{name}");
+    }
+    let help = "; write a name like \"x\"";
+    let letters = "the name of an axis consists of letters from a to z, digits, `_` and `-`, got";
+    let too_long = |characters| format!("the name of an axis has at most 32 characters, got {characters}");
+    for (name, said) in [
+        ("\"\"", format!("`name`: the name of an axis must not be empty{help}")),
+        ("\"a.b\"", format!("`name`: {letters} '.'{help}")),
+        ("'a\"b'", format!("`name`: {letters} '\"'{help}")),
+        ("\"a b\"", format!("`name`: {letters} ' '{help}")),
+        ("\"ä\"", format!("`name`: {letters} 'ä'{help}")),
+        ("\"\\u001b[2J\"", format!("`name`: {letters} '\\u{{1b}}'{help}")),
+        ("\"\\u202ex\"", format!("`name`: {letters} '\\u{{202e}}'{help}")),
+        (&format!("\"{}\"", "x".repeat(33)), format!("`name`: {}{help}", too_long(33))),
+        (&format!("\"{}\"", "x".repeat(10_000)), format!("`name`: {}{help}", too_long(10_000))),
+        ("1", "`name` must be a string, got 1".to_owned()),
+        ("[\"x\"]", "`name` must be a string, got a list".to_owned()),
+    ] {
+        assert_eq!(named(name, ""), [format!("6:8: {said}")], "{name}");
+    }
+    for taken in ["measured", "settling_time"] {
+        let said = named(&format!("\"{taken}\""), "");
+        let names = "names of metrics or signals could be read in two ways; give another name";
+        assert_eq!(said, [format!("6:8: `{taken}` cannot name an axis: {names}")]);
+    }
+}
+
+/// A signal is called by its own name, or with that of its axis in front.
+#[test]
+fn signals_and_limits_of_axes() {
+    let x = |addition: &str| named("\"x\"", addition);
+    let places = |said: Vec<String>| said.into_iter().map(|line| line.split_once(": ").unwrap().1.to_owned());
+    let said = |said: Vec<String>| places(said).collect::<Vec<_>>();
+    let channels = |names: &str| format!("[record]\nchannels = [{names}]\n");
+    assert_eq!(x(&channels("\"load.position\", \"x.load.velocity\"")), [""; 0]);
+    assert_eq!(
+        said(x(&channels("\"y.load.position\""))),
+        ["\"y.load.position\" is not a value of `channels`; there is no axis `y`; the axes are: `x`"]
+    );
+    assert_eq!(
+        said(mistakes(&format!("{AXIS}{}", channels("\"x.load.position\"")))),
+        [
+            "\"x.load.position\" is not a value of `channels`; there is no axis `x`; the axis gets a name by `name` in `[axis]`"
+        ]
+    );
+    assert_eq!(
+        said(x(&channels("\"x.load.veloctiy\""))),
+        ["\"x.load.veloctiy\" is not a value of `channels`; did you mean `load.velocity`?"]
+    );
+    assert_eq!(x("[limits.x]\nmove_time = \"2 s\"\n"), [""; 0]);
+    assert_eq!(
+        said(x("[limits.y]\nmove_time = \"2 s\"\n")),
+        ["unknown metric `y`; there is no axis `y`; the axes are: `x`"]
+    );
+    assert_eq!(
+        said(x("[limits.x]\nsettling_time = \"20 ms\"\n")),
+        ["`settling_time` has two limits; leave one of them out"]
+    );
+    let twice = said(x("[limits.x.x]\nmove_time = \"2 s\"\n"));
+    assert_eq!(twice, ["unknown metric `x`; there is no axis `x`; the axes are: `x`"]);
+}
+
+#[test]
+fn the_example_of_the_page_is_right() {
+    let page = include_str!("../../../../docs/results.md");
+    let block = page.split("```toml\n").find(|block| block.starts_with("[axis]\n")).unwrap();
+    let (axis, rest) = block.split_once("```").unwrap().0.split_once("\n\n").unwrap();
+    let text = AXIS.replace("[axis]\n", &format!("{axis}\n")) + rest;
+    let loaded = parse("axis.toml", &text, None).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.scenario.axis.name.unwrap().as_str(), "x");
+    assert_eq!(loaded.scenario.record.channels, [Signal::LoadPosition, Signal::LoadVelocity]);
+    assert_eq!(loaded.scenario.limits.len(), 2);
 }

@@ -104,7 +104,7 @@ mod tests {
         };
         let rate = Rate::new(16_000).unwrap();
         let channel = |name: &str, value: fn(usize) -> f64| Channel {
-            spec: ChannelSpec { name: name.into(), unit: "m".into(), writer: "mechanics".into(), rate },
+            spec: ChannelSpec { axis: None, name: name.into(), unit: "m".into(), writer: "mechanics".into(), rate },
             values: (0..instants).map(value).collect(),
         };
         let channels = vec![

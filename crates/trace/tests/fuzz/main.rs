@@ -26,7 +26,7 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 fn recording(instants: u32, channels: u32, path: &Path) -> (Recording, Vec<u8>) {
     let rate = Rate::new(16_000).unwrap();
     let channel = |i: u32| Channel {
-        spec: ChannelSpec { name: format!("c.{i}"), unit: "m".into(), writer: "mechanics".into(), rate },
+        spec: ChannelSpec { axis: None, name: format!("c.{i}"), unit: "m".into(), writer: "mechanics".into(), rate },
         values: (0..instants).map(|k| f64::from(k * i) * 1e-3).collect(),
     };
     let recording = Recording {

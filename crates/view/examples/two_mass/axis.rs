@@ -83,8 +83,13 @@ pub(crate) fn run(case: Case) -> Recording {
         ("saturation.voltage", String::new(), "inverter"),
         ("saturation.current", String::new(), "velocity loop"),
     ];
-    let specs =
-        channels.map(|(name, unit, writer)| ChannelSpec { name: name.into(), unit, writer: writer.into(), rate });
+    let specs = channels.map(|(name, unit, writer)| ChannelSpec {
+        axis: None,
+        name: name.into(),
+        unit,
+        writer: writer.into(),
+        rate,
+    });
     let bodies = vec!["motor".to_owned(), "load".to_owned()];
     let about =
         About { scenario: case.name.into(), engine: "example".into(), axis_unit: u.into(), bodies, overrides: vec![] };

@@ -7,7 +7,8 @@ use servobench_trace::{Call, CallFate, Channel, ChannelSpec, Event, Recording};
 use servobench_view::{Outcome, Verdict, ViewOptions};
 
 fn add(recording: &mut Recording, name: &str, unit: &str, value: impl Fn(usize) -> f64) {
-    let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate: recording.rate };
+    let spec =
+        ChannelSpec { axis: None, name: name.into(), unit: unit.into(), writer: "test".into(), rate: recording.rate };
     let values = (0..recording.len()).map(value).collect();
     recording.channels.retain(|channel| channel.spec.name != name);
     recording.channels.push(Channel { spec, values });

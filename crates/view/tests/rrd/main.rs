@@ -52,6 +52,35 @@ fn a_run_is_all_there_on_one_timeline() {
     assert_views_are_fed(&content);
 }
 
+/// `recording` of an axis called `name`.
+fn of_axis(mut recording: Recording, name: &str) -> Recording {
+    for channel in &mut recording.channels {
+        channel.spec.axis = Some(name.parse().unwrap());
+    }
+    recording
+}
+
+#[test]
+fn entities_of_an_axis_with_a_name_are_below_it() {
+    let unnamed = written(&example(4), &options());
+    let named = written(&of_axis(example(4), "x"), &options());
+    assert_views_are_fed(&named);
+    let own = |entity: &&String| unnamed.entities.contains(entity.as_str());
+    let shared: Vec<_> = named.entities.iter().filter(own).collect();
+    assert!(!shared.iter().any(|entity| entity.contains("load")), "{shared:?}");
+    for (entity, curve) in &unnamed.curves {
+        let below = format!("/x{entity}");
+        assert_eq!(named.curves.get(&below).or(named.curves.get(entity)), Some(curve), "{entity}");
+    }
+    for entity in ["/x/position/load", "/x/axis/motor", "/x/axis/spring/load", "/x/moves"] {
+        assert!(named.entities.contains(entity), "{entity} is missing in {:?}", named.entities);
+    }
+    // The name of a plane of the motor's would put the run into it.
+    let taken = written(&of_axis(example(4), "current_plane"), &options());
+    assert!(taken.entities.contains("/axis-current_plane/position/load"), "{:?}", taken.entities);
+    assert_views_are_fed(&taken);
+}
+
 #[test]
 fn a_derivative_that_is_no_more_than_impulses_has_no_plot() {
     let content = written(&example(3), &options());

@@ -21,7 +21,7 @@ fn number(title: &str, word: &str, unit: &str) -> f64 {
 
 fn add(recording: &mut Recording, name: &str, unit: &str, values: Vec<f64>) {
     let rate = Rate::new(16_000).unwrap();
-    let spec = ChannelSpec { name: name.into(), unit: unit.into(), writer: "test".into(), rate };
+    let spec = ChannelSpec { axis: None, name: name.into(), unit: unit.into(), writer: "test".into(), rate };
     recording.channels.push(Channel { spec, values: values.into() });
 }
 
