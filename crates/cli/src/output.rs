@@ -134,6 +134,7 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
         name: scenario.name.clone(),
         file: scenario.path.as_ref().map(|path| path.display().to_string()),
         engine: job.engine.to_string(),
+        axis: scenario.axis.name,
         inputs: inputs_of(job),
         made_of: scenario.made_of.clone(),
         recording: written.recording,
@@ -148,9 +149,9 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
 
 /// Which run it is, for lists of runs.
 pub(crate) fn unfinished(job: &Job) -> Unfinished {
-    let Scenario { name, path, .. } = &job.scenario;
+    let Scenario { name, path, axis, .. } = &job.scenario;
     let file = path.as_ref().map(|path| path.display().to_string());
-    Unfinished { name: name.clone(), file, engine: job.engine.to_string() }
+    Unfinished { name: name.clone(), file, engine: job.engine.to_string(), axis: axis.name }
 }
 
 /// Digest of all that the run of `job` is made of.
@@ -164,7 +165,7 @@ pub(crate) fn inputs_of(job: &Job) -> Digest {
     files.finish()
 }
 
-/// Where the scenario file has which limit: `limits.settling_time`, `program.1.limits.overshoot.max`.
+/// Where the scenario file has which limit: `limits.settling_time`, `limits.x.settling_time`, `program.1.limits.overshoot.max`.
 fn limit_places(scenario: &Scenario) -> Vec<LimitPlace> {
     let moves: Vec<usize> = (0..).zip(&scenario.program).filter_map(|(k, step)| of_move(step).then_some(k)).collect();
     let place = |parameter: &Parameter| {
@@ -178,6 +179,7 @@ fn limit_places(scenario: &Scenario) -> Vec<LimitPlace> {
             }
             _ => return None,
         };
+        let mut parts = parts.skip_while(|part| scenario.axis.name.is_some_and(|axis| axis.as_str() == *part));
         Some(LimitPlace { in_move, metric: parts.next()?.to_owned(), line: parameter.line? })
     };
     scenario.parameters.iter().filter_map(place).collect()
@@ -252,6 +254,10 @@ mod tests {
                     [limits]\nmove_time = \"2 s\"\n";
         let loaded = servobench_scenario::parse("a.toml", text, None).unwrap_or_else(|error| panic!("{error}"));
         let place = |in_move, metric: &str, line| LimitPlace { in_move, metric: metric.into(), line };
+        assert_eq!(limit_places(&loaded.scenario), [place(Some(0), "overshoot", 9), place(None, "move_time", 11)]);
+        let text = text.replace("axis = { ", "axis = { name = \"x\", ").replace("[limits]", "[limits.x]");
+        let text = text.replace("limits.overshoot", "limits.x.overshoot");
+        let loaded = servobench_scenario::parse("a.toml", &text, None).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(limit_places(&loaded.scenario), [place(Some(0), "overshoot", 9), place(None, "move_time", 11)]);
     }
 }

@@ -123,8 +123,8 @@ impl Carrying<'_> {
         let progress = Progress::new(pending.len(), args.quiet);
         let progress = if plan.is_sweep() { progress.by_percent() } else { progress };
         let not_made = |index| {
-            let Unfinished { name, file, engine } = ledger.planned(index).unwrap_or_default();
-            RunIdentity { name, file, engine, ..plan.identity(index) }
+            let Unfinished { name, file, engine, axis } = ledger.planned(index).unwrap_or_default();
+            RunIdentity { name, file, engine, axis, ..plan.identity(index) }
         };
         let not_ready = |index, why: NotReady| {
             let result = match why {

@@ -3,6 +3,7 @@ use crate::failures::lifted;
 use crate::text::elided;
 use servobench_config::Choice as _;
 use servobench_results::{JournalError, Outcome, RunHead, RunResult, Runs, printable};
+use servobench_trace::of_axis;
 
 servobench_config::choices! {
     /// Properties that may be denied of runs that did not fail.
@@ -74,7 +75,7 @@ pub fn denials(runs: &dyn Runs, denied: &[Denied]) -> Result<Vec<String>, Journa
         let mut named = Vec::new();
         for head in concerned.iter().take(MOST) {
             let what = kind.of_run(&*runs.result(head.index)?);
-            named.push(format!("{} on {}{what}", printable(head.name), printable(head.engine)));
+            named.push(format!("{}{} on {}{what}", printable(head.name), of_axis(head.axis), printable(head.engine)));
         }
         let more = concerned.len().saturating_sub(MOST);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };

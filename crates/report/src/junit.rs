@@ -6,6 +6,7 @@ use crate::said::last_words;
 use crate::style::Style;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use servobench_results::{Outcome, RunResult, Runs, Unfinished, printable, printable_lines};
+use servobench_trace::of_axis;
 use std::iter::once;
 use std::time::Duration;
 
@@ -76,7 +77,8 @@ fn case(run: &RunResult, time: Option<Duration>) -> TestCase {
     // The same scenario with other numbers is another case.
     let overrides = run.overrides.join(", ");
     let with = if overrides.is_empty() { String::new() } else { format!(" with {}", printable(&overrides)) };
-    let mut case = TestCase::new(format!("{}{engine}{with}", printable(&run.name).trim()), status(run));
+    let mut case =
+        TestCase::new(format!("{}{}{engine}{with}", printable(&run.name).trim(), of_axis(run.axis)), status(run));
     case.set_classname(class_name(run.file.as_deref()));
     case.add_property(("verdict", run.verdict.word()));
     let lifted = lifted(run);
@@ -113,7 +115,8 @@ fn class_name(file: Option<&str>) -> String {
 fn unfinished_case(run: &Unfinished) -> TestCase {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_type("unfinished").set_message("the suite was ended before this run");
-    let mut case = TestCase::new(format!("{} [{}]", printable(&run.name).trim(), run.engine), status);
+    let mut case =
+        TestCase::new(format!("{}{} [{}]", printable(&run.name).trim(), of_axis(run.axis), run.engine), status);
     case.set_classname(class_name(run.file.as_deref()));
     case
 }
@@ -189,7 +192,7 @@ mod tests {
     /// These runs, with their durations (ms).
     fn timed(results: Results, times: [u32; 7]) -> Kept {
         let unfinished =
-            |run: &RunResult| Unfinished { name: run.name.clone(), file: None, engine: run.engine.clone() };
+            |run: &RunResult| Unfinished { name: run.name.clone(), file: None, engine: run.engine.clone(), axis: None };
         let mut kept = Kept::new(None, results.scenarios.iter().map(unfinished).collect::<Vec<_>>());
         for ((index, result), time) in results.scenarios.into_iter().enumerate().zip(times) {
             kept.note(Finished { index, seconds: f64::from(time) * 1e-3, result }).unwrap();
@@ -231,6 +234,18 @@ mod tests {
     }
 
     #[test]
+    fn a_case_has_the_name_of_its_axis() {
+        let mut results = samples::results();
+        results.scenarios[0].axis = Some("x".parse().unwrap());
+        let last = Unfinished { name: "last".into(), file: None, engine: "mujoco".into(), axis: "y".parse().ok() };
+        results.unfinished = vec![last];
+        let report = read(&results);
+        let cases = &report.test_suites[0].test_cases;
+        assert_eq!(cases[0].name.as_str(), "lambrechts-jerk (axis x) [exact]");
+        assert_eq!(cases[7].name.as_str(), "last (axis y) [mujoco]");
+    }
+
+    #[test]
     fn a_missed_limit_is_told_with_its_size_its_file_and_its_line() {
         let report = read(&samples::results());
         let case = &report.test_suites[0].test_cases[1];
@@ -259,8 +274,12 @@ mod tests {
     #[test]
     fn a_run_that_did_not_end_is_an_error() {
         let mut results = samples::results();
-        results.unfinished =
-            vec![Unfinished { name: "last".into(), file: Some("last.toml".into()), engine: "mujoco".into() }];
+        results.unfinished = vec![Unfinished {
+            name: "last".into(),
+            file: Some("last.toml".into()),
+            engine: "mujoco".into(),
+            axis: None,
+        }];
         let report = read(&results);
         assert_eq!((report.tests, report.errors), (8, 3));
         let (kind, ty, message, _) = told(&report.test_suites[0].test_cases[7]);
@@ -280,7 +299,8 @@ mod tests {
     #[test]
     fn the_parts_are_one_report() {
         let mut results = samples::results();
-        results.unfinished = vec![Unfinished { name: "\u{1b}[<x>".into(), file: None, engine: "mujoco".into() }; 2];
+        results.unfinished =
+            vec![Unfinished { name: "\u{1b}[<x>".into(), file: None, engine: "mujoco".into(), axis: None }; 2];
         results.scenarios[0].name = "    </testsuite>\n        <testcase name=\"\">".into();
         results.scenarios[1].reasons.push("    </testsuite>\n        <testcase ".into());
         let mut suite = TestSuite::new(NAME);

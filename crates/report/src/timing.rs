@@ -64,7 +64,16 @@ pub fn timing_diagram(recording: &Recording, options: &TimingOptions) -> Result<
     }
     let is_all_idle = curves.is_empty() && all.iter().all(Group::is_idle);
     let (groups, idle) = if options.with_idle || is_all_idle { (all, vec![]) } else { group::without_idle(all) };
-    Ok(Sheet { about: &recording.about, window, width: f64::from(options.width), curves, groups, idle }.to_svg())
+    Ok(Sheet {
+        about: &recording.about,
+        axis: recording.axis(),
+        window,
+        width: f64::from(options.width),
+        curves,
+        groups,
+        idle,
+    }
+    .to_svg())
 }
 
 /// Sources of signals, and the calls.

@@ -5,6 +5,7 @@ use crate::style::{Ink, Style};
 use crate::text::{widest, wrapped};
 use servobench_metrics::{Name, Quantity};
 use servobench_results::{JournalError, Outcome, RunHead, RunResult, Runs, printable};
+use servobench_trace::of_axis;
 use std::collections::{HashMap, HashSet};
 use std::iter::once;
 
@@ -128,7 +129,7 @@ pub fn brief(runs: &dyn Runs) -> impl Iterator<Item = Part> {
     rows.chain(once(Ok(end)))
 }
 
-/// Names of runs; the files where two of them have the same name.
+/// Names of runs, with those of their axes; the files where two of them have the same name.
 fn told_apart(heads: &[RunHead<'_>]) -> Vec<String> {
     let mut first = HashMap::new();
     let mut shared = HashSet::new();
@@ -140,7 +141,7 @@ fn told_apart(heads: &[RunHead<'_>]) -> Vec<String> {
     let name = |head: &RunHead<'_>| {
         let file = head.file.filter(|_| shared.contains(head.name));
         let name = file.map_or(head.name, |file| file.strip_suffix(".toml").unwrap_or(file));
-        printable(name).trim().to_owned()
+        format!("{}{}", printable(name).trim(), of_axis(head.axis))
     };
     heads.iter().map(name).collect()
 }
@@ -299,6 +300,19 @@ mod tests {
         2 with something lifted, 1 with warnings
         "#);
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+    }
+
+    #[test]
+    fn axes_have_their_names() {
+        let mut results = samples::results();
+        for (run, name) in results.scenarios.iter_mut().zip(["x", "gantry-left_2"].into_iter().cycle()) {
+            run.axis = Some(name.parse().unwrap());
+        }
+        let table = table_of(&results, Style::default());
+        assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+        assert!(table.contains("no limits  lambrechts-jerk (axis x)\n"), "{table}");
+        assert!(table.contains("feed-axis-reversal-at-low-speed-with-stick-slip (axis gantry-left_2)\n"), "{table}");
+        assert!(brief_of(&results).contains("two-mass (axis x) on rapier: "), "{}", brief_of(&results));
     }
 
     #[test]

@@ -145,10 +145,11 @@ fn keep_common(overrides: &mut Option<Vec<String>>, run: &RunResult) {
 impl Runs for Kept {
     fn heads(&self) -> Box<dyn Iterator<Item = RunHead<'_>> + '_> {
         let heads = self.ended.iter().filter_map(|(index, ended)| {
-            let Unfinished { name, file, engine } = self.planned.get(*index)?;
+            let Unfinished { name, file, engine, axis } = self.planned.get(*index)?;
             let &Ended { verdict, took, has_recording, lifts, warns, .. } = ended;
             let (file, took) = (file.as_deref(), Some(took));
-            Some(RunHead { index: *index, name, file, engine, verdict, took, has_recording, lifts, warns })
+            let axis = *axis;
+            Some(RunHead { index: *index, name, file, engine, axis, verdict, took, has_recording, lifts, warns })
         });
         Box::new(heads)
     }
@@ -178,7 +179,7 @@ mod tests {
 
     fn planned() -> Vec<Unfinished> {
         let all = [samples::jerk(), samples::missed(), samples::broken(), samples::snap()];
-        let all = all.map(|RunResult { name, file, engine, .. }| Unfinished { name, file, engine });
+        let all = all.map(|RunResult { name, file, engine, axis, .. }| Unfinished { name, file, engine, axis });
         all.to_vec()
     }
 

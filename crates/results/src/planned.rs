@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn runs_in_a_row_are_called_alike() {
-        let of = |engine: &str| Unfinished { name: "a".into(), file: None, engine: engine.into() };
+        let of = |engine: &str| Unfinished { name: "a".into(), file: None, engine: engine.into(), axis: None };
         let planned = Planned::repeated(vec![of("exact"), of("rapier")], 3);
         let engines: Vec<_> = (0..planned.len()).map(|index| planned.get(index).unwrap().engine.as_str()).collect();
         assert_eq!(engines, ["exact", "exact", "exact", "rapier", "rapier", "rapier"]);

@@ -5,6 +5,7 @@ use crate::run::RunResult;
 use crate::written::digest_of;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
+use servobench_base::AxisName;
 use servobench_files::with_short_quotes;
 use std::io::{self, BufReader};
 use std::path::Path;
@@ -56,6 +57,9 @@ pub struct Unfinished {
     pub file: Option<String>,
     /// Engine.
     pub engine: String,
+    /// Name of the axis; left out where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis: Option<AxisName>,
 }
 
 /// Outcome of a run.
@@ -255,6 +259,22 @@ mod tests {
     fn validator() -> jsonschema::Validator {
         let schema = serde_json::from_str(include_str!("../../../docs/results.schema.json")).unwrap();
         jsonschema::validator_for(&schema).unwrap()
+    }
+
+    #[test]
+    fn axes_have_names() {
+        let mut results = samples::results();
+        results.scenarios[0].axis = Some("x".parse().unwrap());
+        let json = results.to_json().unwrap();
+        assert!(validator().is_valid(&serde_json::from_str(&json).unwrap()));
+        assert_eq!(Results::from_json(&json).unwrap().scenarios[0].axis, results.scenarios[0].axis);
+        for name in ["", "a.b", "a\u{1b}[2J", &"a".repeat(33)] {
+            let name = serde_json::to_string(name).unwrap();
+            let json = json.replace("\"axis\": \"x\"", &format!("\"axis\": {name}"));
+            assert!(!validator().is_valid(&serde_json::from_str(&json).unwrap()), "{name}");
+            let refused = Results::from_json(&json).unwrap_err().to_string();
+            assert!(refused.contains("the name of an axis ") && !refused.contains('\u{1b}'), "{refused}");
+        }
     }
 
     fn value(results: &Results) -> Value {

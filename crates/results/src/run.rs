@@ -4,6 +4,7 @@ use crate::entry::{ExpectedResult, MetricResult, MoveResult, of_set};
 use crate::results::Outcome;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
+use servobench_base::AxisName;
 use servobench_files::MadeOf;
 use servobench_metrics::{Metrics, Name, RequirementResult, Standing, Verdict};
 use servobench_trace::{Event, LogEntry, Recording};
@@ -17,6 +18,8 @@ pub struct RunIdentity {
     pub file: Option<String>,
     /// Engine.
     pub engine: String,
+    /// Name of the axis, if it has one.
+    pub axis: Option<AxisName>,
     /// Digest of its inputs; see [`RunResult::inputs`].
     pub inputs: Digest,
     /// File of the recording.
@@ -57,6 +60,9 @@ pub struct RunResult {
     pub file: Option<String>,
     /// Engine that computed the mechanics; empty for a file that could not be read.
     pub engine: String,
+    /// Name of the axis; left out if it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis: Option<AxisName>,
     /// Digest of all inputs of the run: scenario, overrides, engine, every file that it names, and the program.
     /// Equal digests mean equal runs.
     #[serde(default)]
@@ -220,6 +226,7 @@ impl RunResult {
             name: run.name,
             file: run.file,
             engine: run.engine,
+            axis: run.axis,
             inputs: run.inputs,
             made_of: run.made_of,
             verdict: Outcome::Error,

@@ -2,6 +2,7 @@
 use crate::journal::JournalError;
 use crate::results::{Outcome, Results, Unfinished};
 use crate::run::RunResult;
+use servobench_base::AxisName;
 use std::borrow::Cow;
 use std::time::Duration;
 
@@ -34,6 +35,8 @@ pub struct RunHead<'a> {
     pub file: Option<&'a str>,
     /// Engine.
     pub engine: &'a str,
+    /// Name of the axis, if it has one.
+    pub axis: Option<AxisName>,
     /// Outcome of the run.
     pub verdict: Outcome,
     /// Wall-clock duration, if known.
@@ -65,6 +68,7 @@ impl Runs for Results {
             name: &run.name,
             file: run.file.as_deref(),
             engine: &run.engine,
+            axis: run.axis,
             verdict: run.verdict,
             took: None,
             has_recording: run.recording.is_some(),

@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn written_one_by_one_they_are_the_same() {
         let mut results = samples::results();
-        results.unfinished = vec![Unfinished { name: "last".into(), file: None, engine: "exact".into() }];
+        results.unfinished = vec![Unfinished { name: "last".into(), file: None, engine: "exact".into(), axis: None }];
         results.status = Status::Incomplete;
         results.suite = Digest::of(b"suite");
         let mut written = Vec::new();

@@ -160,7 +160,7 @@ fn journals() {
                     Err(error) => panic!("{error}"),
                 };
                 assert_eq!(again, suite);
-                kept.plan(vec![Unfinished { name: String::new(), file: None, engine: String::new() }; 2]);
+                kept.plan(vec![Unfinished { name: String::new(), file: None, engine: String::new(), axis: None }; 2]);
                 for head in kept.heads() {
                     let last = finished.iter().rfind(|one| one.index == head.index).unwrap();
                     assert_eq!(*kept.result(head.index).unwrap(), last.result);

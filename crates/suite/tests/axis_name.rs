@@ -3,14 +3,14 @@ use servobench::{Engines, Run};
 use servobench_plant::{EngineName, Exact};
 use servobench_scenario::{Document, Scenario};
 use servobench_suite::{Source, Workers, execute, jobs};
-use servobench_trace::{Channel, Recording};
+use servobench_trace::{Channel, ChannelSpec, Recording};
 use std::path::{Path, PathBuf};
 
 const ENGINES: Engines = Engines { installed: &[&Exact], ..Engines::NONE };
 
 fn scenarios() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folders = ["scenarios/demo", "scenarios/plc", "tests/scenarios/requirements"];
+    let folders = ["scenarios/demo", "scenarios/plc"];
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
     let mut files: Vec<_> = files.map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| file.extension().is_some_and(|kind| kind == "toml"));
@@ -40,20 +40,17 @@ fn a_name_changes_names_only() {
         let mut named = named.unwrap_or_else(|error| panic!("{}: {error}", path.display())).scenario;
         assert_eq!(named.axis.name.unwrap().as_str(), "x-1");
         named.overrides.clear();
-        let (Some(plain), Some(named)) = (run(plain.scenario), run(named)) else { continue };
+        let (Some(mut plain), Some(mut named)) = (run(plain.scenario), run(named)) else { continue };
         let path = path.display();
         assert_eq!(channels(&named.recording), channels(&plain.recording), "{path}");
         assert!(named.recording.channels.iter().all(|one| one.spec.full_name() == format!("x-1.{}", one.spec.name)));
-        let mut recording = named.recording;
-        for (own, other) in recording.channels.iter_mut().zip(&plain.recording.channels) {
-            own.spec.axis = None;
-            assert_eq!(own.spec, other.spec, "{path}");
-            own.values = other.values.clone();
+        for (own, other) in named.recording.channels.drain(..).zip(plain.recording.channels.drain(..)) {
+            assert_eq!(ChannelSpec { axis: None, ..own.spec }, other.spec, "{path}");
         }
-        // Moves, events, signals, calls and log; text by text, since a number may be none.
-        assert_eq!(format!("{recording:?}"), format!("{:?}", plain.recording), "{path}");
+        // Moves, events, signals, calls and log as texts, in which one NaN equals another.
+        assert_eq!(format!("{:?}", named.recording), format!("{:?}", plain.recording), "{path}");
         assert_eq!((named.metrics, named.verdict), (plain.metrics, plain.verdict), "{path}");
         compared += 1;
     }
-    assert!(compared > 10, "{compared} runs");
+    assert!(compared > 5, "{compared} runs");
 }

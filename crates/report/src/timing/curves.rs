@@ -46,7 +46,7 @@ pub(super) fn panels(recording: &Recording, window: Window, width: f64) -> Vec<P
         let mut unit = "";
         let mut lines = Vec::new();
         for (signal, label, class) in [(setpoint, "set-point", "c"), (load, "load", "a")] {
-            let Some(channel) = recording.channels.iter().find(|known| known.spec.name == signal.name()) else {
+            let Some(channel) = recording.find(signal) else {
                 continue;
             };
             let points = points(recording, channel, window, buckets);

@@ -6,8 +6,9 @@ use super::key::Key;
 use super::trace;
 use super::window::Window;
 use crate::drawing::{Axis, STYLE as SHARED, escaped, fitted, text_width, ticks, unit_at};
+use servobench_base::AxisName;
 use servobench_metrics::round_above;
-use servobench_trace::About;
+use servobench_trace::{About, of_axis};
 
 /// Margins at the left and right of the diagram (pixels).
 const MARGIN: f64 = 14.0;
@@ -44,6 +45,8 @@ stroke-width:1}.gb,.ge,.gc{fill:none;stroke:#5b6472;stroke-width:.9}.gb{stroke-d
 /// A timing diagram.
 pub(super) struct Sheet<'a> {
     pub(super) about: &'a About,
+    /// Name of the axis, where it has one.
+    pub(super) axis: Option<AxisName>,
     pub(super) window: Window,
     pub(super) width: f64,
     pub(super) curves: Vec<Panel<'a>>,
@@ -119,9 +122,9 @@ impl Sheet<'_> {
 
     /// Beginning of the file and title.
     fn heading(&self, height: f64) -> Vec<String> {
-        let Self { width, about, .. } = self;
+        let Self { width, about, axis, .. } = self;
         let title = if about.scenario.is_empty() { "Timing diagram" } else { &about.scenario };
-        let title = &format!("{title}{}", about.overridden());
+        let title = &format!("{title}{}{}", of_axis(*axis), about.overridden());
         let engine = if about.engine.is_empty() { String::new() } else { format!("engine {}", about.engine) };
         let engine = fitted(&engine, width / 3.0, LETTERS).unwrap_or_default();
         let right = width - RIGHT;

@@ -28,6 +28,22 @@ fn names_and_states_may_hold_anything() {
 }
 
 #[test]
+fn the_title_has_the_name_of_the_axis() {
+    let mut recording = aborted();
+    let title = |recording: &Recording| {
+        let svg = whole(recording);
+        let document = Document::parse(&svg).unwrap();
+        let titles = elements(&document, "text", "t");
+        text(titles[0]).to_owned()
+    };
+    assert_eq!(title(&recording), "second block aborts the first");
+    for channel in &mut recording.channels {
+        channel.spec.axis = Some("x".parse().unwrap());
+    }
+    assert_eq!(title(&recording), "second block aborts the first (axis x)");
+}
+
+#[test]
 fn a_state_is_cut_to_its_bar_and_whole_in_its_tooltip() {
     let mode = [(0.0, "idle"), (1.0, "cyclic synchronous position"), (1.6, "homing"), (1.605, "profile velocity")];
     let recording = Recording { signals: vec![signal("drive", "mode", &mode)], ..aborted() };

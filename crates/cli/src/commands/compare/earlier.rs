@@ -7,6 +7,7 @@ use servobench_metrics::{Name, Quantity};
 use servobench_report::{elided, wrapped};
 use servobench_results::{Results, RunResult, printable, read_results};
 use servobench_suite::Job;
+use servobench_trace::of_axis;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -111,8 +112,9 @@ impl Earlier {
         let overrides: Vec<String> = result.overrides.iter().map(|one| printable(one)).collect();
         let overrides = if overrides.is_empty() { String::new() } else { format!(", with {}", overrides.join(", ")) };
         let words = format!(
-            "{label}: `{}` on {} from {}, by {generator}, {} simulated, {}{overrides}",
+            "{label}: `{}`{} on {} from {}, by {generator}, {} simulated, {}{overrides}",
             elided(&printable(&result.name), LONGEST),
+            of_axis(result.axis),
             elided(&printable(&result.engine), LONGEST),
             printable(&path.display().to_string()),
             Quantity::new(result.duration, "s"),

@@ -8,6 +8,7 @@ use servobench_config::Choice as _;
 use servobench_report::{elided, wrapped};
 use servobench_results::{COMPARISON, printable};
 use servobench_scenario::{Difference, Override, differences};
+use servobench_trace::of_axis;
 
 /// Differences that are listed; the others are counted.
 const MOST: usize = 12;
@@ -30,7 +31,8 @@ pub(super) fn heading(args: &CompareArgs, wanted: &[Wanted], earlier: &[Earlier]
             firsts.push(one);
         }
     }
-    let names: Vec<String> = firsts.iter().map(|one| printable(&one.job.scenario.name)).collect();
+    let name = |one: &&Wanted| printable(&one.job.scenario.name) + &of_axis(one.job.scenario.axis.name);
+    let names: Vec<String> = firsts.iter().map(name).collect();
     let variants = wanted.iter().filter(|one| one.file == first.file).filter_map(|one| one.variant.as_ref());
     let variants: Vec<(&str, &str)> = variants.map(|(name, words)| (name.as_str(), words.as_str())).collect();
     let in_variants = match variants.len() {

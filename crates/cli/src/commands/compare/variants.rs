@@ -41,7 +41,7 @@ pub(super) fn wanted(args: &CompareArgs) -> Result<Vec<Wanted>, CliError> {
         }
     }
     let files = sources::load(&args.scenarios, &args.with)?;
-    let names: Vec<String> = files.iter().map(|source| printable(&source.scenario.name)).collect();
+    let names = names(&files);
     let of_files = labels(&names.iter().map(String::as_str).collect::<Vec<_>>());
     let engine = args.engine.or_else(|| files.first().and_then(|source| source.scenario.engines.first().copied()));
     let (mut all, mut of_all, mut seeds) = (Vec::new(), Vec::new(), Vec::new());
@@ -83,6 +83,14 @@ pub(super) fn wanted(args: &CompareArgs) -> Result<Vec<Wanted>, CliError> {
         Wanted { job, label, variant, file, reseeded }
     });
     Ok(wanted.collect())
+}
+
+/// Names of the scenarios; where their axes have different names, with these behind them.
+fn names(files: &[Source]) -> Vec<String> {
+    let axis = |source: &Source| source.scenario.axis.name;
+    let is_one_axis = files.iter().all(|source| axis(source) == axis(&files[0]));
+    let of_axis = |source| axis(source).filter(|_| !is_one_axis).map(|axis| format!("-{axis}")).unwrap_or_default();
+    files.iter().map(|source| printable(&source.scenario.name) + &of_axis(source)).collect()
 }
 
 /// `source` in one variant.

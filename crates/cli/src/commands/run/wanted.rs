@@ -113,8 +113,8 @@ impl<'a> Wanted<'a> {
                     wanted.add(source, &Origin::File(path.into()), &engines, &mut ids);
                 }
                 Err(unusable) => {
-                    let RunIdentity { name, file, engine, .. } = identity_of(&unusable, &wanted.overrides);
-                    wanted.planned.push(Unfinished { name, file, engine });
+                    let RunIdentity { name, file, engine, axis, .. } = identity_of(&unusable, &wanted.overrides);
+                    wanted.planned.push(Unfinished { name, file, engine, axis });
                     wanted.entries.push(Entry::Unusable(unusable));
                 }
             }

@@ -116,6 +116,7 @@ impl<'a> Points<'a> {
             name: scenario.name.clone(),
             file: file.clone(),
             engine: engine.name().to_owned(),
+            axis: scenario.axis.name,
         };
         Planned::repeated(self.engines.iter().map(of).collect(), self.sweep().points())
     }
