@@ -74,7 +74,7 @@ pub(crate) fn suggestion_on<'a>(
 pub(crate) fn no_axis(other: &str, axis: Option<AxisName>) -> String {
     let other = quoted(other);
     match axis {
-        Some(axis) => format!("there is no axis `{other}`; the axes are: `{axis}`"),
-        None => format!("there is no axis `{other}`; the axis gets a name by `name` in `[axis]`"),
+        Some(axis) => format!("unknown axis `{other}`; the axes are: `{axis}`"),
+        None => format!("unknown axis `{other}`; the axis gets a name by `name` in `[axis]`"),
     }
 }

@@ -73,9 +73,9 @@ fn signals_of_an_axis_with_a_name() {
     let full = LOAD.replace("\"load.position", "\"x.load.position").replace("disturbance", "x.disturbance");
     assert_eq!(said(&full).unwrap(), own);
     let other = said(&LOAD.replace("\"load.position", "\"y.load.position")).unwrap_err();
-    assert!(other.ends_with("`y.load.position` is not a signal; there is no axis `y`; the axes are: `x`"), "{other}");
+    assert!(other.ends_with("`y.load.position` is not a signal; unknown axis `y`; the axes are: `x`"), "{other}");
     let other = said(&LOAD.replace("disturbance", "y.disturbance")).unwrap_err();
-    assert!(other.ends_with("there is no axis `y`; the axes are: `x`"), "{other}");
+    assert!(other.ends_with("unknown axis `y`; the axes are: `x`"), "{other}");
     let taken = said(&format!("{LOAD}name = \"x\"\n")).unwrap_err();
     assert!(taken.ends_with("an FMU and the axis are called `x`; give each its own `name`"), "{taken}");
 }

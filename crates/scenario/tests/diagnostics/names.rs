@@ -163,12 +163,12 @@ fn signals_and_limits_of_axes() {
     assert_eq!(x(&channels("\"load.position\", \"x.load.velocity\"")), [""; 0]);
     assert_eq!(
         said(x(&channels("\"y.load.position\""))),
-        ["\"y.load.position\" is not a value of `channels`; there is no axis `y`; the axes are: `x`"]
+        ["\"y.load.position\" is not a value of `channels`; unknown axis `y`; the axes are: `x`"]
     );
     assert_eq!(
         said(mistakes(&format!("{AXIS}{}", channels("\"x.load.position\"")))),
         [
-            "\"x.load.position\" is not a value of `channels`; there is no axis `x`; the axis gets a name by `name` in `[axis]`"
+            "\"x.load.position\" is not a value of `channels`; unknown axis `x`; the axis gets a name by `name` in `[axis]`"
         ]
     );
     assert_eq!(
@@ -178,14 +178,14 @@ fn signals_and_limits_of_axes() {
     assert_eq!(x("[limits.x]\nmove_time = \"2 s\"\n"), [""; 0]);
     assert_eq!(
         said(x("[limits.y]\nmove_time = \"2 s\"\n")),
-        ["unknown metric `y`; there is no axis `y`; the axes are: `x`"]
+        ["unknown metric `y`; unknown axis `y`; the axes are: `x`"]
     );
     assert_eq!(
         said(x("[limits.x]\nsettling_time = \"20 ms\"\n")),
         ["`settling_time` has two limits; leave one of them out"]
     );
     let twice = said(x("[limits.x.x]\nmove_time = \"2 s\"\n"));
-    assert_eq!(twice, ["unknown metric `x`; there is no axis `x`; the axes are: `x`"]);
+    assert_eq!(twice, ["unknown metric `x`; unknown axis `x`; the axes are: `x`"]);
 }
 
 #[test]
