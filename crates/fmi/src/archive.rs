@@ -1,8 +1,8 @@
-//! The archive that an FMU is: a zip by somebody else, taken apart with care.
+//! The zip archive of an FMU, of unknown origin and therefore unpacked with care.
 //!
-//! Nothing is written before every entry has been looked at: its name, kind and size as the directory of the archive has them.
-//! While it is unpacked no file becomes longer than that. Names that lead out of the folder, links, devices, encrypted files,
-//! duplicates with different bytes and compressions that the standard does not have are refused.
+//! Every entry's name, kind and size in the directory of the archive is checked before anything is written. While unpacking, no file
+//! grows beyond its size there. Names that lead out of the folder, links, devices, encrypted files, duplicates with different bytes and
+//! compressions outside the standard are refused.
 //!
 //! Source: FMI 2.0.5, §2.3, and FMI 3.0.2, §2.5 (a zip with `deflate` or no compression); PKWARE, *.ZIP File Format
 //! Specification*, 6.3.10, §4.3.16 (end of the directory).
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zip::{CompressionMethod, ZipArchive};
 
-/// How much an archive may hold.
+/// Limits of an archive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Files and folders.
@@ -35,12 +35,12 @@ pub struct Limits {
     pub file: u64,
     /// Bytes of all files.
     pub total: u64,
-    /// Bytes of all files for one of the archive.
+    /// Ratio of the bytes of all files to those of the archive.
     pub ratio: u64,
 }
 
 impl Default for Limits {
-    /// Far more than FMUs have that carry a whole interpreter with them.
+    /// Far above FMUs that carry a whole interpreter with them.
     fn default() -> Self {
         Self { entries: 20_000, name: 500, file: 1 << 30, total: 4 << 30, ratio: 250 }
     }
@@ -48,23 +48,23 @@ impl Default for Limits {
 
 /// A small archive may be compressed better than [`Limits::ratio`].
 const SMALL: u64 = 16 << 20;
-/// The bits of a Unix mode that say what kind of thing it is.
+/// The bits of a Unix mode that give the kind of file.
 const KIND: u32 = 0o170_000;
-/// Where the description is.
+/// Path of the description.
 const DESCRIPTION: &str = "modelDescription.xml";
 
-/// An FMU that is not unpacked; all its names and sizes are within the limits.
+/// A packed FMU; all its names and sizes are within the limits.
 #[derive(Debug)]
 pub struct Archive {
     path: PathBuf,
     zip: ZipArchive<File>,
     names: Names,
-    /// What is odd about it.
+    /// Oddities that do no harm.
     remarks: Vec<String>,
 }
 
 impl Archive {
-    /// Opens a file and looks at what it says to hold.
+    /// Opens a file and checks its directory.
     ///
     /// # Errors
     /// [`FmuError::File`], [`FmuError::Archive`]
@@ -97,7 +97,7 @@ impl Archive {
         self.names.files()
     }
 
-    /// Reads the model description, and nothing else of it.
+    /// Reads only the model description.
     ///
     /// # Errors
     /// [`FmuError`]
@@ -129,7 +129,7 @@ impl Archive {
         String::from_utf8(text).map_err(|error| broken(format!("it has to be UTF-8: {error}")))
     }
 
-    /// Unpacks all of it into a new folder of its own for temporary files.
+    /// Unpacks everything into a new temporary folder.
     ///
     /// # Errors
     /// [`FmuError`]
@@ -160,7 +160,7 @@ impl Archive {
             problem: ArchiveProblem::Entry { entry: name.to_owned(), why },
         };
         let mut entry = self.zip.by_index(index).map_err(|error| broken(error.to_string()))?;
-        // What is a program for its owner stays one; nobody else may do anything.
+        // An executable file stays executable for its owner; others have no permissions.
         let is_program = entry.unix_mode().unwrap_or(0) & 0o100 != 0;
         let mut file = servobench_files::create_private(&target, is_program).map_err(unwritable)?;
         let size = entry.size();
@@ -173,17 +173,17 @@ impl Archive {
     }
 }
 
-/// Bytes of an archive: the form for larger ones (zip64) is refused anyway.
+/// Greatest length of an archive (bytes): the form for larger ones (zip64) is refused anyway.
 const LARGEST: u64 = u32::MAX as u64;
 
-/// Opens a file that is one, and says how long it is.
+/// Opens a regular file; returns it with its length.
 fn open_file(path: &Path) -> io::Result<(File, u64)> {
     let file = servobench_files::open(path, LARGEST)?;
     let bytes = file.metadata()?.len();
     Ok((file, bytes))
 }
 
-/// What is said of names that are there more than once with the same bytes.
+/// Remarks on names that occur more than once with the same bytes.
 fn remarks(twice: &[(String, usize)]) -> Result<Vec<String>, ArchiveProblem> {
     if twice.is_empty() {
         // Either names are the same in different encodings, or the directory announces more than it has.
@@ -195,7 +195,7 @@ fn remarks(twice: &[(String, usize)]) -> Result<Vec<String>, ArchiveProblem> {
     Ok(twice.iter().map(remark).collect())
 }
 
-/// An FMU that is unpacked. Its folder is removed with the last copy of this.
+/// An unpacked FMU. Its folder is removed with the last clone of this.
 #[derive(Debug, Clone)]
 pub struct Unpacked {
     path: PathBuf,
@@ -208,7 +208,7 @@ pub struct Unpacked {
 enum Folder {
     /// Removed when it is dropped.
     Own(Own),
-    /// Somebody else's.
+    /// Owned by another process.
     Foreign(PathBuf),
 }
 
@@ -221,7 +221,7 @@ impl Unpacked {
         Archive::open(path, &Limits::default())?.unpack()
     }
 
-    /// An FMU that was unpacked into `folder` before, for a process that uses what another one has unpacked. The folder stays.
+    /// An FMU unpacked into `folder` before, for a process that uses what another has unpacked. The folder stays.
     ///
     /// # Errors
     /// [`FmuError`]
@@ -253,22 +253,22 @@ impl Unpacked {
         }
     }
 
-    /// What is odd about its archive, which is taken all the same.
+    /// Oddities of its archive, which was accepted all the same.
     #[must_use]
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 
-    /// What it says that it is.
+    /// Its model description.
     #[must_use]
     pub fn description(&self) -> &ModelDescription {
         &self.description
     }
 
-    /// Where its library for this platform is. Nothing of that is loaded.
+    /// Path of its library for this platform. Nothing is loaded.
     ///
     /// # Errors
-    /// [`FmuError::Library`] says what there is instead.
+    /// [`FmuError::Library`] lists what the FMU has instead.
     pub fn library(&self) -> Result<PathBuf, FmuError> {
         library::path(self)
     }
@@ -278,8 +278,8 @@ impl Unpacked {
 const END: usize = 22;
 const LONGEST_COMMENT: u64 = u16::MAX as u64;
 
-/// The directory is read as a whole: before that, each record that may be its end must announce fewer than 65535 entries. The
-/// form for larger archives (zip64) is not needed for an FMU within the limits.
+/// Refuses a directory that is too long. The directory is read as a whole: before that, each record that may be its end must announce
+/// fewer than 65535 entries. An FMU within the limits does not need the form for larger archives (zip64).
 fn refuse_long_directory(file: &mut File, bytes: u64) -> io::Result<Result<(), ArchiveProblem>> {
     let from = bytes.saturating_sub(LONGEST_COMMENT + END as u64);
     file.seek(SeekFrom::Start(from))?;
@@ -297,7 +297,7 @@ fn refuse_long_directory(file: &mut File, bytes: u64) -> io::Result<Result<(), A
     })
 }
 
-/// Looks at every entry of the directory.
+/// Checks every entry of the directory.
 fn look(zip: &mut ZipArchive<File>, bytes: u64, limits: &Limits) -> Result<Names, ArchiveProblem> {
     let within = |what: &dyn Fn() -> String, value: u64, most: u64| {
         if value > most { Err(ArchiveProblem::Limit { what: what(), value, most }) } else { Ok(()) }
@@ -337,7 +337,7 @@ fn look(zip: &mut ZipArchive<File>, bytes: u64, limits: &Limits) -> Result<Names
     Ok(names)
 }
 
-/// Says what else it is, if it is something.
+/// Error for a missing description, with a hint at a nested one; a package (SSP) has its own error.
 fn no_description(names: &Names) -> ArchiveProblem {
     if names.index("SystemStructure.ssd").is_some() {
         return ArchiveProblem::Ssp { entry: "SystemStructure.ssd".into() };

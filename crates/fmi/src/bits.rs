@@ -1,7 +1,7 @@
-//! Numbers on their way to another process.
+//! Numbers as sent to another process.
 pub(crate) use servobench_fmu_file::bits::{float, optional};
 
-/// How much a line of a log matters.
+/// Severity of a log line.
 pub(crate) mod severity {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
     use servobench_base::Severity;

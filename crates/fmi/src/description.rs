@@ -1,8 +1,8 @@
-//! `modelDescription.xml`: what an FMU is and which variables it has, of both versions in one form.
+//! `modelDescription.xml`: identity and variables of an FMU, in one form for both versions.
 //!
-//! What contradicts itself or the standard so that a simulation could go wrong is refused at its line. What is only left out or
-//! superfluous, and has one meaning all the same, is taken and said in [`ModelDescription::remarks`]: files of many tools have
-//! such things.
+//! Contradictions within the file or with the standard that could make a simulation wrong are errors with their line. Omissions and
+//! superfluous parts with only one possible meaning are accepted and listed in [`ModelDescription::remarks`]: files of many tools have
+//! them.
 //!
 //! Source: FMI 2.0.5, §2.2 and §4.3.1; FMI 3.0.2, §2.4 and §4.4.
 
@@ -50,7 +50,7 @@ servobench_config::choices! {
     }
 }
 
-/// What an FMU is.
+/// Model description of an FMU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelDescription {
     /// Version of the standard.
@@ -59,11 +59,11 @@ pub struct ModelDescription {
     pub fmi_version: String,
     /// Name of the model.
     pub model_name: String,
-    /// By which library and description know that they belong together: `guid` of FMI 2.0, `instantiationToken` of FMI 3.0.
+    /// Token that ties library and description together: `guid` of FMI 2.0, `instantiationToken` of FMI 3.0.
     pub instantiation_token: String,
-    /// What the model is; empty if it does not say, as all of the following.
+    /// Description of the model; empty if the file has none, like all of the following.
     pub description: String,
-    /// Who made the model.
+    /// Author of the model.
     pub author: String,
     /// Version of the model.
     pub model_version: String,
@@ -73,11 +73,11 @@ pub struct ModelDescription {
     pub license: String,
     /// Tool that made the FMU.
     pub generation_tool: String,
-    /// When it was made.
+    /// Date and time of generation.
     pub generation_date_and_time: String,
-    /// What it can do.
+    /// Capabilities in co-simulation.
     pub co_simulation: CoSimulation,
-    /// How it is meant to be run.
+    /// Suggested settings of a simulation.
     pub default_experiment: DefaultExperiment,
     /// Categories of its log.
     pub log_categories: Vec<LogCategory>,
@@ -87,16 +87,16 @@ pub struct ModelDescription {
     pub enumerations: Vec<Enumeration>,
     /// Variables in the order of the file.
     pub variables: Vec<Variable>,
-    /// What depends on what.
+    /// Dependencies between variables.
     pub structure: ModelStructure,
-    /// Where it departs from the standard without doing harm.
+    /// Harmless departures from the standard.
     pub remarks: Vec<String>,
     /// Position of each variable by its names.
     positions: HashMap<String, usize>,
 }
 
 impl ModelDescription {
-    /// Reads the text of a model description, a file that messages call `file`.
+    /// Reads the text of a model description; messages name the file `file`.
     ///
     /// # Errors
     /// [`FmuError::Description`], with the place.
@@ -107,7 +107,7 @@ impl ModelDescription {
             column,
             problem: Box::new(problem),
         };
-        // A mark of the byte order is no part of the XML.
+        // A byte order mark is not part of the XML.
         let text = text.trim_start_matches('\u{feff}');
         bounds::hold(text).map_err(|(byte, problem)| {
             let (line, column) = place(text, byte);
@@ -186,7 +186,7 @@ impl ModelDescription {
         self.enumerations.get(variable.enumeration?)
     }
 
-    /// The extents of a variable as long as structural parameters keep their start values; none for a scalar.
+    /// Extents of a variable while structural parameters keep their start values; none for a scalar.
     #[must_use]
     pub fn shape(&self, variable: &Variable) -> Vec<u64> {
         let extent = |dimension: &Dimension| match dimension {
@@ -208,7 +208,7 @@ fn place(text: &str, byte: usize) -> (u32, u32) {
     (u32::try_from(line).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX))
 }
 
-/// The version of the standard, if it is one of the two.
+/// Version of the standard; an error if not 2.0 or 3.0.
 fn version(root: Element) -> Result<Version, FmuError> {
     let text = root.required("fmiVersion")?;
     let unsupported = |what: &str| {

@@ -1,33 +1,33 @@
-//! Why a file cannot be used as an FMU.
+//! Reasons why a file cannot be used as an FMU.
 use crate::slave::SlaveError;
 use servobench_files::{named, quoted, with_short_quotes};
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a file cannot be used as an FMU.
+/// Reason why a file cannot be used as an FMU.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FmuError {
-    /// The operating system refuses.
+    /// The operating system refused.
     #[error("`{}` cannot be {what}: {source}", path.display())]
     File {
         /// File or folder.
         path: PathBuf,
-        /// What was tried: read, written, made.
+        /// Attempted action: read, written, made.
         what: &'static str,
-        /// Its reason.
+        /// Reason of the operating system.
         source: io::Error,
     },
-    /// The archive is broken, hostile, or something else than an FMU.
+    /// The archive is broken, hostile, or not an FMU.
     #[error("`{}` cannot be used as an FMU: {problem}", path.display())]
     Archive {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The mistake.
         problem: ArchiveProblem,
     },
-    /// The model description is not what the standard says.
+    /// The model description violates the standard.
     #[error("{file}:{line}:{column}: {problem}")]
     Description {
         /// File as messages name it.
@@ -36,18 +36,18 @@ pub enum FmuError {
         line: u32,
         /// Column in characters, from 1.
         column: u32,
-        /// What is wrong there.
+        /// The mistake there.
         problem: Box<DescriptionProblem>,
     },
-    /// Its library cannot be used.
+    /// The library cannot be used.
     #[error("the FMU `{}` cannot be loaded: {problem}", path.display())]
     Library {
         /// The FMU.
         path: PathBuf,
-        /// What is wrong.
+        /// The mistake.
         problem: LibraryProblem,
     },
-    /// It has not what it is wired or started with.
+    /// A wired or started variable does not fit the FMU.
     #[error("{what} `{name}` of the FMU `{}`: {problem}", path.display())]
     Setup {
         /// The FMU.
@@ -56,71 +56,71 @@ pub enum FmuError {
         what: &'static str,
         /// Name of the variable.
         name: String,
-        /// What is wrong.
+        /// The mistake.
         problem: String,
     },
-    /// It failed while it was initialised.
+    /// The FMU failed while it was initialised.
     #[error("the FMU `{}` cannot be initialised: {source}", path.display())]
     Initialise {
         /// The FMU.
         path: PathBuf,
-        /// What it did.
+        /// Its failure.
         source: SlaveError,
     },
 }
 
 impl FmuError {
-    /// Whether the machine had too little of something, and the FMU may be right: descriptors, memory, room on a disk.
+    /// True if the machine lacked a resource and the FMU may be right: descriptors, memory, room on a disk.
     #[must_use]
     pub fn is_shortage(&self) -> bool {
         matches!(self, Self::File { source, .. } if servobench_files::is_shortage(source))
     }
 }
 
-/// What is wrong with a library.
+/// Reason why a library cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LibraryProblem {
-    /// There is none for this machine.
+    /// No library for this machine.
     #[error("it has no `{wanted}`; it has {}{}", listed(platforms), if *has_sources { " and sources, which can be compiled into it with other tools" } else { "" })]
     NoBinary {
-        /// Where it should be.
+        /// Expected path.
         wanted: String,
-        /// Platforms that there is a folder for.
+        /// Platforms with a folder in the FMU.
         platforms: Vec<String>,
-        /// Whether there are sources.
+        /// True if the FMU has sources.
         has_sources: bool,
     },
-    /// The operating system refuses it.
+    /// The operating system refused to open it.
     #[error("its library cannot be opened ({why}){hint}")]
     Open {
-        /// Its reason.
+        /// Reason of the operating system.
         why: String,
-        /// What to do, if that is known.
+        /// Remedy, if known.
         hint: &'static str,
     },
-    /// It lacks a function that the description promises or the standard demands.
+    /// A function that the description promises or the standard demands is missing.
     #[error("its library has no function `{symbol}`")]
     NoFunction {
         /// Its name.
         symbol: &'static str,
     },
-    /// It is for something else.
+    /// The library is for another version or platform.
     #[error("its library says `{said}` when asked with `{call}`, expected `{wanted}`")]
     Says {
-        /// The question.
+        /// The function called.
         call: &'static str,
         /// Its answer.
         said: String,
         /// The right one.
         wanted: &'static str,
     },
-    /// It gives no instance.
+    /// The library returned no instance.
     #[error("`{call}` gives no instance{}", if why.is_empty() { " and says nothing".to_owned() } else { format!(": {why}") })]
     Instantiate {
         /// The function.
         call: &'static str,
-        /// The last that it logged.
+        /// The last message that it logged.
         why: String,
     },
 }
@@ -129,11 +129,11 @@ fn listed(platforms: &[String]) -> String {
     if platforms.is_empty() { "no libraries at all".into() } else { format!("those for {}", platforms.join(", ")) }
 }
 
-/// What is wrong with an archive.
+/// Reason why an archive cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ArchiveProblem {
-    /// It cannot be read.
+    /// The archive cannot be read.
     #[error("it is no readable zip archive ({}); an FMU is one, with `modelDescription.xml` in it", with_short_quotes(.0))]
     Zip(String),
     /// A file in it cannot be read.
@@ -144,82 +144,82 @@ pub enum ArchiveProblem {
         /// The reason.
         why: String,
     },
-    /// A name would be written outside the folder, or is no name of a file.
+    /// A name leads outside the folder, or is not a file name.
     #[error("the name `{entry}` in it {why}; nothing was unpacked")]
     Name {
         /// Name in the archive, control characters escaped.
         entry: String,
-        /// What is wrong with the name.
+        /// The mistake in the name.
         why: &'static str,
     },
-    /// Something that is neither a file nor a folder.
+    /// An entry that is neither a file nor a folder.
     #[error("`{entry}` in it is {what}; only files and folders are unpacked")]
     Kind {
         /// Name in the archive.
         entry: String,
-        /// What it is.
+        /// Its kind.
         what: &'static str,
     },
-    /// More than a limit allows.
+    /// A limit is exceeded.
     #[error(
         "{what} is {value}, at most {most} is unpacked, which no FMU needs; pack it anew without what does not belong to it"
     )]
     Limit {
-        /// What is limited.
+        /// The limited quantity.
         what: String,
-        /// What it is.
+        /// Its value.
         value: u64,
         /// The limit.
         most: u64,
     },
-    /// There is no model description.
+    /// The model description is missing.
     #[error("it has no `modelDescription.xml` at its top level{hint}")]
     NoDescription {
-        /// Where there is one, if anywhere.
+        /// Hint at one in a subfolder, if any.
         hint: String,
     },
-    /// It is a system structure and parameterisation package.
+    /// The archive is a system structure and parameterisation package.
     #[error(
         "it is an SSP package (`{entry}`), a system of components, which is not supported; give one FMU of its `resources/`"
     )]
     Ssp {
-        /// What says so.
+        /// Evidence of that.
         entry: String,
     },
 }
 
-/// What is wrong at a place of a model description.
+/// Mistake at a place of a model description.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DescriptionProblem {
-    /// It is no XML.
+    /// Not XML.
     #[error("no well-formed XML: {}", with_short_quotes(.0))]
     Xml(String),
-    /// More than a limit allows.
+    /// A limit is exceeded.
     #[error("{what} is more than {most}, which no model description needs")]
     Limit {
-        /// What is limited.
+        /// The limited quantity.
         what: &'static str,
         /// The limit.
         most: usize,
     },
-    /// Another element than the one that has to be here.
+    /// An unexpected element.
     #[error("the element is `<{}>`, expected {expected}", named(.found))]
     Element {
         /// Its name.
         found: String,
-        /// What may be here.
+        /// The elements allowed here.
         expected: String,
     },
-    /// An element that has to be here is not.
+    /// A required element is missing.
     #[error("`<{}>` has no element {expected}", named(.parent))]
     NoElement {
         /// The element that lacks it.
         parent: String,
-        /// What has to be here.
+        /// The required element.
         expected: &'static str,
     },
-    /// An attribute that has to be here is not.
+    /// A required attribute is missing.
     #[error("`<{}>` has no attribute `{attribute}`", named(.element))]
     NoAttribute {
         /// The element that lacks it.
@@ -227,7 +227,7 @@ pub enum DescriptionProblem {
         /// Its name.
         attribute: &'static str,
     },
-    /// An attribute has another value than it may have.
+    /// An attribute has a value that is not allowed.
     #[error("`{attribute}=\"{}\"` of `<{}>`: expected {expected}", quoted(.value), named(.element))]
     Attribute {
         /// The element.
@@ -236,7 +236,7 @@ pub enum DescriptionProblem {
         attribute: &'static str,
         /// Its value.
         value: String,
-        /// What it may be.
+        /// The allowed values.
         expected: String,
     },
     /// Two things have the same name or reference.
@@ -248,7 +248,7 @@ pub enum DescriptionProblem {
         attribute: &'static str,
         /// Its value.
         value: String,
-        /// What has it already.
+        /// The first one with this value.
         first: String,
     },
     /// Causality, variability and initial of a variable do not go together.
@@ -256,17 +256,17 @@ pub enum DescriptionProblem {
     Combination {
         /// Its name.
         variable: String,
-        /// What it has.
+        /// The combination found.
         found: String,
-        /// What would be right.
+        /// The allowed ones.
         allowed: String,
     },
-    /// Something that is not supported.
+    /// A feature that is not supported.
     #[error("{what} is not supported; {help}")]
     Unsupported {
-        /// What it is.
+        /// The feature.
         what: String,
-        /// What to do.
+        /// Remedy.
         help: &'static str,
     },
 }

@@ -1,7 +1,7 @@
-//! Folders that FMUs are unpacked to: they go with who uses them, also where a signal ends the program before that. What a program
-//! left that was killed goes when the next one looks.
+//! Folders for unpacked FMUs: they are removed with their users, also when a signal ends the program first. Folders left by a killed
+//! program are removed when the next one looks.
 //!
-//! A folder is locked as long as the process is there that uses it, however that ends.
+//! A folder is locked while the process that uses it lives, however that ends.
 use servobench_files::FolderLock;
 use std::fs::{self, TryLockError};
 use std::io;
@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
 use tempfile::TempDir;
 
-/// Beginning of their names, before the number of the process.
+/// Beginning of their names, before the process number.
 const PREFIX: &str = "servobench-fmu-";
 
-/// Those of this process that are there.
+/// Existing folders of this process.
 static THERE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-/// Is held for reading while something is written to one, and for writing when nothing may be any more.
+/// Locked for reading while something is written to a folder, and for writing when nothing may be written any more.
 static WRITING: RwLock<()> = RwLock::new(());
 
 /// A folder that is removed when it is dropped.
@@ -35,8 +35,8 @@ impl Own {
         loop {
             let folder = tempfile::Builder::new().prefix(&prefix).tempdir_in(parent)?;
             let path = folder.path().to_owned();
-            // Another program may take it for one that nobody uses any more before it is locked. A file system without locks has
-            // none for that program either.
+            // Another program may take it for abandoned before it is locked. On a file system without locks that program cannot lock it
+            // either.
             let lock = FolderLock::of(&path);
             if !matches!(lock, Err(TryLockError::WouldBlock)) && path.is_dir() {
                 there().push(path.clone());
@@ -52,27 +52,27 @@ impl Own {
 
 impl Drop for Own {
     fn drop(&mut self) {
-        // First it goes, then it is forgotten: a signal may come in between.
+        // Removed first, forgotten afterwards: a signal may come in between.
         drop(self.folder.take());
         there().retain(|folder| *folder != self.path);
     }
 }
 
 fn there() -> MutexGuard<'static, Vec<PathBuf>> {
-    // Nothing is ever left half done with it.
+    // Its data are never left inconsistent.
     THERE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// To be held while something is written to a folder.
+/// Guard to hold while something is written to a folder.
 pub(super) fn writing() -> RwLockReadGuard<'static, ()> {
     WRITING.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what programs have unpacked that were ended before they could remove it themselves.
+/// Removes folders of programs that were killed before they could remove them.
 pub fn remove_abandoned() {
     for entry in fs::read_dir(std::env::temp_dir()).into_iter().flatten().flatten() {
         let is_one = entry.file_name().to_string_lossy().starts_with(PREFIX);
-        // A link is none of ours.
+        // Links are not ours.
         if is_one
             && entry.file_type().is_ok_and(|kind| kind.is_dir())
             && let Ok(_lock) = FolderLock::of(&entry.path())
@@ -83,13 +83,13 @@ pub fn remove_abandoned() {
     }
 }
 
-/// Removes all that this process has unpacked, and all that these processes have, which have ended without having done so. For a program
-/// that ends: nothing is unpacked after that, and who tries waits for ever.
+/// Removes all folders of this process, and those that the processes `ended` left behind. For a program that ends: nothing is unpacked
+/// after that, and any attempt waits for ever.
 pub fn remove_unpacked(ended: &[u32]) {
     let stopped = WRITING.write().unwrap_or_else(PoisonError::into_inner);
     std::mem::forget(stopped);
     for folder in there().iter() {
-        // What cannot be removed is only in the way.
+        // A folder that cannot be removed only takes room.
         fs::remove_dir_all(folder).ok();
     }
     let prefixes: Vec<String> = ended.iter().map(|process| format!("{PREFIX}{process}-")).collect();
@@ -105,7 +105,7 @@ pub fn remove_unpacked(ended: &[u32]) {
 mod tests {
     use super::*;
 
-    /// A folder in use is locked; one whose program has ended is not, whatever its number says.
+    /// A folder in use is locked; that of a program that has ended is not, whatever its number.
     #[test]
     fn what_is_in_use_is_locked() {
         let parent = tempfile::tempdir().unwrap();

@@ -2,11 +2,11 @@
 use crate::error::ArchiveProblem;
 use std::collections::HashMap;
 
-/// Names that can all be made within one folder.
+/// Names that can all be created within one folder.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     all: Vec<String>,
-    /// Files and folders, those between included, without a slash at the end.
+    /// Files and folders, including those in between, without a slash at the end.
     known: HashMap<String, Kind>,
 }
 
@@ -20,7 +20,7 @@ impl Names {
     /// Adds the name of the next entry; one that ends with a slash is a folder.
     ///
     /// # Errors
-    /// If it is no relative path downwards, or stands for something that is there.
+    /// The name is not a relative path downwards, or exists already.
     pub(super) fn add(&mut self, name: String) -> Result<(), ArchiveProblem> {
         let refuse = |why| Err(ArchiveProblem::Name { entry: name.escape_debug().to_string(), why });
         if let Some(why) = mistake(&name) {
@@ -47,12 +47,12 @@ impl Names {
         Ok(())
     }
 
-    /// The name of an entry, without detours.
+    /// The path of an entry, without detours.
     pub(super) fn name(&self, index: usize) -> &str {
         &self.all[index]
     }
 
-    /// The entry of a file.
+    /// The index of a file's entry.
     pub(super) fn index(&self, file: &str) -> Option<usize> {
         match self.known.get(file)? {
             Kind::File(index) => Some(*index),
@@ -65,16 +65,16 @@ impl Names {
     }
 }
 
-/// The path that a name stands for, without a slash at its end: `./x` is `x`.
+/// The direct path of a name, without a slash at its end: `./x` is `x`.
 fn direct(name: &str) -> String {
     let parts = name.split('/').filter(|part| !matches!(*part, "" | "."));
     parts.collect::<Vec<_>>().join("/")
 }
 
-/// Parts of a name. All its beginnings are kept.
+/// Most parts of a name. All its prefixes are stored.
 const DEEPEST: usize = 32;
 
-/// What is wrong with a name by itself.
+/// The mistake in a name by itself.
 fn mistake(name: &str) -> Option<&'static str> {
     if name.chars().any(char::is_control) {
         return Some("has control characters");
@@ -95,7 +95,7 @@ fn mistake(name: &str) -> Option<&'static str> {
     path.split('/').find_map(|part| match part {
         "" => Some("has a folder without a name"),
         ".." => Some("leads out of its folder"),
-        // The longest that file systems have.
+        // The limit of most file systems.
         _ if part.len() > 255 => Some("has a part of more than 255 bytes"),
         _ => None,
     })

@@ -1,7 +1,7 @@
-//! Names that are in an archive more than once.
+//! Names that occur in an archive more than once.
 //!
-//! Other readers take the first of them or the last, so that what is looked at and what is used could be two things. Where their bytes
-//! are the same it makes no difference: packing tools write such archives.
+//! Other readers take the first or the last of them, so the entry that was checked and the one in use could differ. With the same bytes
+//! it makes no difference: packing tools write such archives.
 //!
 //! Source: PKWARE, *.ZIP File Format Specification*, 6.3.10, §4.3.7 (local header), §4.3.12 (directory).
 use crate::error::ArchiveProblem;
@@ -11,34 +11,34 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 const RECORD: [u8; 4] = *b"PK\x01\x02";
 const LOCAL: [u8; 4] = *b"PK\x03\x04";
-/// Bytes of a record of the directory, and of a local header, without what is of any length behind them.
+/// Bytes of a directory record and of a local header, without their parts of variable length.
 const RECORD_BYTES: usize = 46;
 const LOCAL_BYTES: usize = 30;
-/// Bytes that are compared at once.
+/// Bytes compared at once.
 const CHUNK: usize = 1 << 16;
 
-/// What a record of the directory says of an entry, as far as it decides on what comes of it.
+/// Fields of a directory record that affect the unpacked file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Entry {
-    /// General purpose bits, as of encryption.
+    /// General purpose bits, such as encryption.
     flags: [u8; 2],
-    /// How it is compressed.
+    /// Compression method.
     method: [u8; 2],
     crc: [u8; 4],
     /// Bytes of its data in the archive.
     packed: u32,
     size: [u8; 4],
-    /// What it is, and who may do what.
+    /// File type and permissions.
     attributes: [u8; 4],
-    /// Where its local header is, before the offset of the archive in its file.
+    /// Position of its local header, before the offset of the archive in its file.
     at: u32,
 }
 
-/// The names that are in the directory more than once with the same bytes, each with how often. The directory is at `start` in a `file`
-/// of `bytes`, its entries are `offset` later than they say.
+/// Names that occur in the directory more than once with the same bytes, each with its count. The directory begins at `start` in a `file`
+/// of `bytes`; its entries lie `offset` behind their stated positions.
 ///
 /// # Errors
-/// [`ArchiveProblem`] for one with different bytes.
+/// [`ArchiveProblem`] for a name with different bytes.
 pub(super) fn same_twice(
     file: &mut File,
     (start, offset): (u64, u64),
@@ -46,7 +46,7 @@ pub(super) fn same_twice(
 ) -> Result<Vec<(String, usize)>, ArchiveProblem> {
     let unreadable = |error: io::Error| ArchiveProblem::Zip(error.to_string());
     let mut known: HashMap<Vec<u8>, (Entry, usize)> = HashMap::new();
-    // No archive holds more than itself: entries that share their data could be compared without end.
+    // No archive holds more than itself: comparing entries that share their data could take for ever.
     let mut left = bytes;
     for (name, entry) in entries(file, start).map_err(unreadable)? {
         let Some((first, count)) = known.get_mut(&name) else {
@@ -88,7 +88,7 @@ fn entries(file: &mut File, start: u64) -> io::Result<Vec<(Vec<u8>, Entry)>> {
     let mut all = Vec::new();
     loop {
         let mut record = [0; RECORD_BYTES];
-        // It ends with something else, which is 22 bytes long at least.
+        // The directory is followed by another record, of at least 22 bytes.
         reader.read_exact(&mut record[..4])?;
         if record[..4] != RECORD {
             return Ok(all);
@@ -112,7 +112,7 @@ fn entries(file: &mut File, start: u64) -> io::Result<Vec<(Vec<u8>, Entry)>> {
     }
 }
 
-/// Whether the data of two entries, whose local headers are there, are the same.
+/// True if the data of two entries, given by their local headers, are equal.
 fn are_equal(file: &mut File, one: u64, other: u64, length: u64) -> io::Result<bool> {
     let starts = [data(file, one)?, data(file, other)?];
     let (mut chunks, mut done) = ([vec![0; CHUNK], vec![0; CHUNK]], 0);
@@ -130,7 +130,7 @@ fn are_equal(file: &mut File, one: u64, other: u64, length: u64) -> io::Result<b
     Ok(true)
 }
 
-/// Where the data begin behind a local header.
+/// Start of the data behind a local header.
 fn data(file: &mut File, header: u64) -> io::Result<u64> {
     let mut local = [0; LOCAL_BYTES];
     file.seek(SeekFrom::Start(header))?;

@@ -1,23 +1,23 @@
-//! Bounds that hold before a model description is parsed: the parser takes time with the square of the number of attributes
-//! of an element, and memory with the number of elements.
+//! Bounds checked before a model description is parsed: the parser's time grows with the square of the number of attributes of an
+//! element, its memory with the number of elements.
 use crate::error::DescriptionProblem;
 use servobench_files::{XmlBounds, XmlExcess};
 
-/// Bytes of a model description. Large ones, of some hundred thousand variables, have a hundred million.
+/// Bytes of a model description. Large ones, with some hundred thousand variables, have a hundred million.
 pub(crate) const MOST_BYTES: usize = 1 << 27;
 /// Elements, texts and comments.
 pub(super) const MOST_NODES: u32 = 1 << 22;
-/// Elements within each other. The standard has six, annotations of tools have what they like.
+/// Depth of nesting of elements. The standard has six, annotations of tools any number.
 const MOST_DEPTH: usize = 64;
 /// Attributes of one element. The standard has twenty at most.
 const MOST_ATTRIBUTES: usize = 128;
 /// Attributes of all elements.
 const MOST_ATTRIBUTES_IN_ALL: usize = 1 << 24;
 
-/// Holds the text against the bounds. It need not be XML: what is none is for the parser to refuse.
+/// Checks the text against the bounds. The text need not be XML: the parser rejects what is not.
 ///
 /// # Errors
-/// The bound that is exceeded, and the byte where it is.
+/// The bound that is exceeded, and the byte offset.
 pub(super) fn hold(text: &str) -> Result<(), (usize, DescriptionProblem)> {
     let bounds = XmlBounds {
         bytes: MOST_BYTES,

@@ -1,4 +1,4 @@
-//! When clocks tick (FMI 3.0.2, §2.2.8 and §2.4.7.5).
+//! Ticks of clocks (FMI 3.0.2, §2.2.8 and §2.4.7.5).
 use super::element::Element;
 use super::variable::Causality;
 use crate::error::FmuError;
@@ -21,25 +21,25 @@ servobench_config::choices! {
     }
 }
 
-/// When a clock ticks.
+/// Timing of a clock's ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ticks {
-    /// What is known of its interval.
+    /// Kind of its interval.
     pub variability: IntervalVariability,
-    /// From tick to tick (s), where the description says it.
+    /// Time from tick to tick (s), if the description gives it.
     pub interval: Option<f64>,
-    /// From the start to the first tick (s).
+    /// Time from the start to the first tick (s).
     pub shift: f64,
 }
 
 impl Ticks {
-    /// Whether its time is to be kept from outside. A triggered clock ticks when another one does.
+    /// True if the importer has to keep its time. A triggered clock ticks when another one does.
     #[must_use]
     pub fn are_by_time(&self) -> bool {
         self.variability != IntervalVariability::Triggered
     }
 
-    /// Of `<Clock>`. The decimal numbers are the same as the counters with their resolution, which round less.
+    /// Reads `<Clock>`. The decimal numbers equal the counters with their resolution, which are rounded less.
     pub(super) fn read(element: Element, causality: Causality) -> Result<Self, FmuError> {
         element.required("intervalVariability")?;
         let variability = element.named("intervalVariability")?.unwrap_or(IntervalVariability::Triggered);

@@ -1,4 +1,4 @@
-//! Which causality, variability and initial go together.
+//! Allowed combinations of causality, variability and initial.
 //!
 //! Source: FMI 2.0.5, §2.2.7, tables of the attributes of `ScalarVariable`; FMI 3.0.2, §2.4.7.4, tables "allowed combinations of
 //! variability/causality" and "definition of initial". The two versions agree where both have the causality; 2.0 alone

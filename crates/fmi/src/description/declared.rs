@@ -24,7 +24,7 @@ pub struct Item {
     pub name: String,
     /// Its value.
     pub value: i64,
-    /// What it means.
+    /// Its meaning.
     pub description: String,
 }
 
@@ -84,7 +84,7 @@ pub(super) const TWO: [(&str, DataType); 5] = [
     ("Enumeration", DataType::Enumeration),
 ];
 
-/// In FMI 2.0 the type is an element in the element that is named.
+/// Finds the child that is the type: FMI 2.0 nests the type in the named element.
 pub(super) fn type_of_two(element: Element) -> Result<(Element, DataType), FmuError> {
     let found = element
         .children()
@@ -96,7 +96,7 @@ pub(super) fn type_of_two(element: Element) -> Result<(Element, DataType), FmuEr
     })
 }
 
-/// In FMI 3.0 the name of the element is that of the type with "Type" behind it.
+/// Type of an element of FMI 3.0, whose name is that of the type with "Type" appended.
 fn type_of_three(element: Element) -> Result<DataType, FmuError> {
     element.name().strip_suffix("Type").and_then(DataType::from_name).ok_or_else(|| {
         let expected = format!("{} with `Type` behind it", one_of(DataType::ALL.iter().map(|(name, ..)| *name)));

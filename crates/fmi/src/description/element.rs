@@ -30,7 +30,7 @@ impl<'a> Element<'a> {
         self.children().find(|child| child.name() == name)
     }
 
-    /// The children of the child of this name; none if there is no such child.
+    /// Children of the child of this name; empty without such a child.
     pub(super) fn grandchildren(self, name: &str) -> impl Iterator<Item = Self> {
         self.child(name).into_iter().flat_map(Self::children)
     }
@@ -40,13 +40,13 @@ impl<'a> Element<'a> {
         self.node.attribute(attribute)
     }
 
-    /// The value of an attribute; empty if it is not there.
+    /// The value of an attribute; empty if it is missing.
     pub(super) fn text_or_empty(self, attribute: &str) -> String {
         self.text(attribute).unwrap_or_default().to_owned()
     }
 
     /// # Errors
-    /// If there is no such attribute.
+    /// The attribute is missing.
     pub(super) fn required(self, attribute: &'static str) -> Result<&'a str, FmuError> {
         let missing = || DescriptionProblem::NoAttribute { element: self.name().to_owned(), attribute };
         self.text(attribute).ok_or_else(|| self.error(missing()))
@@ -55,7 +55,7 @@ impl<'a> Element<'a> {
     /// The attribute read by `read`, which takes the text without white space around it.
     ///
     /// # Errors
-    /// If there is one and `read` makes nothing of it: `expected` says what would be right.
+    /// The attribute is there and `read` returns `None`: `expected` describes a valid value.
     pub(super) fn read<T>(
         self,
         attribute: &'static str,
@@ -91,26 +91,26 @@ impl<'a> Element<'a> {
         self.read(attribute, "whole numbers without a sign, with spaces between them", numbers)
     }
 
-    /// The mistake that an attribute is not what was `expected`.
+    /// Error: the attribute is not what was `expected`.
     pub(super) fn wrong(self, attribute: &'static str, expected: impl Into<String>) -> FmuError {
         let value = self.text_or_empty(attribute);
         let element = self.name().to_owned();
         self.error_at(attribute, DescriptionProblem::Attribute { element, attribute, value, expected: expected.into() })
     }
 
-    /// The mistake that an attribute has the value of another one.
+    /// Error: the attribute has the value of another one.
     pub(super) fn twice(self, attribute: &'static str, first: &str) -> FmuError {
         let value = self.text_or_empty(attribute);
         let element = self.name().to_owned();
         self.error_at(attribute, DescriptionProblem::Twice { element, attribute, value, first: first.to_owned() })
     }
 
-    /// A mistake at the element.
+    /// An error at the element.
     pub(super) fn error(self, problem: DescriptionProblem) -> FmuError {
         self.at(self.node.range().start, problem)
     }
 
-    /// A mistake at one of its attributes, or at the element if it does not have it.
+    /// An error at one of its attributes, or at the element if it does not have the attribute.
     pub(super) fn error_at(self, attribute: &str, problem: DescriptionProblem) -> FmuError {
         let start = self.node.attribute_node(attribute).map_or(self.node.range().start, |found| found.range().start);
         self.at(start, problem)
@@ -136,7 +136,7 @@ pub(super) fn boolean(text: &str) -> Option<bool> {
     }
 }
 
-/// `xs:double`, which knows `INF` and `NaN` and, other than Rust, no other words.
+/// `xs:double`, which allows `INF` and `NaN` and, unlike Rust, no other words.
 pub(super) fn float(text: &str) -> Option<f64> {
     match text {
         "INF" | "+INF" => Some(f64::INFINITY),

@@ -1,43 +1,43 @@
-//! What an FMU says of itself as a whole.
+//! Properties of an FMU as a whole.
 use super::element::Element;
 use crate::error::{DescriptionProblem, FmuError};
 
-/// What the FMU can do and needs as a co-simulation FMU.
+/// Capabilities and requirements of the FMU in co-simulation.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "the flags of the standard")]
 pub struct CoSimulation {
     /// File name of the library, and prefix of its functions when they are linked statically.
     pub model_identifier: String,
-    /// A tool has to be installed.
+    /// True if a tool has to be installed.
     pub needs_execution_tool: bool,
-    /// One instance in a process.
+    /// True if only one instance per process is possible.
     pub can_be_instantiated_only_once_per_process: bool,
-    /// Its state can be saved and restored.
+    /// True if its state can be saved and restored.
     pub can_get_and_set_state: bool,
-    /// Its state can be turned into bytes.
+    /// True if its state can be serialised to bytes.
     pub can_serialize_state: bool,
-    /// It gives directional derivatives.
+    /// True if it provides directional derivatives.
     pub provides_directional_derivatives: bool,
-    /// It takes communication steps of any length.
+    /// True if it takes communication steps of any length.
     pub can_handle_variable_communication_step_size: bool,
-    /// It takes derivatives of inputs (FMI 2.0).
+    /// True if it takes derivatives of inputs (FMI 2.0).
     pub can_interpolate_inputs: bool,
-    /// Derivatives of outputs up to this order.
+    /// Highest order of the derivatives of outputs.
     pub max_output_derivative_order: u32,
     /// Its internal step (s); communication steps are multiples of it (FMI 3.0).
     pub fixed_internal_step_size: Option<f64>,
-    /// It has the event mode (FMI 3.0).
+    /// True if it has the event mode (FMI 3.0).
     pub has_event_mode: bool,
-    /// It calls back between communication points (FMI 3.0).
+    /// True if it calls back between communication points (FMI 3.0).
     pub provides_intermediate_update: bool,
-    /// A step may end before its end (FMI 3.0).
+    /// True if a step may end early (FMI 3.0).
     pub might_return_early_from_do_step: bool,
-    /// A step can be ended from a call back (FMI 3.0).
+    /// True if a callback can end a step (FMI 3.0).
     pub can_return_early_after_intermediate_update: bool,
 }
 
 impl CoSimulation {
-    /// Of `<CoSimulation>` of both versions, in which the names of some attributes differ.
+    /// Reads `<CoSimulation>` of either version; the names of some attributes differ.
     pub(super) fn read(element: Element) -> Result<Self, FmuError> {
         let either = |two, three| Ok::<_, FmuError>(element.boolean(two)? || element.boolean(three)?);
         let step = element.number("fixedInternalStepSize")?;
@@ -66,7 +66,7 @@ impl CoSimulation {
     }
 }
 
-/// It becomes a file name: a path in it would lead anywhere.
+/// Reads the model identifier. It becomes a file name, so a path in it is an error.
 fn model_identifier(element: Element) -> Result<String, FmuError> {
     let name = element.required("modelIdentifier")?;
     let is_word = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
@@ -100,11 +100,11 @@ pub(super) fn co_simulation(root: Element) -> Result<CoSimulation, FmuError> {
 pub struct LogCategory {
     /// Its name.
     pub name: String,
-    /// What belongs to it.
+    /// Description of its messages.
     pub description: String,
 }
 
-/// How the FMU is meant to be run.
+/// Suggested settings of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DefaultExperiment {
     /// Start (s).

@@ -1,4 +1,4 @@
-//! Attributes of numbers that a declared type gives and a variable may override.
+//! Attributes of numbers, set by a declared type and overridden by a variable.
 use super::element::{Element, float};
 use super::units::Units;
 use super::variable::DataType;
@@ -17,7 +17,7 @@ pub(super) struct Numeric {
 }
 
 impl Numeric {
-    /// Of an element; what it does not say is as in `defaults`.
+    /// Reads the attributes of an element; missing ones are taken from `defaults`.
     pub(super) fn read(
         element: Element,
         data_type: DataType,

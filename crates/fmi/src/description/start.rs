@@ -4,10 +4,10 @@ use super::element::{Element, boolean, float};
 use super::variable::{DataType, Values};
 use crate::error::FmuError;
 
-/// Elements that one array may have.
+/// Greatest number of elements of one array.
 pub(super) const MOST_ELEMENTS: u64 = 1 << 24;
 
-/// The start value of a variable; it has one for each element of an array or one for all.
+/// Start value of a variable: one for each element of an array, or one for all.
 pub(super) fn start(element: Element, data_type: DataType, version: Version) -> Result<Option<Values>, FmuError> {
     match data_type {
         DataType::Float32 | DataType::Float64 => list(element, "a number", float, Values::Float),

@@ -1,4 +1,4 @@
-//! What depends on what.
+//! Dependencies between variables.
 use super::element::Element;
 use super::{Version, variable::Variable};
 use crate::error::{DescriptionProblem, FmuError};
@@ -21,12 +21,12 @@ servobench_config::choices! {
     }
 }
 
-/// What an unknown depends on. Variables are known by their position in [`crate::ModelDescription::variables`].
+/// Dependencies of an unknown. Variables are given by their position in [`crate::ModelDescription::variables`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unknown {
     /// The variable.
     pub variable: usize,
-    /// What it depends on; without it, it may be anything.
+    /// Variables it depends on; `None` if it may depend on any.
     pub dependencies: Option<Vec<(usize, DependencyKind)>>,
 }
 
@@ -37,12 +37,12 @@ pub struct ModelStructure {
     pub outputs: Vec<Unknown>,
     /// Derivatives of continuous states.
     pub derivatives: Vec<Unknown>,
-    /// What is computed during initialisation.
+    /// Variables computed during initialisation.
     pub initial_unknowns: Vec<Unknown>,
 }
 
 impl ModelStructure {
-    /// Whether an output may follow an input at once, without a step. What the FMU does not exclude may be.
+    /// True if an output may follow an input at once, without a step; also where the FMU does not exclude it.
     #[must_use]
     pub fn feeds_through(&self, output: usize, input: usize) -> bool {
         let unknown = self.outputs.iter().find(|unknown| unknown.variable == output);
@@ -74,7 +74,7 @@ impl ModelStructure {
     }
 }
 
-/// How unknowns name variables.
+/// References from unknowns to variables.
 enum Known {
     /// By the position from 1 (FMI 2.0).
     Positions(usize),

@@ -1,4 +1,4 @@
-//! Units, defined by the FMU itself by their exponents of the SI base units.
+//! Units, defined by the FMU itself as exponents of the SI base units.
 //!
 //! ```text
 //! SI value      = factor·value + offset            (BaseUnit; without the offset for a difference, `relativeQuantity`)
@@ -10,30 +10,30 @@
 /// Exponents of the SI base units and the radian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Exponents {
-    /// Of the kilogram.
+    /// Exponent of the kilogram.
     pub kg: i32,
-    /// Of the metre.
+    /// Exponent of the metre.
     pub m: i32,
-    /// Of the second.
+    /// Exponent of the second.
     pub s: i32,
-    /// Of the ampere.
+    /// Exponent of the ampere.
     pub a: i32,
-    /// Of the kelvin.
+    /// Exponent of the kelvin.
     pub k: i32,
-    /// Of the mole.
+    /// Exponent of the mole.
     pub mol: i32,
-    /// Of the candela.
+    /// Exponent of the candela.
     pub cd: i32,
-    /// Of the radian, which the standard counts.
+    /// Exponent of the radian, which the standard counts.
     pub rad: i32,
 }
 
-/// How the values of a variable become SI values.
+/// Conversion of a variable's values to SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseUnit {
-    /// What it is made of.
+    /// Its dimension.
     pub exponents: Exponents,
-    /// SI units for one of it; finite, not zero.
+    /// SI units per unit; finite, not zero.
     pub factor: f64,
     /// SI value of its zero; finite.
     pub offset: f64,
@@ -53,21 +53,21 @@ impl BaseUnit {
     }
 }
 
-/// A unit that people see.
+/// A unit for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplayUnit {
     /// Its name.
     pub name: String,
-    /// How many for one of the unit; finite, not zero.
+    /// Display units per unit; finite, not zero.
     pub factor: f64,
-    /// What the unit's zero is called; finite.
+    /// Display value of the unit's zero; finite.
     pub offset: f64,
-    /// Whether it goes down as the value goes up (FMI 3.0).
+    /// True if the display value falls as the value rises (FMI 3.0).
     pub inverse: bool,
 }
 
 impl DisplayUnit {
-    /// What a value of the unit is called; a difference of two values if `is_relative`.
+    /// Display value of `value` of the unit; a difference of two values if `is_relative`.
     #[must_use]
     pub fn shown(&self, value: f64, is_relative: bool) -> f64 {
         let scaled = if self.inverse { self.factor / value } else { self.factor * value };
@@ -78,11 +78,11 @@ impl DisplayUnit {
 /// A unit of an FMU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// Its name, by which variables have it.
+    /// Its name, which variables refer to.
     pub name: String,
-    /// What it is in SI; the FMU need not say.
+    /// Conversion to SI; optional in an FMU.
     pub base: Option<BaseUnit>,
-    /// Units that stand for it before people.
+    /// Units for display.
     pub display: Vec<DisplayUnit>,
 }
 

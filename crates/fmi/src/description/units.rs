@@ -4,7 +4,7 @@ use super::unit::{BaseUnit, DisplayUnit, Exponents, Unit};
 use crate::error::FmuError;
 use std::collections::HashMap;
 
-/// The units and where each name is.
+/// The units, with the position of each name.
 #[derive(Debug, Default)]
 pub(super) struct Units {
     pub(super) all: Vec<Unit>,
@@ -34,7 +34,7 @@ impl Units {
         at
     }
 
-    /// The position of a unit that something has. One that is not defined has no more than its name.
+    /// The position of a unit that is referred to. An undefined one has only its name.
     pub(super) fn position(&mut self, name: &str, remarks: &mut Vec<String>) -> usize {
         if let Some(at) = self.positions.get(name) {
             return *at;
@@ -73,7 +73,7 @@ fn display_unit(element: Element) -> Result<DisplayUnit, FmuError> {
 
 fn factor(element: Element) -> Result<f64, FmuError> {
     let factor = element.number("factor")?.unwrap_or(1.0);
-    // By one whose inverse overflows nothing can be divided.
+    // Division by a factor whose inverse overflows is impossible.
     if !(factor.is_normal() && factor.recip().is_normal()) {
         return Err(element.wrong("factor", "a finite number that is not zero"));
     }

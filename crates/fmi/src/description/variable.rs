@@ -87,7 +87,7 @@ servobench_config::choices! {
 }
 
 impl DataType {
-    /// Whether it is a floating-point number.
+    /// True if it is a floating-point number.
     #[must_use]
     pub fn is_float(self) -> bool {
         matches!(self, Self::Float32 | Self::Float64)
@@ -113,20 +113,20 @@ impl DataType {
 /// Values of a scalar or, in row-major order, of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Of a floating-point type.
+    /// Floating-point numbers.
     Float(Vec<f64>),
-    /// Of an integer type or an enumeration.
+    /// Integers or items of an enumeration.
     Integer(Vec<i128>),
     /// TRUE or FALSE.
     Boolean(Vec<bool>),
-    /// Text.
+    /// Texts.
     String(Vec<String>),
-    /// Bytes.
+    /// Byte strings.
     Binary(Vec<Vec<u8>>),
 }
 
 impl Values {
-    /// How many.
+    /// Number of values.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -138,7 +138,7 @@ impl Values {
         }
     }
 
-    /// Whether there is none.
+    /// True if it holds none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -148,9 +148,9 @@ impl Values {
 /// An extent of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
-    /// So many elements.
+    /// Fixed number of elements.
     Fixed(u64),
-    /// As many as this structural parameter says, by its position in [`crate::ModelDescription::variables`].
+    /// Value of a structural parameter, given by its position in [`crate::ModelDescription::variables`].
     Structural(usize),
 }
 
@@ -159,9 +159,9 @@ pub enum Dimension {
 pub struct Alias {
     /// The name.
     pub name: String,
-    /// What it is for.
+    /// Its purpose.
     pub description: String,
-    /// Unit before people; empty if as the variable.
+    /// Unit for display; empty if as the variable.
     pub display_unit: String,
 }
 
@@ -170,19 +170,19 @@ pub struct Alias {
 pub struct Variable {
     /// Its name.
     pub name: String,
-    /// By which the functions of the standard know it. In FMI 2.0 several variables of a type may share one.
+    /// Key of the variable in the functions of the standard. In FMI 2.0 several variables of a type may share one.
     pub value_reference: u32,
-    /// What it is.
+    /// Its meaning.
     pub description: String,
-    /// Who gives it its value.
+    /// Source of its value.
     pub causality: Causality,
-    /// When it changes.
+    /// Times at which it changes.
     pub variability: Variability,
-    /// How it is initialised; the independent variable is not.
+    /// Kind of initialisation; none for the independent variable.
     pub initial: Option<Initial>,
     /// Its type.
     pub data_type: DataType,
-    /// Name of its declared type; empty if none.
+    /// Name of its declared type; empty without one.
     pub declared_type: String,
     /// Its enumeration, by the position in [`crate::ModelDescription::enumerations`].
     pub enumeration: Option<usize>,
@@ -190,25 +190,25 @@ pub struct Variable {
     pub dimensions: Vec<Dimension>,
     /// Start value: one for each element, or one for all.
     pub start: Option<Values>,
-    /// Least value, of what it counts in. 64-bit integers are rounded.
+    /// Least value, in the variable's unit. 64-bit integers are rounded.
     pub min: Option<f64>,
     /// Greatest value.
     pub max: Option<f64>,
     /// Ordinary magnitude.
     pub nominal: Option<f64>,
-    /// Physical quantity as the FMU names it; empty if it does not.
+    /// Physical quantity as the FMU names it; empty without one.
     pub quantity: String,
     /// Its unit, by the position in [`crate::ModelDescription::units`].
     pub unit: Option<usize>,
-    /// Unit before people, one of the unit's; empty if none.
+    /// Unit for display, one of those of its unit; empty without one.
     pub display_unit: String,
-    /// Whether it is a difference, to which the offset of its unit does not belong.
+    /// True if it is a difference, to which the offset of its unit does not apply.
     pub is_relative: bool,
-    /// The variable whose derivative to the time it is, by its position.
+    /// Variable of which it is the time derivative, by position.
     pub derivative_of: Option<usize>,
-    /// When it ticks, if it is a clock (FMI 3.0).
+    /// Timing of its ticks, if it is a clock (FMI 3.0).
     pub ticks: Option<Ticks>,
-    /// Value references of the clocks that it ticks with (FMI 3.0).
+    /// Value references of the clocks it ticks with (FMI 3.0).
     pub clocks: Vec<u32>,
     /// Other names (FMI 3.0).
     pub aliases: Vec<Alias>,

@@ -13,7 +13,7 @@ use crate::error::{DescriptionProblem, FmuError};
 use servobench_config::Choice;
 use std::collections::HashMap;
 
-/// The variables and where each name is.
+/// The variables, with the position of each name.
 #[derive(Debug, Default)]
 pub(super) struct Variables {
     pub(super) all: Vec<Variable>,
@@ -50,7 +50,7 @@ impl Variables {
         Ok(variables)
     }
 
-    /// Enters a name.
+    /// Registers a name.
     fn name(&mut self, element: Element, name: &str, at: usize) -> Result<(), FmuError> {
         if let Some(first) = self.positions.insert(name.to_owned(), at) {
             return Err(element.twice("name", &format!("variable number {}", first + 1)));
@@ -58,7 +58,7 @@ impl Variables {
         Ok(())
     }
 
-    /// What variables say of other variables.
+    /// Resolves references between variables.
     fn resolve(&mut self, elements: &[(Element, Element)], version: Version) -> Result<(), FmuError> {
         let mut references = HashMap::new();
         let mut independent = None;
@@ -125,7 +125,7 @@ impl Variables {
         element.children().filter(|child| child.name() == "Dimension").map(dimension).collect()
     }
 
-    /// There is a start value for each element, or one for all.
+    /// Checks that there is one start value for each element, or one for all.
     fn check_count(&self, at: usize, element: Element) -> Result<(), FmuError> {
         let variable = &self.all[at];
         let extent = |dimension: &Dimension| match dimension {
@@ -150,7 +150,7 @@ impl Variables {
     }
 }
 
-/// What is known while variables are read.
+/// Context of reading a variable.
 struct Reading<'a> {
     version: Version,
     units: &'a mut Units,
@@ -159,7 +159,7 @@ struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// The element with the attributes of the type, and the type; none for what is no variable.
+    /// The element that carries the attributes of the type, and the type; none if the element is not a variable.
     fn data_type<'e>(&self, element: Element<'e>) -> Result<Option<(Element<'e>, DataType)>, FmuError> {
         match self.version {
             Version::Two if element.name() == "ScalarVariable" => type_of_two(element).map(Some),
@@ -180,7 +180,7 @@ impl<'a> Reading<'a> {
         element.required("valueReference")?;
         let causality = element.named("causality")?.unwrap_or(Causality::Local);
         let variability = self.variability(element, causality, data_type)?;
-        // FMI 3.0 has it with the type, FMI 2.0 with the variable.
+        // In FMI 3.0 an attribute of the type, in FMI 2.0 of the variable.
         let initial = self.initial(element, &name, causality, variability)?;
         let declared = self.declared_type(attributes, data_type)?;
         let defaults = declared.map(|declared| declared.numeric.clone()).unwrap_or_default();
@@ -213,7 +213,7 @@ impl<'a> Reading<'a> {
         })
     }
 
-    /// The variability, which goes with causality and type.
+    /// The variability, checked against causality and type.
     fn variability(
         &self,
         element: Element,
@@ -224,9 +224,9 @@ impl<'a> Reading<'a> {
             matches!(causality, Causality::Parameter | Causality::StructuralParameter | Causality::CalculatedParameter);
         let given = element.named("variability")?;
         let variability = given.unwrap_or(match self.version {
-            // FMI 3.0 has no other for these; tools leave it out.
+            // FMI 3.0 allows no other for these; tools omit it.
             Version::Three if is_parameter => Variability::Fixed,
-            // FMI 2.0 says continuous for all and allows it for `Real` alone.
+            // FMI 2.0 has continuous as the default for all and allows it for `Real` alone.
             _ if data_type.is_float() => Variability::Continuous,
             _ => Variability::Discrete,
         });
@@ -248,7 +248,7 @@ impl<'a> Reading<'a> {
         Err(element.error_at(attribute, DescriptionProblem::Combination { variable, found: what, allowed }))
     }
 
-    /// How it is initialised, which goes with causality and variability.
+    /// The kind of initialisation, checked against causality and variability.
     fn initial(
         &mut self,
         element: Element,
@@ -282,7 +282,7 @@ impl<'a> Reading<'a> {
         declared.map(Some).ok_or_else(|| element.wrong("declaredType", expected()))
     }
 
-    /// A start value that is missing or superfluous does no harm: the library has its own.
+    /// Remarks on a missing or superfluous start value. It does no harm: the library has its own.
     fn remark_on_start(
         &mut self,
         name: &str,

@@ -10,7 +10,7 @@ use servobench_config::Choice;
 use std::fmt::{Display, Write as _};
 
 impl ModelDescription {
-    /// A description of these variables, with nothing else said.
+    /// A description of these variables and nothing else.
     #[must_use]
     pub fn new(version: Version, model_name: &str, instantiation_token: &str, variables: Vec<Variable>) -> Self {
         let positions = variables.iter().enumerate().map(|(at, variable)| (variable.name.clone(), at)).collect();
@@ -41,7 +41,7 @@ impl ModelDescription {
         }
     }
 
-    /// The text of the file. What only the other version of the standard has is left out.
+    /// The text of the file, without anything that only the other version of the standard has.
     #[must_use]
     pub fn write(&self) -> String {
         let mut xml = Xml::new();
@@ -128,17 +128,17 @@ impl ModelDescription {
         xml.leaf(element);
     }
 
-    /// What both versions say of a variable in the same way.
+    /// Attributes of a variable that both versions write alike.
     fn heading(element: &mut Element, variable: &Variable) {
         element.set("name", &variable.name).set("valueReference", variable.value_reference);
         element.set_text("description", &variable.description);
         element.set("causality", variable.causality.name()).set("variability", variable.variability.name());
-        // Inputs have a start value and nothing else to choose.
+        // Inputs have a start value and no choice of `initial`.
         let initial = variable.initial.filter(|_| variable.causality != Causality::Input);
         element.set_some("initial", initial.map(Choice::name));
     }
 
-    /// What a variable counts in.
+    /// Bounds, nominal value and unit of a variable.
     fn numeric(&self, element: &mut Element, variable: &Variable) {
         element.set_text("declaredType", &variable.declared_type);
         element.set_text("quantity", &variable.quantity);
@@ -318,7 +318,7 @@ fn enumeration(version: Version, xml: &mut Xml, enumeration: &Enumeration) {
     }
 }
 
-/// Start values as a list; of texts the first.
+/// Start values as a list; for texts, the first.
 fn words(values: &Values) -> String {
     match values {
         Values::Float(all) => list(all.iter().copied().map(Number)),
@@ -345,7 +345,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// Oracle: the reader. What it read is written and read to the same again.
+    /// Oracle: the reader. A description that was read, written and read again is the same.
     #[test]
     fn what_is_written_is_read_as_it_was() {
         for (version, text) in [(Version::Two, TWO), (Version::Three, THREE)] {

@@ -39,19 +39,19 @@ impl Element {
         }
     }
 
-    /// Nothing for an empty text.
+    /// Sets an attribute, unless the text is empty.
     pub(super) fn set_text(&mut self, name: &str, text: &str) -> &mut Self {
         self.set_some(name, (!text.is_empty()).then_some(text))
     }
 
-    /// Factor and offset, where they are not one and zero.
+    /// Sets factor and offset, unless they are one and zero.
     pub(super) fn set_scale(&mut self, factor: f64, offset: f64) -> &mut Self {
         let unless = |number: f64, default: f64| (number.to_bits() != default.to_bits()).then_some(Number(number));
         self.set_some("factor", unless(factor, 1.0)).set_some("offset", unless(offset, 0.0))
     }
 }
 
-/// `text` as an attribute. What XML cannot hold at all becomes a space.
+/// `text` as an attribute. Characters that XML cannot hold become spaces.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
@@ -104,7 +104,7 @@ impl Xml {
         self.line(format_args!("</{name}>"));
     }
 
-    /// All of `items` within an element, which is left out where there is none.
+    /// All `items` within an element, which is left out if there are none.
     pub(super) fn group<T>(&mut self, name: &'static str, items: &[T], mut each: impl FnMut(&mut Self, &T)) {
         if !items.is_empty() {
             self.within(Element::new(name), |xml| items.iter().for_each(|item| each(xml, item)));
