@@ -1,13 +1,13 @@
-//! Simulates an FMU in this process, for programs that hold it against others: a request as JSON on standard input, the answer
-//! as JSON on standard output.
+//! Simulates an FMU in this process, for comparison with other programs: a request as JSON on standard input, the answer as JSON on
+//! standard output.
 //!
 //! ```json
 //! { "fmu": "a.fmu", "start": { "gain": 2, "mode": "torque" }, "inputs": ["u", ["v", 1]], "outputs": ["y"],
 //!   "start_time": 0, "step": 0.01, "steps": 100, "values": [[[1, 0, 0], [0, 0, 0]]], "rewind": [10, 5] }
 //! ```
-//! `inputs` and `outputs` are names, of arrays with the element; `values` has a row for each step, of value and two derivatives
-//! for each input, and the last row goes on. `rewind` saves the state before a step, goes on for some steps, and goes back: the
-//! rows are those of an FMU that has never done so.
+//! `inputs` and `outputs` are names, of arrays with the element; `values` has a row for each step, with value and two derivatives of each
+//! input, and the last row is repeated. `rewind` saves the state before a step, takes some steps more, and goes back: the rows are those
+//! of an FMU that never did.
 use serde::Deserialize;
 use serde_json::json;
 use servobench_fmi::{Choice, Loaded, ModelDescription, Port, Setup, Slave, StepEnd, Unpacked, Value};
@@ -57,11 +57,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     leave();
 }
 
-/// Ends the process without what libraries have left to be done at its end: that of PythonFMU3 0.3.4 uses memory there that it
-/// has freed.
+/// Ends the process without the exit handlers of libraries: that of PythonFMU3 0.3.4 uses freed memory.
 #[expect(unsafe_code, reason = "the call is one of C")]
 fn leave() -> ! {
-    // SAFETY: everything is written, and nothing else is to be done.
+    // SAFETY: everything is written, and nothing is left to do.
     unsafe { libc::_exit(0) }
 }
 
@@ -109,7 +108,7 @@ fn answer() -> Result<serde_json::Value, Box<dyn Error>> {
     Ok(json!({ "rows": run.rows, "log": log, "variables": variables(unpacked.description()) }))
 }
 
-/// What the description says of each variable.
+/// The description's facts on each variable.
 fn variables(it: &ModelDescription) -> Vec<serde_json::Value> {
     let variable = |variable: &servobench_fmi::Variable| {
         json!({
@@ -150,7 +149,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// One communication step, in parts if the FMU returns early. Whether the simulation goes on.
+    /// One communication step, in parts if the FMU returns early. Returns true if the simulation continues.
     fn step(&mut self, slave: &mut Loaded, at: usize) -> Result<bool, Box<dyn Error>> {
         let request = self.request;
         let time = |at: usize| request.start_time + at as f64 * request.step;

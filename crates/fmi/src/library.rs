@@ -1,6 +1,6 @@
-//! The library of an FMU: where it is, and its functions.
+//! The library of an FMU: its path and its functions.
 //!
-//! All that is `unsafe` is in the modules below: they know the functions' types and lifetimes, and give what Rust can check.
+//! All `unsafe` code is in the modules below: they know the functions' types and lifetimes, and offer an interface that Rust checks.
 
 pub(crate) mod callbacks;
 pub(crate) mod calls;
@@ -16,14 +16,14 @@ use status::Outcome;
 use std::env::consts::{ARCH, DLL_SUFFIX, OS};
 use std::path::PathBuf;
 
-/// Values of a type that an instance gives and takes, all that are asked for in one call. An array takes as many values as it
-/// has elements; other than that there are as many values as references.
+/// Access to all values of one type in a single call. An array has as many values as elements; otherwise there are as many values as
+/// references.
 pub(crate) trait Access<T> {
     fn get(&self, references: &[u32], values: &mut [T]) -> Called;
     fn set(&self, references: &[u32], values: &[T]) -> Called;
 }
 
-/// A function of the standard and what came of it.
+/// A function of the standard and its outcome.
 pub(crate) type Called = (&'static str, Outcome);
 
 /// Folders of libraries for this platform, as FMI 2.0 (§2.3) and FMI 3.0 (§2.5.1.4) name them. Tools mix them up.
@@ -36,7 +36,7 @@ fn folders() -> [String; 2] {
     [of_two.into(), format!("{ARCH}-{system}")]
 }
 
-/// Where the library for this platform is.
+/// Path of the library for this platform.
 pub(crate) fn path(unpacked: &Unpacked) -> Result<PathBuf, FmuError> {
     let description = unpacked.description();
     let name = format!("{}{DLL_SUFFIX}", description.co_simulation.model_identifier);

@@ -1,4 +1,4 @@
-//! An FMU that is loaded into this process: the order of calls that the standard demands.
+//! An FMU loaded into this process: the order of calls that the standard demands.
 mod batch;
 mod instance;
 mod redo;
@@ -21,18 +21,18 @@ use std::fmt;
 use three::LoadedThree;
 use two::LoadedTwo;
 
-/// An FMU that is loaded into this process and initialised. It is terminated, freed and unloaded when it is dropped.
+/// An FMU loaded into this process and initialised. Dropping it terminates, frees and unloads it.
 pub struct Loaded {
     instance: Box<dyn Instance>,
     is_initialising: bool,
     redo: Redo,
     feedthrough: Feedthrough,
-    /// The FMU reads its resources when it likes: they go after it.
+    /// The FMU may read its resources at any time: they are dropped after it.
     _unpacked: Unpacked,
 }
 
 impl Loaded {
-    /// Loads the library, instantiates the FMU and initialises it, unless it is to wait.
+    /// Loads the library, instantiates the FMU and initialises it, or stops within the initialisation if `setup.waits`.
     ///
     /// # Errors
     /// [`FmuError::Setup`], [`FmuError::Library`], [`FmuError::Initialise`]
@@ -46,7 +46,7 @@ impl Loaded {
         Ok(Self { instance, is_initialising: setup.waits, redo, feedthrough, _unpacked: unpacked.clone() })
     }
 
-    /// Nothing but reading goes before the start.
+    /// The instance, once started: before the start only reading is allowed.
     fn started(&mut self) -> Result<&mut dyn Instance, SlaveError> {
         if self.is_initialising {
             self.start(None)?;

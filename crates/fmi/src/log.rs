@@ -1,4 +1,4 @@
-//! What an FMU says: messages are kept until they are asked for, within limits.
+//! Log of an FMU: messages are kept, within limits, until they are taken.
 use crate::slave::LogLine;
 use servobench_base::Severity;
 use std::ffi::c_int;
@@ -6,22 +6,21 @@ use std::mem;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// Lines that are kept; a line that the FMU repeats at every step would fill the memory.
+/// Most lines kept; a message repeated at every step would fill the memory.
 const MOST_LINES: usize = 10_000;
-/// Bytes of all that are kept.
+/// Most bytes of all lines kept.
 const MOST_BYTES: usize = 1 << 20;
 
-/// Who hears everything at once.
+/// Receiver of every line at once.
 static SINK: OnceLock<fn(&LogLine) -> bool> = OnceLock::new();
 
-/// Has `sink` called with every line that an FMU in this process says, as soon as it says it, from any thread; what it takes
-/// (true) is not kept for [`Slave::take_log`](crate::Slave::take_log). For a process whose FMU may end it at any time. The first
-/// call counts.
+/// Sends every line logged by an FMU in this process to `sink` at once, from any thread; lines for which it returns true are not kept for
+/// [`Slave::take_log`](crate::Slave::take_log). For a process that its FMU may end at any time. Only the first sink counts.
 pub fn send_log_lines_to(sink: fn(&LogLine) -> bool) {
     SINK.get_or_init(|| sink);
 }
 
-/// Where an instance is (s). It is stamped on what the FMU says, from whichever thread.
+/// Present time of an instance (s), stamped on its log lines, whichever thread writes them.
 #[derive(Debug, Clone)]
 pub(crate) struct Clock(Arc<AtomicU64>);
 
@@ -39,7 +38,7 @@ impl Clock {
     }
 }
 
-/// The log of an instance. The FMU may write to it from threads of its own.
+/// The log of an instance. The FMU may write to it from its own threads.
 #[derive(Debug)]
 pub(crate) struct Log {
     clock: Clock,
@@ -52,24 +51,24 @@ struct Kept {
     bytes: usize,
     /// Lines that were not kept.
     dropped: usize,
-    /// When the last of them was said (s).
+    /// Time of the last of them (s).
     dropped_at: f64,
-    /// The last message, whether it was kept or not.
+    /// The last message, kept or not.
     last: String,
 }
 
 impl Log {
-    /// The log of an instance that is where `clock` says.
+    /// The log of an instance whose time is `clock`.
     pub(crate) fn new(clock: Clock) -> Self {
         Self { clock, kept: Mutex::default() }
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
-        // Nothing is left half done by a thread that panicked.
+        // A thread that panicked leaves nothing half done.
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes a message; `status` is that of the standard, which has the same numbers in both versions.
+    /// Adds a message; `status` is that of the standard, with the same numbers in both versions.
     pub(crate) fn push(&self, status: c_int, category: &str, message: &str) {
         let severity = match status {
             0 | 5 => Severity::Info,
@@ -99,7 +98,7 @@ impl Log {
         self.kept().last.clone()
     }
 
-    /// What was said since the last time.
+    /// Takes the lines since the last call.
     pub(crate) fn take(&self) -> Vec<LogLine> {
         let mut kept = self.kept();
         kept.bytes = 0;

@@ -1,27 +1,27 @@
-//! An FMU as a simulation wants it, and the numbers that it declares.
+//! A request for an FMU by a simulation, and the numbers that the FMU declares.
 use crate::description::{DataType, Exponents};
 use servobench_fmu_file::{FmuFile, SiPort};
 
-/// An FMU as a simulation wants it: initialised and wired, its numbers in SI units.
+/// Request for an FMU, initialised and wired, with its numbers in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FmuRequest<'a> {
     /// The FMU.
     pub file: &'a FmuFile,
-    /// Name of the instance; `None`: that of the model.
+    /// Name of the instance; `None` for that of the model.
     pub name: Option<&'a str>,
-    /// Inputs that are exchanged.
+    /// Exchanged inputs.
     pub inputs: Vec<SiPort>,
-    /// Outputs that are exchanged.
+    /// Exchanged outputs.
     pub outputs: Vec<SiPort>,
-    /// How long its steps are (s).
+    /// Length of its steps (s).
     pub step: f64,
-    /// When its last step ends (s), if that is known: at the end of the run or after it, since steps are whole.
+    /// End of its last step (s), if known: at the end of the run or after it, since steps are whole.
     pub end: Option<f64>,
-    /// Whether it waits in its initialisation for its inputs ([`Slave::start`](crate::Slave::start)).
+    /// True if it waits in its initialisation for its inputs ([`Slave::start`](crate::Slave::start)).
     pub waits: bool,
 }
 
-/// A number that an FMU exchanges, as its model description declares it.
+/// A number exchanged with an FMU, as its model description declares it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeclaredNumber {
     /// Its type.
@@ -35,12 +35,12 @@ pub struct DeclaredNumber {
 pub struct DeclaredUnit {
     /// Its name in the description.
     pub name: String,
-    /// What it is made of.
+    /// Its dimension.
     pub exponents: Exponents,
 }
 
 impl DeclaredUnit {
-    /// True where both measure the same. The radian, which some count and some do not, is one.
+    /// True if both measure the same. The radian is ignored, since some tools count it and some do not.
     #[must_use]
     pub fn measures_the_same_as(&self, other: &Self) -> bool {
         let without_radian = |exponents| Exponents { rad: 0, ..exponents };

@@ -1,4 +1,4 @@
-//! How an FMU is started and wired.
+//! Start and wiring of an FMU.
 mod clocked;
 mod start;
 
@@ -15,16 +15,16 @@ use servobench_files::nearest;
 use servobench_fmu_file::Value;
 use std::collections::HashSet;
 
-/// How an FMU is started and wired.
+/// Start and wiring of an FMU.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Setup {
-    /// What the instance calls itself in its messages.
+    /// Name of the instance in its messages.
     pub instance_name: String,
-    /// Start values of variables by name: parameters, inputs, and what the FMU lets start elsewhere.
+    /// Start values of variables by name: parameters, inputs, and others whose start value the FMU lets change.
     pub start_values: Vec<(String, Value)>,
-    /// What is set at each step.
+    /// Ports set at each step.
     pub inputs: Vec<Port>,
-    /// What is read.
+    /// Ports that are read.
     pub outputs: Vec<Port>,
     /// Time at the start (s).
     #[serde(with = "bits::float")]
@@ -35,37 +35,37 @@ pub struct Setup {
     /// Relative tolerance for a solver in the FMU.
     #[serde(with = "bits::optional")]
     pub tolerance: Option<f64>,
-    /// Whether the FMU is to say what it does.
+    /// True if the FMU is to log its activity.
     pub logging: bool,
-    /// Whether it waits in its initialisation until it is started ([`Slave::start`](crate::Slave::start)).
+    /// True if it waits in its initialisation until it is started ([`Slave::start`](crate::Slave::start)).
     pub waits: bool,
-    /// Whether it is to deal with events by itself, although it has an event mode (FMI 3.0).
+    /// True if it is to handle events by itself, although it has an event mode (FMI 3.0).
     pub without_event_mode: bool,
 }
 
-/// What is to be set or read, found in the description.
+/// A port, looked up in the description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Wire {
     pub(crate) variable: usize,
     pub(crate) element: usize,
 }
 
-/// What of a setup is found in the description.
+/// A setup, looked up in the description.
 #[derive(Debug)]
 pub(crate) struct Plan {
     /// Structural parameters, then all others.
     pub(crate) starts: Vec<Start>,
     pub(crate) inputs: Vec<Wire>,
     pub(crate) outputs: Vec<Wire>,
-    /// How many elements each variable has.
+    /// Number of elements of each variable.
     pub(crate) counts: Vec<usize>,
 }
 
 impl Setup {
-    /// Finds everything in the description, without opening the library: what `fmu check` needs.
+    /// Looks everything up in the description without opening the library, for `fmu check`.
     ///
     /// # Errors
-    /// [`FmuError::Setup`] names what is not there or cannot be, and what is there.
+    /// [`FmuError::Setup`] names what is missing or impossible, and the alternatives.
     pub fn check(&self, fmu: &Unpacked) -> Result<(), FmuError> {
         self.plan(fmu).map(|_| ())
     }
@@ -100,7 +100,7 @@ impl Setup {
     }
 }
 
-/// Whether it can be set between steps.
+/// True if it can be set between steps.
 fn is_settable(variable: &Variable) -> bool {
     let is_tunable = variable.causality == Causality::Parameter && variable.variability == Variability::Tunable;
     variable.causality == Causality::Input || is_tunable
@@ -110,7 +110,7 @@ fn setup(fmu: &Unpacked, what: &'static str, name: &str, problem: String) -> Fmu
     FmuError::Setup { path: fmu.path().to_owned(), what, name: name.to_owned(), problem }
 }
 
-/// The element of the variable that a port stands for, which is a number.
+/// The element of the variable for a port, which is a number.
 fn find(it: &ModelDescription, port: &Port, counts: &[usize]) -> Result<Wire, String> {
     let variable = position(it, &port.variable)?;
     let data_type = it.variables[variable].data_type;
@@ -125,7 +125,7 @@ fn find(it: &ModelDescription, port: &Port, counts: &[usize]) -> Result<Wire, St
     Ok(Wire { variable, element: port.element })
 }
 
-/// Position of a variable; names that are like the one that is not there help.
+/// Position of a variable; an error suggests a similar name.
 fn position(it: &ModelDescription, name: &str) -> Result<usize, String> {
     it.position(name).ok_or_else(|| {
         match nearest(name, it.variables.iter().take(10_000).map(|variable| variable.name.as_str())) {
@@ -135,7 +135,7 @@ fn position(it: &ModelDescription, name: &str) -> Result<usize, String> {
     })
 }
 
-/// How many elements each variable has, with structural parameters as they are started.
+/// Number of elements of each variable, with the start values of structural parameters.
 fn counts(it: &ModelDescription, starts: &[Start]) -> Vec<usize> {
     let structural = |at: usize| {
         let started = starts.iter().find(|start| start.variable == at).map(|start| &start.values);

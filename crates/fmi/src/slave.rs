@@ -1,4 +1,4 @@
-//! A co-simulation FMU that is initialised, whichever version it is of, and whether it runs here or in a process of its own.
+//! An initialised co-simulation FMU, of either version, in this process or a separate one.
 use crate::bits;
 use crate::request::DeclaredNumber;
 use serde::{Deserialize, Serialize};
@@ -8,10 +8,10 @@ use servobench_fmu_file::FmuMistake;
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// A scalar that is exchanged: a variable, or an element of an array.
+/// An exchanged scalar: a variable, or an element of an array.
 ///
-/// Whatever its type is, it is exchanged as a number: integers and enumerations by value, FALSE and TRUE as 0 and 1. A number
-/// that its type cannot hold is [`SlaveError::Value`].
+/// Every type is exchanged as a number: integers and enumerations by value, FALSE and TRUE as 0 and 1. A number that the type cannot hold
+/// is [`SlaveError::Value`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Port {
     /// Name in the model description.
@@ -20,25 +20,24 @@ pub struct Port {
     pub element: usize,
 }
 
-/// What an FMU can do beyond stepping.
+/// Capabilities of an FMU beyond stepping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Capabilities {
-    /// Its state can be saved and restored (`canGetAndSetFMUState`).
+    /// True if its state can be saved and restored (`canGetAndSetFMUState`).
     pub saves_state: bool,
-    /// It takes derivatives of its inputs (FMI 2.0: `canInterpolateInputs`).
+    /// True if it takes derivatives of its inputs (FMI 2.0: `canInterpolateInputs`).
     pub interpolates_inputs: bool,
-    /// It takes communication steps of any length (`canHandleVariableCommunicationStepSize`).
+    /// True if it takes communication steps of any length (`canHandleVariableCommunicationStepSize`).
     pub variable_step: bool,
 }
 
-/// What an FMU said.
+/// A log message of an FMU.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LogLine {
-    /// Simulation time (s): the start of the step in which it was said; between two steps where it was; before the first one
-    /// its start.
+    /// Simulation time (s): within a step its start, between two steps the present, before the first one the start of the simulation.
     #[serde(with = "bits::float")]
     pub time: f64,
-    /// How much it matters: the status OK informs, warning warns, discard, error and fatal are errors.
+    /// Severity: the status OK informs, warning warns, discard, error and fatal are errors.
     #[serde(with = "bits::severity")]
     pub severity: Severity,
     /// Category as the FMU names it.
@@ -47,11 +46,11 @@ pub struct LogLine {
     pub message: String,
 }
 
-/// Categories of the standard that say no more than the severity, or nothing.
+/// Categories of the standard that add nothing to the severity.
 const PLAIN: [&str; 3] = ["logStatusWarning", "logStatusError", "logAll"];
 
 impl LogLine {
-    /// Category and text, as a person reads it; without a category of the standard that says no more than the severity.
+    /// Category and text for display; without a category of the standard that adds nothing to the severity.
     #[must_use]
     pub fn words(&self) -> String {
         let Self { category, message, .. } = self;
@@ -63,58 +62,58 @@ impl LogLine {
     }
 }
 
-/// An initialised FMU that is stepped. Its inputs and outputs are those that it was wired with.
+/// An initialised FMU that is stepped. Its inputs and outputs are those of its wiring.
 ///
-/// After an error it can only be dropped, [`SlaveError::Discarded`] apart.
+/// After an error other than [`SlaveError::Discarded`] it can only be dropped.
 pub trait Slave: Send {
-    /// What it can do: nothing, unless it says so.
+    /// Its capabilities; none by default.
     fn capabilities(&self) -> Capabilities {
         Capabilities::default()
     }
 
-    /// Whether an output may follow an input at once, without a step (direct feedthrough), each by its position among those
-    /// that were wired; true where that is not known.
+    /// True if an output may follow an input at once, without a step (direct feedthrough), or if that is not known. Both are given by
+    /// position among the wired ones.
     fn feeds_through(&self, _output: usize, _input: usize) -> bool {
         true
     }
 
-    /// Whether an output, by its position among those that were wired, changes at events only: what is no real number, and what is
-    /// not continuous. Between two of its values it has the older one.
+    /// True if an output, by position among the wired ones, changes at events only, as one that is not a real number or not continuous.
+    /// Between two of its values the older one holds.
     fn is_discrete(&self, _output: usize) -> bool {
         false
     }
 
-    /// Input number `input` of those that were wired, as the model description declares it; `None` where that is not known.
+    /// Wired input number `input`, as the model description declares it; `None` if not known.
     fn declared_input(&self, _input: usize) -> Option<&DeclaredNumber> {
         None
     }
 
-    /// Output number `output` of those that were wired, likewise.
+    /// Wired output number `output`, likewise.
     fn declared_output(&self, _output: usize) -> Option<&DeclaredNumber> {
         None
     }
 
-    /// True where a number that is exchanged has single precision.
+    /// True if an exchanged number has single precision.
     fn is_single_precision(&self) -> bool {
         false
     }
 
-    /// What is doubtful in the request by which it was opened.
+    /// Doubts about the request by which it was opened.
     fn doubts(&self) -> &[FmuMistake] {
         &[]
     }
 
-    /// Whether it is in its initialisation, which [`start`](Self::start) ends. Until then it is only read.
+    /// True during its initialisation, which [`start`](Self::start) ends. Until then it is only read.
     fn is_initialising(&self) -> bool {
         false
     }
 
-    /// Whether an output may follow an input by the initial equations; true where that is not known.
+    /// True if an output may follow an input by the initial equations, or if that is not known.
     fn follows_at_start(&self, output: usize, input: usize) -> bool {
         self.feeds_through(output, input)
     }
 
-    /// Ends the initialisation, with these inputs if they are given.
+    /// Ends the initialisation, with these inputs if given.
     ///
     /// # Errors
     /// [`SlaveError`]
@@ -122,19 +121,19 @@ pub trait Slave: Send {
         Ok(())
     }
 
-    /// Terminates and frees it, after which only its log can be taken. What goes wrong with that is a warning there: its results
-    /// are all known. Where it is not called, dropping does the same without a word.
+    /// Terminates and frees it; afterwards only its log can be taken. A failure is a warning there: all results are known. Without this
+    /// call, dropping does the same silently.
     fn end(&mut self) {}
 
-    /// Goes from `time` to `time + length` (s). Each input is its value at `time` with its first and second derivative to the
-    /// time; an FMU that takes none gets the mean over the step, u + u'·H/2 + u''·H²/6.
+    /// Goes from `time` to `time + length` (s). Each input is its value at `time` with its first and second time derivative; an FMU that
+    /// takes no derivatives gets the mean over the step, u + u'·H/2 + u''·H²/6.
     ///
     /// # Errors
     /// [`SlaveError`]
     fn step(&mut self, time: f64, length: f64, inputs: &[[f64; 3]]) -> Result<StepEnd, SlaveError>;
 
-    /// Reads all outputs. With `inputs`, which an FMU between two steps may answer without one (direct feedthrough), these are
-    /// set before.
+    /// Reads all outputs. `inputs`, if given, are set before; between two steps outputs may follow them without a step (direct
+    /// feedthrough).
     ///
     /// # Errors
     /// [`SlaveError`]
@@ -148,46 +147,46 @@ pub trait Slave: Send {
         Err(SlaveError::unable("save its state"))
     }
 
-    /// Goes back to the state that was saved; it can do so again.
+    /// Restores the saved state, which can be restored again.
     ///
     /// # Errors
-    /// [`SlaveError`], also if there is none.
+    /// [`SlaveError`], also without a saved state.
     fn restore(&mut self) -> Result<(), SlaveError> {
         Err(SlaveError::unable("go back to a state"))
     }
 
-    /// What it has said since the last time. What it says in a step that is repeated it says again.
+    /// Takes the log since the last call. Messages of a repeated step are repeated.
     fn take_log(&mut self) -> Vec<LogLine> {
         Vec::new()
     }
 }
 
-/// Why an FMU did not do what it was asked for.
+/// Reason why an FMU did not do what was requested.
 #[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 pub enum SlaveError {
-    /// It returned the status discard. A step that it can be taken back from was tried in parts as well: it is where these came to.
+    /// The FMU returned the status discard. If it can be taken back, parts of the step were tried as well, up to `time`.
     #[error("the FMU discarded {call} at {time} s{}", tried(*shortest))]
     Discarded {
         /// Function of the standard.
         call: Cow<'static, str>,
-        /// Where it is (s).
+        /// Its time (s).
         #[serde(with = "bits::float")]
         time: f64,
-        /// The shortest step that was tried from there (s), if it can be taken back.
+        /// The shortest step tried from there (s), if it can be taken back.
         #[serde(with = "bits::optional")]
         shortest: Option<f64>,
     },
-    /// It returned the status error or fatal.
+    /// The FMU returned the status error or fatal.
     #[error("the FMU failed in {call} at {time} s ({status}){}", said(.message))]
     Failed {
         /// Function of the standard.
         call: Cow<'static, str>,
-        /// When (s).
+        /// Time (s).
         #[serde(with = "bits::float")]
         time: f64,
         /// Status as the standard names it.
         status: Cow<'static, str>,
-        /// The last that it logged; empty if nothing.
+        /// The last message that it logged; empty without one.
         message: String,
     },
     /// An output is not a finite number.
@@ -195,77 +194,77 @@ pub enum SlaveError {
     NotFinite {
         /// Name of the variable.
         variable: String,
-        /// What it is.
+        /// Its value.
         #[serde(with = "bits::float")]
         value: f64,
-        /// When (s).
+        /// Time (s).
         #[serde(with = "bits::float")]
         time: f64,
     },
-    /// A variable cannot take the number.
+    /// A number that a variable cannot take.
     #[error("`{variable}` of the FMU takes {bound}, got {value} at {time} s")]
     Value {
         /// Name of the variable.
         variable: String,
-        /// What it takes.
+        /// Values it takes.
         bound: Cow<'static, str>,
-        /// What it should have taken.
+        /// The number.
         #[serde(with = "bits::float")]
         value: f64,
-        /// When (s).
+        /// Time (s).
         #[serde(with = "bits::float")]
         time: f64,
     },
-    /// It does not have what it was asked for.
+    /// The FMU lacks the requested capability.
     #[error("the FMU cannot {what}: its model description does not say `{capability}`")]
     Unable {
-        /// What it was asked for.
+        /// The request.
         what: Cow<'static, str>,
-        /// Attribute that it lacks.
+        /// The missing attribute.
         capability: Cow<'static, str>,
     },
-    /// It came back from a step at a time where it cannot be.
+    /// The FMU returned from a step at a time outside the step.
     #[error("the FMU was asked by {call} to go from {from} s to {to} s, and says that it is at {at} s")]
     Astray {
         /// Function of the standard.
         call: Cow<'static, str>,
-        /// Where the step began (s).
+        /// Start of the step (s).
         #[serde(with = "bits::float")]
         from: f64,
-        /// Where it should have ended (s).
+        /// End of the step (s).
         #[serde(with = "bits::float")]
         to: f64,
-        /// Where it says that it is (s).
+        /// Time reported by the FMU (s).
         #[serde(with = "bits::float")]
         at: f64,
     },
-    /// Its process ended.
+    /// The FMU's process ended.
     #[error("the FMU's process ended{} at {time} s: {how}", during(call))]
     Crashed {
-        /// Function of the standard that it was in; empty if it was in none.
+        /// Function of the standard in progress; empty if none.
         call: Cow<'static, str>,
-        /// When (s).
+        /// Time (s).
         #[serde(with = "bits::float")]
         time: f64,
-        /// Signal or exit code, and what it left on standard error.
+        /// Signal or exit code, and its output on standard error.
         how: String,
     },
-    /// It did not come back in time.
+    /// The FMU did not return in time.
     #[error("the FMU did not come back from {call} at {time} s within {call_timeout} s of real time; it was ended")]
     Hung {
         /// Function of the standard.
         call: Cow<'static, str>,
-        /// When (s).
+        /// Time (s).
         #[serde(with = "bits::float")]
         time: f64,
-        /// How long it was waited for (s).
+        /// Time limit (s).
         #[serde(with = "bits::float")]
         call_timeout: f64,
     },
 }
 
 impl SlaveError {
-    /// It cannot do `what` since it does not save its state.
+    /// Error: it cannot do `what` because it does not save its state.
     pub(crate) fn unable(what: &'static str) -> Self {
         Self::Unable { what: what.into(), capability: "canGetAndSetFMUState".into() }
     }

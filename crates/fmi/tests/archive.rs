@@ -1,4 +1,4 @@
-//! Archives: good ones by a common tool's format, and hostile ones byte by byte.
+//! Archives: good ones as a common tool writes them, and hostile ones byte by byte.
 use servobench_fmi::{Archive, FmuError, Limits, Unpacked};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -76,7 +76,7 @@ fn names_that_lead_out_are_refused_before_anything_is_written() {
     assert!(!inside.exists());
 }
 
-/// [`good`] with `resources/tool` there once more.
+/// [`good`] with a second `resources/tool`.
 fn with_a_second_tool(content: &[u8], mode: u32) -> Vec<u8> {
     let mut entries = good();
     entries.push(("resources/tooL", content, mode));
@@ -85,8 +85,7 @@ fn with_a_second_tool(content: &[u8], mode: u32) -> Vec<u8> {
     bytes
 }
 
-/// A directory that names a file twice: other readers take the first or the last, so that what is looked at and what is
-/// used could be two things.
+/// A directory that names a file twice: other readers take the first or the last, so the checked entry and the one in use could differ.
 #[test]
 fn a_name_that_is_there_twice_with_different_bytes_is_refused() {
     let why = "the name `resources/tool` in it is there twice, and not with the same bytes; nothing was unpacked";
@@ -94,14 +93,14 @@ fn a_name_that_is_there_twice_with_different_bytes_is_refused() {
         let message = refusal(&with_a_second_tool(content, mode));
         assert!(message.contains(why), "{message}");
     }
-    // One that claims to be the same: size and sum are those of the other, the bytes are not.
+    // One that claims to be the same: size and sum are those of the other, the bytes differ.
     let mut bytes = with_a_second_tool(b"#!/bin/sh\n", 0o777);
     let last = find(&bytes, b"PK\x03\x04").pop().unwrap();
     bytes[last + 30 + "resources/tool".len() + 3] ^= 1;
     assert!(refusal(&bytes).contains(why), "{}", refusal(&bytes));
 }
 
-/// An official Reference FMU has such.
+/// Found in an official Reference FMU.
 #[test]
 fn a_name_that_is_there_twice_with_the_same_bytes_is_remarked() {
     let file = file(&with_a_second_tool(b"#!/bin/sh\n", 0o777));
@@ -124,7 +123,7 @@ fn a_path_that_begins_with_a_point_is_inside_its_folder() {
     assert_eq!(unpacked.description().model_name, "Drive");
 }
 
-/// Opening a FIFO waits for somebody who writes to it.
+/// Opening a FIFO waits for a writer.
 #[test]
 fn what_is_no_file_is_refused_at_once() {
     let folder = tempdir().unwrap();
@@ -167,7 +166,7 @@ fn sizes_are_limited() {
     assert!(limited(Limits { total, ..all }).contains("the size of all its files in bytes is"));
 }
 
-/// A directory that says less than there is: no more than it says is written.
+/// A directory that states too small a size: no more than that size is written.
 #[test]
 fn a_size_that_is_not_true_is_found_out() {
     let mut bytes = zipped(&[("modelDescription.xml", DESCRIPTION.as_bytes(), 0o644), ("x", &[7; 1000], 0o644)]);

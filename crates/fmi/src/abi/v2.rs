@@ -8,7 +8,7 @@ pub const VERSION: &str = "2.0";
 
 /// `fmi2Component`: an instance of the FMU, opaque to the importer.
 pub type Component = *mut c_void;
-/// `fmi2ComponentEnvironment`: what the importer wants back in its callbacks, opaque to the FMU.
+/// `fmi2ComponentEnvironment`: pointer that the importer gets back in its callbacks, opaque to the FMU.
 pub type ComponentEnvironment = *mut c_void;
 /// `fmi2FMUstate`: a saved state, opaque to the importer.
 pub type FmuState = *mut c_void;
@@ -32,7 +32,7 @@ pub const TRUE: Boolean = 1;
 /// `fmi2False`.
 pub const FALSE: Boolean = 0;
 
-/// `fmi2Status`: what a function returns (section 2.1.3).
+/// `fmi2Status`: status returned by a function (section 2.1.3).
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(pub c_int);
@@ -40,18 +40,18 @@ pub struct Status(pub c_int);
 impl Status {
     /// All well.
     pub const OK: Self = Self(0);
-    /// Not quite all, but the computation can go on.
+    /// Done with a warning; the computation can continue.
     pub const WARNING: Self = Self(1);
     /// The call was not carried out, the FMU is as before it.
     pub const DISCARD: Self = Self(2);
-    /// The instance cannot go on; it can be reset or freed, or set to a saved state.
+    /// The instance cannot continue; it can be reset or freed, or set to a saved state.
     pub const ERROR: Self = Self(3);
-    /// No instance of the FMU can go on.
+    /// No instance of the FMU can continue.
     pub const FATAL: Self = Self(4);
-    /// The step runs on by itself (`canRunAsynchronuously`).
+    /// The step continues by itself (`canRunAsynchronuously`).
     pub const PENDING: Self = Self(5);
 
-    /// Name in the standard, nothing for a value that it does not know.
+    /// Name in the standard; none for an unknown value.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         let names = ["fmi2OK", "fmi2Warning", "fmi2Discard", "fmi2Error", "fmi2Fatal", "fmi2Pending"];
@@ -59,35 +59,35 @@ impl Status {
     }
 }
 
-/// `fmi2Type`: what an instance is to be (section 2.1.5).
+/// `fmi2Type`: kind of an instance (section 2.1.5).
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Type(pub c_int);
 
 impl Type {
-    /// Without a solver of its own.
+    /// Without a built-in solver.
     pub const MODEL_EXCHANGE: Self = Self(0);
-    /// With its own.
+    /// With one.
     pub const CO_SIMULATION: Self = Self(1);
 }
 
-/// `fmi2StatusKind`: what the importer asks about the last step (section 4.2.3).
+/// `fmi2StatusKind`: a query about the last step (section 4.2.3).
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct StatusKind(pub c_int);
 
 impl StatusKind {
-    /// How a step that is pending stands ([`Status`]).
+    /// State of a pending step ([`Status`]).
     pub const DO_STEP_STATUS: Self = Self(0);
-    /// Why it is pending ([`Text`]).
+    /// Reason why it is pending ([`Text`]).
     pub const PENDING_STATUS: Self = Self(1);
-    /// To which time the discarded step went ([`Real`], s).
+    /// Time that the discarded step reached ([`Real`], s).
     pub const LAST_SUCCESSFUL_TIME: Self = Self(2);
-    /// Whether the FMU wants the simulation to end ([`Boolean`]).
+    /// True if the FMU wants the simulation to end ([`Boolean`]).
     pub const TERMINATED: Self = Self(3);
 }
 
-/// `fmi2CallbackLogger`: the message is a format as of `printf`, its arguments follow.
+/// `fmi2CallbackLogger`: the message is a `printf` format, followed by its arguments.
 pub type CallbackLogger = unsafe extern "C" fn(
     environment: ComponentEnvironment,
     instance_name: Text,
@@ -103,17 +103,17 @@ pub type CallbackFreeMemory = unsafe extern "C" fn(obj: *mut c_void);
 /// `fmi2StepFinished`: ends a step that was [`Status::PENDING`].
 pub type StepFinished = unsafe extern "C" fn(environment: ComponentEnvironment, status: Status);
 
-/// `fmi2CallbackFunctions`: what the importer offers to an instance, for as long as that lives (section 2.1.5).
+/// `fmi2CallbackFunctions`: callbacks of the importer, valid for the life of the instance (section 2.1.5).
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct CallbackFunctions {
-    /// Takes messages.
+    /// Logs a message.
     pub logger: Option<CallbackLogger>,
-    /// Gives memory.
+    /// Allocates memory.
     pub allocate_memory: Option<CallbackAllocateMemory>,
-    /// Takes it back.
+    /// Frees memory.
     pub free_memory: Option<CallbackFreeMemory>,
-    /// Hears that a pending step has ended.
+    /// Notified when a pending step has ended.
     pub step_finished: Option<StepFinished>,
     /// Comes back in every call of the others.
     pub component_environment: ComponentEnvironment,

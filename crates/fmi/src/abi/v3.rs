@@ -6,7 +6,7 @@ pub const VERSION: &str = "3.0";
 
 /// `fmi3Instance`: an instance of the FMU, opaque to the importer.
 pub type Instance = *mut c_void;
-/// `fmi3InstanceEnvironment`: what the importer wants back in its callbacks, opaque to the FMU.
+/// `fmi3InstanceEnvironment`: pointer that the importer gets back in its callbacks, opaque to the FMU.
 pub type InstanceEnvironment = *mut c_void;
 /// `fmi3FMUState`: a saved state, opaque to the importer.
 pub type FmuState = *mut c_void;
@@ -16,7 +16,7 @@ pub type ValueReference = u32;
 pub type Float32 = f32;
 /// `fmi3Float64`.
 pub type Float64 = f64;
-/// `fmi3Boolean`: [`FALSE`], or anything else. C's `bool` is a byte; Rust's would not bear what a foreign FMU may leave in it.
+/// `fmi3Boolean`: [`FALSE`], or anything else. C's `bool` is a byte; Rust's does not allow all values that a foreign FMU may write.
 pub type Boolean = u8;
 /// `fmi3Char`.
 pub type Char = c_char;
@@ -26,7 +26,7 @@ pub type Text = *const Char;
 pub type Byte = u8;
 /// `fmi3Binary`.
 pub type Binary = *const Byte;
-/// `fmi3Clock`: whether it ticks.
+/// `fmi3Clock`: true if it ticks.
 pub type Clock = Boolean;
 
 /// `fmi3True`.
@@ -34,7 +34,7 @@ pub const TRUE: Boolean = 1;
 /// `fmi3False`.
 pub const FALSE: Boolean = 0;
 
-/// `fmi3Status`: what a function returns (section 2.2, "Status Returned by Functions").
+/// `fmi3Status`: status returned by a function (section 2.2, "Status Returned by Functions").
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(pub c_int);
@@ -42,16 +42,16 @@ pub struct Status(pub c_int);
 impl Status {
     /// All well.
     pub const OK: Self = Self(0);
-    /// Not quite all, but the computation can go on.
+    /// Done with a warning; the computation can continue.
     pub const WARNING: Self = Self(1);
     /// The call was not carried out, the FMU is as before it.
     pub const DISCARD: Self = Self(2);
-    /// The instance cannot go on; it can be reset or freed, or set to a saved state.
+    /// The instance cannot continue; it can be reset or freed, or set to a saved state.
     pub const ERROR: Self = Self(3);
-    /// No instance of the FMU can go on.
+    /// No instance of the FMU can continue.
     pub const FATAL: Self = Self(4);
 
-    /// Name in the standard, nothing for a value that it does not know.
+    /// Name in the standard; none for an unknown value.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         let names = ["fmi3OK", "fmi3Warning", "fmi3Discard", "fmi3Error", "fmi3Fatal"];
@@ -59,7 +59,7 @@ impl Status {
     }
 }
 
-/// `fmi3DependencyKind`: how an unknown depends on a known.
+/// `fmi3DependencyKind`: kind of dependency of an unknown on a known.
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DependencyKind(pub c_int);
@@ -79,7 +79,7 @@ impl DependencyKind {
     pub const DEPENDENT: Self = Self(5);
 }
 
-/// `fmi3IntervalQualifier`: what an interval of a clock is.
+/// `fmi3IntervalQualifier`: state of a clock's interval.
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IntervalQualifier(pub c_int);
@@ -87,9 +87,9 @@ pub struct IntervalQualifier(pub c_int);
 impl IntervalQualifier {
     /// Not known yet.
     pub const NOT_YET_KNOWN: Self = Self(0);
-    /// As it was.
+    /// Unchanged.
     pub const UNCHANGED: Self = Self(1);
-    /// Another one.
+    /// Changed.
     pub const CHANGED: Self = Self(2);
 }
 
@@ -112,9 +112,9 @@ pub type ClockUpdateCallback = unsafe extern "C" fn(environment: InstanceEnviron
 /// `fmi3LockPreemptionCallback` and `fmi3UnlockPreemptionCallback`.
 pub type PreemptionCallback = unsafe extern "C" fn();
 
-/// `fmi3GetVersion`: [`VERSION`], perhaps with more behind it.
+/// `fmi3GetVersion`: [`VERSION`], perhaps with a suffix.
 pub type GetVersion = unsafe extern "C" fn() -> Text;
-/// `fmi3SetDebugLogging`: no categories are all of them.
+/// `fmi3SetDebugLogging`: zero categories stand for all of them.
 pub type SetDebugLogging = unsafe extern "C" fn(
     instance: Instance,
     logging_on: Boolean,
@@ -239,7 +239,7 @@ pub type GetVariableDependencies = unsafe extern "C" fn(
     n_dependencies: usize,
 ) -> Status;
 
-/// `fmi3GetFMUState`: a new state for NULL, else the one given is written over.
+/// `fmi3GetFMUState`: creates a state for NULL, otherwise overwrites the given one.
 pub type GetFmuState = unsafe extern "C" fn(instance: Instance, state: *mut FmuState) -> Status;
 /// `fmi3SetFMUState`.
 pub type SetFmuState = unsafe extern "C" fn(instance: Instance, state: FmuState) -> Status;

@@ -1,11 +1,11 @@
-//! What an FMU may call: its log, and memory of C's.
+//! Callbacks of an FMU: its log, and C's memory.
 #![expect(unsafe_code, reason = "the FMU calls these with pointers of its own")]
 use crate::abi::{v2, v3};
 use crate::log::{Clock, Log};
 use std::ffi::{CStr, c_char, c_int};
 use std::ptr;
 
-/// What an FMU gets back with each call. The C part of the logger knows the first field.
+/// Data passed back by the FMU with each callback. The C part of the logger knows the first field.
 #[repr(C)]
 pub(super) struct Environment {
     hand_over: unsafe extern "C" fn(*const Self, c_int, *const c_char, *const c_char),
@@ -23,7 +23,7 @@ impl Environment {
 }
 
 unsafe extern "C" {
-    /// `logger.c`: makes a text of format and arguments and calls `hand_over`.
+    /// `logger.c`: formats a message with its arguments and calls `hand_over`.
     fn servobench_fmi2_logger(
         environment: v2::ComponentEnvironment,
         instance_name: v2::Text,
@@ -34,7 +34,7 @@ unsafe extern "C" {
     );
 }
 
-/// The callbacks of FMI 2.0. `environment` has to live as long as the instance that gets them.
+/// The callbacks of FMI 2.0. `environment` has to live as long as the instance that uses them.
 pub(super) fn of_two(environment: *const Environment) -> v2::CallbackFunctions {
     v2::CallbackFunctions {
         logger: Some(servobench_fmi2_logger),
@@ -52,7 +52,7 @@ pub(super) unsafe extern "C" fn log_three(
     category: v3::Text,
     message: v3::Text,
 ) {
-    // SAFETY: the FMU gives back the pointer that it was instantiated with, and texts that live during the call.
+    // SAFETY: the FMU passes back the pointer that it was instantiated with, and texts that live during the call.
     unsafe { take(environment.cast_const().cast(), status.0, category, message) }
 }
 
@@ -72,7 +72,7 @@ unsafe extern "C" fn take(
 }
 
 /// # Safety
-/// The text is NULL, which is empty, or ends with a zero byte.
+/// The text is NULL, which counts as empty, or ends with a zero byte.
 unsafe fn text(text: &*const c_char) -> std::borrow::Cow<'_, str> {
     if ptr::eq(*text, ptr::null()) {
         return "".into();

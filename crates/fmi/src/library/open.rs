@@ -18,12 +18,12 @@ impl Open {
     pub(super) fn new(unpacked: &Unpacked) -> Result<Self, FmuError> {
         let path = super::path(unpacked)?;
         let fmu = unpacked.path().to_owned();
-        // SAFETY: the library's initialisers are foreign code. That nothing vouches for it is what the process of its own is
-        // for, in which FMUs run unless the scenario trusts them.
+        // SAFETY: the library's initialisers are foreign code, for which nothing vouches; that is why FMUs run in a separate process,
+        // except where the scenario trusts them.
         let library = during("dlopen", || unsafe { library(&path) });
         let library = library.map_err(|error| {
             let why = chain(&error);
-            // Libraries of Python FMUs leave its functions to the program that loads them.
+            // Libraries of Python FMUs take its functions from the program that loads them.
             let hint = if why.contains("undefined symbol: Py") || why.contains("undefined symbol: _Py") {
                 "; it needs Python: start with LD_PRELOAD=<path of libpython3.so> of the Python that has its packages"
             } else {
@@ -54,7 +54,7 @@ impl Open {
     }
 }
 
-/// Opens a library with all that it needs, and without making its functions known to others.
+/// Opens a library and resolves all its symbols, without exporting its own.
 ///
 /// # Safety
 /// Its initialisers run.
@@ -75,7 +75,7 @@ unsafe fn library(path: &Path) -> Result<Library, libloading::Error> {
     unsafe { Library::new(path) }
 }
 
-/// An error and what caused it, in one line.
+/// An error and its causes, in one line.
 fn chain(error: &dyn std::error::Error) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")

@@ -1,18 +1,18 @@
-//! What functions of an FMU return, in both versions by the same numbers.
+//! Status values of an FMU's functions, with the same numbers in both versions.
 use crate::abi::{v2, v3};
 use crate::log::Log;
 use crate::slave::SlaveError;
 
-/// What a call returned.
+/// Outcome of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// It was done, perhaps with a warning.
+    /// Done, perhaps with a warning.
     Done,
-    /// It was not done, nothing has changed.
+    /// Not done; nothing has changed.
     Discarded,
-    /// The instance cannot go on.
+    /// The instance cannot continue.
     Failed(&'static str),
-    /// Nothing may be called any more, of any instance.
+    /// No function of any instance may be called any more.
     Fatal(&'static str),
 }
 
@@ -23,7 +23,7 @@ impl From<v2::Status> for Outcome {
             v2::Status::OK | v2::Status::WARNING => Self::Done,
             v2::Status::DISCARD => Self::Discarded,
             v2::Status::FATAL => Self::Fatal(name),
-            // A step that goes on by itself was not asked for.
+            // A step that continues by itself was not requested.
             _ => Self::Failed(name),
         }
     }
@@ -41,19 +41,19 @@ impl From<v3::Status> for Outcome {
     }
 }
 
-/// How far an instance can still be used.
+/// Remaining use of an instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Health {
-    /// For everything.
+    /// All functions.
     Well,
-    /// Only freed.
+    /// Freeing only.
     Broken,
-    /// Not even that.
+    /// None.
     Dead,
 }
 
 impl Outcome {
-    /// What it means for an instance that is no longer needed: a warning.
+    /// Treats the outcome as a warning, for an instance that is no longer needed.
     pub(crate) fn warn(self, call: &str, health: &mut Health, log: &Log) {
         let status = match self {
             Self::Done => return,
@@ -64,11 +64,11 @@ impl Outcome {
                 status
             }
         };
-        // Its own words are in the log before that.
+        // The FMU's message on it is in the log before that.
         log.push(1, "", &format!("{call} returned {status}"));
     }
 
-    /// What it means for the instance and for who called.
+    /// Updates the instance's health and turns the outcome into a result for the caller.
     pub(crate) fn check(
         self,
         call: &'static str,

@@ -18,7 +18,7 @@ use std::mem::ManuallyDrop;
 use std::ptr;
 use std::sync::Arc;
 
-/// `fmi3Boolean` where it has to be told from `fmi3UInt8`, which is the same type here.
+/// `fmi3Boolean`, as a type distinct from `fmi3UInt8`, which is the same in C.
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Flag(pub(crate) u8);
@@ -110,7 +110,7 @@ impl Functions {
     }
 }
 
-/// What a step has come to.
+/// Results of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stepped {
     pub(crate) event_handling_needed: bool,
@@ -120,22 +120,22 @@ pub(crate) struct Stepped {
     pub(crate) last_successful_time: f64,
 }
 
-/// What an update of the discrete states has come to.
+/// Results of an update of the discrete states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Updated {
-    /// Another one is needed.
+    /// True if another update is needed.
     pub(crate) again: bool,
     pub(crate) terminate_simulation: bool,
     /// (s)
     pub(crate) next_event_time: Option<f64>,
 }
 
-/// An instance; it is terminated if it is well, and freed, when it is dropped at the latest.
+/// An instance; dropping it terminates it, if it still works, and frees it.
 pub(crate) struct Three {
     functions: Functions,
     instance: Instance,
     environment: Arc<Environment>,
-    /// By slot.
+    /// Saved states, by slot.
     states: [FmuState; Slot::COUNT],
     is_initialised: bool,
     is_freed: bool,
@@ -143,8 +143,8 @@ pub(crate) struct Three {
     library: ManuallyDrop<Open>,
 }
 
-// SAFETY: the standard lets any thread call an instance, one at a time; there is no way to call through a shared reference from
-// another thread, since it is not `Sync`.
+// SAFETY: the standard lets any thread call an instance, one at a time; calls through a shared reference from another thread are
+// impossible, since it is not `Sync`.
 unsafe impl Send for Three {}
 
 impl Three {
@@ -167,7 +167,7 @@ impl Three {
         let token = CString::new(fmu.description().instantiation_token.as_str());
         let token = token.map_err(|error| refused(error.to_string()))?;
         let resources = fmu.folder().join("resources");
-        // A path that ends with a separator; NULL where there is nothing.
+        // A path that ends with a separator; NULL without resources.
         let resources = resources.is_dir().then(|| CString::new(format!("{}/", resources.display())));
         let resources = resources.transpose().map_err(|error| refused(error.to_string()))?;
         // SAFETY: the texts live during the call, the environment as long as the instance.
@@ -206,7 +206,7 @@ impl Three {
         self.environment.log()
     }
 
-    /// Changes the mode by a function that the FMU may not have: then there is nothing to do.
+    /// Changes the mode, by a function that the FMU may lack: then it does nothing.
     fn transition(&self, call: &'static str, function: Option<Transition>) -> Outcome {
         // SAFETY: the instance lives.
         function.map_or(Outcome::Done, |function| during(call, || unsafe { function(self.instance) }).into())
@@ -301,11 +301,11 @@ impl Three {
     pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
         let get = self.functions.get_state?;
         let (instance, state) = (self.instance, &raw mut self.states[slot as usize]);
-        // SAFETY: the state is NULL or one of this instance's.
+        // SAFETY: the state is NULL or belongs to this instance.
         Some(during("fmi3GetFMUState", || unsafe { get(instance, state) }).into())
     }
 
-    /// Whether there is a state to go back to.
+    /// True if a state has been saved.
     pub(crate) fn has_saved(&self) -> bool {
         self.states.iter().any(|state| !state.is_null())
     }
@@ -313,21 +313,21 @@ impl Three {
     pub(crate) fn restore(&self, slot: Slot) -> Option<Outcome> {
         let state = self.states[slot as usize];
         let set = self.functions.set_state.filter(|_| !state.is_null())?;
-        // SAFETY: the state is one of this instance's.
+        // SAFETY: the state belongs to this instance.
         Some(during("fmi3SetFMUState", || unsafe { set(self.instance, state) }).into())
     }
 }
 
 impl Three {
-    /// Terminates it if it is well, and frees it; what is not OK then is a warning in its log. Nothing but the log is used after it.
+    /// Terminates the instance, if it still works, and frees it; a failure is a warning in its log. Only the log may be used afterwards.
     pub(crate) fn end(&mut self) {
-        // After a fatal error nothing may be called: the library stays, with what it has allocated.
+        // After a fatal error no function may be called: the library stays loaded, with its memory.
         if self.health == Health::Dead || std::mem::replace(&mut self.is_freed, true) {
             return;
         }
         if let Some(free) = self.functions.free_state {
             for state in self.states.iter_mut().filter(|state| !state.is_null()) {
-                // SAFETY: it is this instance's, and not used again.
+                // SAFETY: it belongs to this instance and is not used again.
                 during("fmi3FreeFMUState", || unsafe { free(self.instance, state) });
             }
         }
@@ -347,20 +347,20 @@ impl Drop for Three {
     fn drop(&mut self) {
         self.end();
         if self.health != Health::Dead {
-            // SAFETY: it is not used again, and nothing of the library either.
+            // SAFETY: neither it nor anything of the library is used again.
             during("dlclose", || unsafe { ManuallyDrop::drop(&mut self.library) });
         }
     }
 }
 
-/// A type that the FMU gives and takes.
+/// A type of values that are set and read.
 macro_rules! access {
     ($($type:ty as $raw:ty, $get:ident, $set:ident, $name:literal;)*) => {$(
         impl super::Access<$type> for Three {
             fn get(&self, references: &[u32], values: &mut [$type]) -> super::Called {
                 let (all, count) = (values.as_mut_ptr().cast::<$raw>(), values.len());
                 let (call, get) = (concat!("fmi3Get", $name), self.functions.$get);
-                // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
+                // SAFETY: both live during the call with the given lengths; the types have the same representation.
                 let status =
                     during(call, || unsafe { get(self.instance, references.as_ptr(), references.len(), all, count) });
                 (call, status.into())
@@ -369,7 +369,7 @@ macro_rules! access {
             fn set(&self, references: &[u32], values: &[$type]) -> super::Called {
                 let (all, count) = (values.as_ptr().cast::<$raw>(), values.len());
                 let (call, set) = (concat!("fmi3Set", $name), self.functions.$set);
-                // SAFETY: both live during the call with the lengths that are said; the types have the same representation.
+                // SAFETY: both live during the call with the given lengths; the types have the same representation.
                 let status =
                     during(call, || unsafe { set(self.instance, references.as_ptr(), references.len(), all, count) });
                 (call, status.into())
@@ -396,7 +396,7 @@ fn flag(is: bool) -> Boolean {
     if is { TRUE } else { FALSE }
 }
 
-/// The library is for the version that we have.
+/// Checks that the library is for this version.
 fn check_version(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
     let call = "fmi3GetVersion";
     // SAFETY: the type is that of the function, which returns a text of the library's.

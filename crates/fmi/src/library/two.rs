@@ -19,7 +19,7 @@ use std::ptr;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// `fmi2Boolean` where it has to be told from `fmi2Integer`, which is the same type of C.
+/// `fmi2Boolean`, as a type distinct from `fmi2Integer`, which is the same in C.
 #[repr(transparent)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Flag(pub(crate) c_int);
@@ -88,14 +88,14 @@ impl Functions {
     }
 }
 
-/// An instance; it is terminated if it is well, and freed, when it is dropped at the latest.
+/// An instance; dropping it terminates it, if it still works, and frees it.
 pub(crate) struct Two {
     functions: Functions,
     component: Component,
     environment: Arc<Environment>,
-    /// The instance has a pointer to it; nobody else counts it.
+    /// The instance points to it, without a reference count.
     _callbacks: Rc<CallbackFunctions>,
-    /// By slot.
+    /// Saved states, by slot.
     states: [FmuState; Slot::COUNT],
     is_initialised: bool,
     is_freed: bool,
@@ -103,8 +103,8 @@ pub(crate) struct Two {
     library: ManuallyDrop<Open>,
 }
 
-// SAFETY: the standard lets any thread call an instance, one at a time; there is no way to call through a shared reference from
-// another thread, since it is not `Sync`.
+// SAFETY: the standard lets any thread call an instance, one at a time; calls through a shared reference from another thread are
+// impossible, since it is not `Sync`.
 unsafe impl Send for Two {}
 
 impl Two {
@@ -184,7 +184,7 @@ impl Two {
         during("fmi2SetString", || unsafe { set(self.component, &raw const reference, 1, &value.as_ptr()) }).into()
     }
 
-    /// Derivatives of inputs of one order.
+    /// Sets derivatives of one order of inputs.
     pub(crate) fn set_input_derivatives(&self, references: &[u32], orders: &[Integer], values: &[f64]) -> Outcome {
         let count = references.len();
         debug_assert!(count == orders.len() && count == values.len());
@@ -204,7 +204,7 @@ impl Two {
         .into()
     }
 
-    /// To which time (s) a discarded step went, if the FMU says so.
+    /// Time (s) that a discarded step reached, if the FMU reports it.
     pub(crate) fn last_successful_time(&self) -> Option<f64> {
         let mut time = f64::NAN;
         let ask = self.functions.get_real_status?;
@@ -215,7 +215,7 @@ impl Two {
         (Outcome::from(status) == Outcome::Done && time.is_finite()).then_some(time)
     }
 
-    /// Whether the FMU wants the simulation to end, after a discarded step.
+    /// True if the FMU wants the simulation to end, after a discarded step.
     pub(crate) fn wants_to_end(&self) -> bool {
         let Some(ask) = self.functions.get_boolean_status else { return false };
         let mut wants = FALSE;
@@ -228,11 +228,11 @@ impl Two {
     pub(crate) fn save(&mut self, slot: Slot) -> Option<Outcome> {
         let get = self.functions.get_state?;
         let (component, state) = (self.component, &raw mut self.states[slot as usize]);
-        // SAFETY: the state is NULL or one of this instance's.
+        // SAFETY: the state is NULL or belongs to this instance.
         Some(during("fmi2GetFMUstate", || unsafe { get(component, state) }).into())
     }
 
-    /// Whether there is a state to go back to.
+    /// True if a state has been saved.
     pub(crate) fn has_saved(&self) -> bool {
         self.states.iter().any(|state| !state.is_null())
     }
@@ -240,21 +240,21 @@ impl Two {
     pub(crate) fn restore(&self, slot: Slot) -> Option<Outcome> {
         let state = self.states[slot as usize];
         let set = self.functions.set_state.filter(|_| !state.is_null())?;
-        // SAFETY: the state is one of this instance's.
+        // SAFETY: the state belongs to this instance.
         Some(during("fmi2SetFMUstate", || unsafe { set(self.component, state) }).into())
     }
 }
 
 impl Two {
-    /// Terminates it if it is well, and frees it; what is not OK then is a warning in its log. Nothing but the log is used after it.
+    /// Terminates the instance, if it still works, and frees it; a failure is a warning in its log. Only the log may be used afterwards.
     pub(crate) fn end(&mut self) {
-        // After a fatal error nothing may be called: the library stays, with what it has allocated.
+        // After a fatal error no function may be called: the library stays loaded, with its memory.
         if self.health == Health::Dead || std::mem::replace(&mut self.is_freed, true) {
             return;
         }
         if let Some(free) = self.functions.free_state {
             for state in self.states.iter_mut().filter(|state| !state.is_null()) {
-                // SAFETY: it is this instance's, and not used again.
+                // SAFETY: it belongs to this instance and is not used again.
                 during("fmi2FreeFMUstate", || unsafe { free(self.component, state) });
             }
         }
@@ -274,13 +274,13 @@ impl Drop for Two {
     fn drop(&mut self) {
         self.end();
         if self.health != Health::Dead {
-            // SAFETY: it is not used again, and nothing of the library either.
+            // SAFETY: neither it nor anything of the library is used again.
             during("dlclose", || unsafe { ManuallyDrop::drop(&mut self.library) });
         }
     }
 }
 
-/// A type that the FMU gives and takes.
+/// A type of values that are set and read.
 macro_rules! access {
     ($type:ty as $raw:ty, $get:ident, $set:ident, $name:literal) => {
         impl super::Access<$type> for Two {
@@ -317,7 +317,7 @@ fn flag(is: bool) -> Boolean {
     if is { TRUE } else { FALSE }
 }
 
-/// The library is for the types and the version that we have.
+/// Checks that the library is for these types and this version.
 fn check_platform(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
     // SAFETY: the types are those of the functions, which return a text of the library's.
     let said = unsafe {
@@ -333,7 +333,7 @@ fn check_platform(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
         })
     };
     for (call, wanted, said) in said {
-        // FMI 2.0.1 and later still are "2.0"; some libraries say more.
+        // FMI 2.0.1 and later are still "2.0"; some libraries append more.
         if !said.starts_with(wanted) {
             let problem = LibraryProblem::Says { call, said, wanted };
             return Err(FmuError::Library { path: fmu.path().to_owned(), problem });
@@ -342,7 +342,7 @@ fn check_platform(library: &Open, fmu: &Unpacked) -> Result<(), FmuError> {
     Ok(())
 }
 
-/// A path as a URI (RFC 3986, RFC 8089): what is neither unreserved nor a slash is written in hexadecimal.
+/// A path as a URI (RFC 3986, RFC 8089): characters that are neither unreserved nor a slash are written in hexadecimal.
 fn file_uri(path: &str) -> String {
     use std::fmt::Write;
     path.bytes().fold("file://".to_owned(), |mut uri, byte| {

@@ -1,4 +1,4 @@
-//! What is set or read in one call: the wired variables of one type, with room for their values that is made once.
+//! Batches of variables: the wired variables of one type, set or read in one call, with memory allocated once.
 use super::instance::Slot;
 use crate::description::{DataType, ModelDescription, Variability, Version};
 use crate::library::status::Outcome;
@@ -6,11 +6,11 @@ use crate::library::{Access, Called};
 use crate::library::{three, two};
 use crate::setup::Wire;
 
-/// A type that values are exchanged in.
+/// A type of exchanged values.
 pub(super) trait Element: Copy + PartialEq + Send + 'static {
-    /// What it takes.
+    /// Values it accepts, in words.
     const BOUND: &'static str;
-    /// A value to begin with.
+    /// Initial value.
     const ZERO: Self;
     fn of(number: f64) -> Option<Self>;
     fn number(self) -> f64;
@@ -86,14 +86,14 @@ macro_rules! flags {
 
 flags!(two::Flag, three::Flag);
 
-/// Where a port is in the values of a batch.
+/// Position of a port in the values of a batch.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     port: usize,
     at: usize,
 }
 
-/// Variables of one type and where their ports are.
+/// Variables of one type, with the positions of their ports.
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     references: Vec<u32>,
@@ -128,26 +128,26 @@ pub(super) struct Misfit {
 
 /// A batch of variables of one type of an instance `I`.
 pub(super) trait Batch<I>: Send {
-    /// Takes the values of its ports; returns whether one is new.
+    /// Takes the values of its ports; returns true if one has changed.
     fn take(&mut self, number: &dyn Fn(usize) -> f64) -> Result<bool, Misfit>;
-    /// Sets what it took.
+    /// Sets the values taken.
     fn set(&self, instance: &I) -> Called;
     /// Reads all of its variables.
     fn get(&mut self, instance: &I) -> Called;
-    /// Gives the values of its ports.
+    /// Writes the values of its ports to `numbers`.
     fn give(&self, numbers: &mut [f64]);
-    /// Whether there are elements that no port stands for.
+    /// True if it has elements without a port.
     fn has_others(&self) -> bool;
-    /// Keeps its values with a state of the instance.
+    /// Saves its values along with a state of the instance.
     fn keep(&mut self, slot: Slot);
-    /// Takes back the values that were kept.
+    /// Restores the saved values.
     fn recall(&mut self, slot: Slot);
 }
 
 struct Typed<T> {
     layout: Layout,
     values: Vec<T>,
-    /// Nothing has been taken so far.
+    /// True until values are taken for the first time.
     is_fresh: bool,
     kept: [(Vec<T>, bool); Slot::COUNT],
 }
@@ -207,7 +207,7 @@ fn boxed<T: Element, I: Access<T>>(layout: Layout) -> Box<dyn Batch<I>> {
 
 /// An instance whose variables have batches.
 pub(super) trait Batched: Sized {
-    /// The batch of a type; none for a type that no number stands for.
+    /// The batch of a type; none for a type that is not exchanged as a number.
     fn batch(data_type: DataType, layout: Layout) -> Option<Box<dyn Batch<Self>>>;
 }
 
@@ -241,8 +241,7 @@ impl Batched for three::Three {
     }
 }
 
-/// The type that variables are asked for together in: FMI 2.0 has its enumerations among the integers, FMI 3.0 among those of
-/// 64 bits.
+/// Type in which variables are grouped: FMI 2.0 has its enumerations among the integers, FMI 3.0 among those of 64 bits.
 fn group(data_type: DataType, version: Version) -> DataType {
     match (data_type, version) {
         (DataType::Enumeration, Version::Two) => DataType::Int32,
@@ -251,7 +250,7 @@ fn group(data_type: DataType, version: Version) -> DataType {
     }
 }
 
-/// The batches of all wires that `is_in` takes.
+/// The batches of all wires whose variability passes `is_in`.
 pub(super) fn batches<I: Batched>(
     it: &ModelDescription,
     wires: &[Wire],
@@ -261,7 +260,7 @@ pub(super) fn batches<I: Batched>(
     batches_of(it, wires.iter().enumerate(), counts, is_in)
 }
 
-/// The same of some of the wires, each with the number of its port.
+/// The same for some of the wires, each with the number of its port.
 pub(super) fn batches_of<'a, I: Batched>(
     it: &ModelDescription,
     wires: impl Iterator<Item = (usize, &'a Wire)>,
@@ -284,7 +283,7 @@ pub(super) fn batches_of<'a, I: Batched>(
     layouts.into_iter().filter_map(|(data_type, layout)| I::batch(data_type, layout)).collect()
 }
 
-/// Reads all batches; stops at the first that is not read.
+/// Reads all batches; stops at the first failure.
 pub(super) fn read<I>(batches: &mut Batches<I>, instance: &I, numbers: &mut [f64]) -> Called {
     all(batches.iter_mut().map(|batch| {
         let called = batch.get(instance);
@@ -293,7 +292,7 @@ pub(super) fn read<I>(batches: &mut Batches<I>, instance: &I, numbers: &mut [f64
     }))
 }
 
-/// Makes calls up to the first that is not done; what came of the last one.
+/// Makes calls up to the first that fails; returns the outcome of the last one.
 pub(super) fn all(calls: impl Iterator<Item = Called>) -> Called {
     let mut last = ("", Outcome::Done);
     for called in calls {

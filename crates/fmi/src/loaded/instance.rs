@@ -1,12 +1,12 @@
-//! What the instances of both versions can do.
+//! Functions common to the instances of both versions.
 use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 
-/// Where a state is kept.
+/// Slots for saved states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Slot {
-    /// What was saved for who uses the slave.
+    /// State saved for the user of the slave.
     Caller,
-    /// What a step that is discarded is taken back to.
+    /// State to return to after a discarded step.
     Step,
 }
 
@@ -14,12 +14,12 @@ impl Slot {
     pub(crate) const COUNT: usize = 2;
 }
 
-/// What a step has come to.
+/// Result of an attempted step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Attempt {
     Came(StepEnd),
-    /// The FMU discarded it, and is nowhere that a step can begin from. It may say to what time (s) within the step it would have
-    /// come.
+    /// The FMU discarded it and is not at a time from which a step can begin. It may report up to which time (s) within the step it would
+    /// have succeeded.
     Discarded {
         call: &'static str,
         within: Option<f64>,
@@ -42,20 +42,20 @@ pub(super) trait Instance: Send {
     /// As [`crate::Slave::read`].
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError>;
 
-    /// Keeps the state, in place of the one that was kept there.
+    /// Saves the state, in place of the one saved there before.
     fn save(&mut self, slot: Slot) -> Result<(), SlaveError>;
 
-    /// Goes back to a state that was kept.
+    /// Restores a saved state.
     fn restore(&mut self, slot: Slot) -> Result<(), SlaveError>;
 
     /// As [`crate::Slave::take_log`].
     fn take_log(&mut self) -> Vec<LogLine>;
 }
 
-/// The time (s) that a step is said to have come to, which has to be one of the step.
+/// The time (s) reported as reached by a step; an error if it is outside the step.
 pub(super) fn reached(call: &'static str, time: f64, length: f64, at: f64) -> Result<f64, SlaveError> {
     let to = time + length;
-    // What the FMU adds up by itself is rounded in another way.
+    // The FMU's own sum of times is rounded differently.
     let rounding = 4.0 * f64::EPSILON * to.abs().max(time.abs()) + 1e-9 * length;
     if at >= time - rounding && at <= to + rounding {
         Ok(at.clamp(time, to))
@@ -64,7 +64,7 @@ pub(super) fn reached(call: &'static str, time: f64, length: f64, at: f64) -> Re
     }
 }
 
-/// A time that a discarded step is said to have come to, if that is within it.
+/// The time reported as reached by a discarded step, if it is within the step.
 pub(super) fn within(reached: Option<f64>, time: f64, length: f64) -> Option<f64> {
     reached.filter(|reached| *reached > time && *reached < time + length)
 }

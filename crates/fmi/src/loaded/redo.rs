@@ -1,25 +1,25 @@
-//! Steps that are discarded are taken back and taken in parts.
+//! Discarded steps are undone and repeated in parts.
 //!
-//! An FMU that discards a step has not computed it to its end. By the standard nothing but going back can follow (FMI 2.0.5,
-//! §4.2.2; FMI 3.0.2, §4.2, state *Step Discarded*), for which its state has to have been kept. To keep it costs as much as some
-//! steps do, so that is done once in many steps, and what was asked for since then is asked for again after going back. Where an
-//! FMU cannot be taken back, the step goes on from where it says that it has come; if it says nothing, the step cannot be taken.
+//! An FMU that discards a step has not computed it to its end. The standard allows only a return to a saved state then (FMI 2.0.5,
+//! §4.2.2; FMI 3.0.2, §4.2, state *Step Discarded*). Saving costs as much as some steps, so it is done once in many steps, and the calls
+//! since then are repeated after going back. If an FMU cannot go back, the step continues from the time that the FMU reports; without a
+//! report the step fails.
 use super::instance::{Attempt, Instance, Slot};
 use crate::slave::{SlaveError, StepEnd};
 
-/// Into how many parts a step is divided at most, by ten halvings.
+/// Greatest number of parts of a step, by ten halvings.
 const MOST_PARTS: u32 = 1 << 10;
-/// Calls after which the state is kept again.
+/// Calls after which the state is saved again.
 const MOST_CALLS: usize = 64;
 
-/// Room for going back.
+/// Memory for going back.
 pub(super) struct Redo {
-    /// Whether the FMU can be taken back, and steps from there by another length.
+    /// True if the FMU can go back and take steps of another length.
     is_able: bool,
-    /// Where the state is kept that `calls` have followed.
+    /// Slot of the state that `calls` have followed.
     kept: Option<Slot>,
     calls: Vec<Call>,
-    /// Inputs of all calls, as many of each.
+    /// Inputs of all calls, the same number for each.
     past: Vec<[f64; 3]>,
     /// Inputs and outputs of a call.
     inputs: Vec<[f64; 3]>,
@@ -27,17 +27,17 @@ pub(super) struct Redo {
     outputs: Vec<f64>,
 }
 
-/// What has changed the instance.
+/// A call that has changed the instance.
 #[derive(Debug, Clone, Copy)]
 enum Call {
     /// A step from `time` by `length` (s).
     Step { time: f64, length: f64 },
-    /// Reading with inputs.
+    /// A reading with inputs.
     Read,
 }
 
 impl Redo {
-    /// For an instance that is wired with so many inputs and outputs.
+    /// For an instance with the given numbers of inputs and outputs.
     pub(super) fn new(instance: &dyn Instance, inputs: usize, outputs: usize) -> Self {
         let can = instance.capabilities();
         let is_able = can.saves_state && can.variable_step;
@@ -52,7 +52,7 @@ impl Redo {
         }
     }
 
-    /// Notes that the present state is kept.
+    /// Notes that the present state is saved.
     pub(super) fn is_kept(&mut self, slot: Slot) {
         self.kept = Some(slot);
         self.calls.clear();
@@ -89,7 +89,7 @@ impl Redo {
         }
     }
 
-    /// The same, a step that is discarded by its halves, and so on.
+    /// The same, with a discarded step halved, and so on.
     fn step_in_parts(
         &mut self,
         instance: &mut dyn Instance,
@@ -106,7 +106,7 @@ impl Redo {
             match self.step_or_back(instance, from, part)? {
                 Attempt::Came(StepEnd::Done) => {
                     done += next;
-                    // The other half of what was halved.
+                    // The other half of the halved part.
                     next = 1 << done.trailing_zeros();
                 }
                 Attempt::Came(early) => return Ok(early),
@@ -114,7 +114,7 @@ impl Redo {
                     match self.step_or_back(instance, from, reached - from)? {
                         Attempt::Came(StepEnd::Done) => return Ok(StepEnd::Until(reached)),
                         Attempt::Came(early) => return Ok(early),
-                        // It is not as it said.
+                        // Its report was wrong.
                         Attempt::Discarded { .. } => next /= 2,
                     }
                 }
@@ -127,7 +127,7 @@ impl Redo {
         Ok(StepEnd::Done)
     }
 
-    /// Tries a step with the inputs that are there; back from one that is discarded.
+    /// Tries a step with the present inputs; goes back if it is discarded.
     fn step_or_back(&mut self, instance: &mut dyn Instance, time: f64, length: f64) -> Result<Attempt, SlaveError> {
         if self.kept.is_none() || self.calls.len() == MOST_CALLS {
             self.keep(instance)?;
@@ -148,7 +148,7 @@ impl Redo {
         Ok(())
     }
 
-    /// Goes back to what was kept and does again what has followed.
+    /// Restores the saved state and repeats the calls since then.
     fn go_back(&mut self, instance: &mut dyn Instance) -> Result<(), SlaveError> {
         let Some(slot) = self.kept else { return Ok(()) };
         instance.restore(slot)?;

@@ -1,4 +1,4 @@
-//! What both versions keep of an instance between calls.
+//! State of an instance between calls, common to both versions.
 use super::batch::Misfit;
 use super::instance::{Attempt, Slot};
 use crate::description::ModelDescription;
@@ -8,21 +8,21 @@ use crate::setup::Setup;
 use crate::slave::{Capabilities, Port, SlaveError, StepEnd};
 use std::ffi::CString;
 
-/// Part of a step that is a rounding of the times that it is made of.
+/// Part of a step that counts as rounding of its times.
 const ROUNDING: f64 = 1e-9;
 
-/// What is known of a running instance.
+/// State of a running instance.
 pub(super) struct Session {
     pub(super) capabilities: Capabilities,
-    /// Where it is (s).
+    /// Its time (s).
     pub(super) time: f64,
-    /// For whoever listens to the FMU.
+    /// Its time, for the log.
     clock: Clock,
-    /// The time beyond which it is never asked to go (s).
+    /// Time limit of steps (s).
     stop: Option<f64>,
-    /// Whether it is in the initialisation mode.
+    /// True in the initialisation mode.
     pub(super) is_initialising: bool,
-    /// Where it was when it was saved (s).
+    /// Its time when it was saved (s), by slot.
     saved: [f64; Slot::COUNT],
     inputs: Vec<Port>,
     outputs: Vec<Port>,
@@ -36,7 +36,7 @@ impl Session {
         Self { capabilities, time, clock, stop, is_initialising: true, saved: [time; Slot::COUNT], inputs, outputs }
     }
 
-    /// A step that is not beyond the stop time by a rounding: an FMU may take that as an error (FMI 2.0.4, §2.1.6).
+    /// Shortens a step that exceeds the stop time by a rounding: an FMU may treat that as an error (FMI 2.0.4, §2.1.6).
     pub(super) fn within_stop(&self, time: f64, length: f64) -> f64 {
         let Some(stop) = self.stop.filter(|stop| time + length > *stop && time + length - stop <= ROUNDING * length)
         else {
@@ -49,7 +49,7 @@ impl Session {
         fitting
     }
 
-    /// Outputs that are read before all inputs are known: what is no number is only where to begin from.
+    /// Outputs read before all inputs are known: values that are not finite are only initial guesses and become zero.
     pub(super) fn guess(outputs: &mut [f64]) {
         outputs.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);
     }
@@ -59,26 +59,26 @@ impl Session {
         value + first * h / 2.0 + second * h * h / 6.0
     }
 
-    /// An input that its variable cannot take.
+    /// Error: an input that its variable cannot take.
     pub(super) fn misfit(&self, misfit: Misfit) -> SlaveError {
         let variable = self.inputs[misfit.port].variable.clone();
         SlaveError::Value { variable, bound: misfit.bound.into(), value: misfit.value, time: self.time }
     }
 
-    /// Outputs are numbers.
+    /// Checks that all outputs are finite.
     pub(super) fn check_finite(&self, outputs: &[f64]) -> Result<(), SlaveError> {
         let Some(port) = outputs.iter().position(|value| !value.is_finite()) else { return Ok(()) };
         let variable = self.outputs[port].variable.clone();
         Err(SlaveError::NotFinite { variable, value: outputs[port], time: self.time })
     }
 
-    /// Notes where it is.
+    /// Sets its time.
     pub(super) fn go_to(&mut self, time: f64) {
         self.time = time;
         self.clock.set(time);
     }
 
-    /// Notes how far a step has come.
+    /// Sets its time to the end of an attempted step.
     pub(super) fn reach(&mut self, time: f64, length: f64, attempt: Attempt) {
         self.go_to(match attempt {
             Attempt::Came(StepEnd::Done) => time + length,

@@ -14,7 +14,7 @@ use crate::setup::{Setup, Start};
 use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 use std::ffi::CString;
 
-/// Updates of discrete states at one event. An FMU that wants more goes in a circle.
+/// Updates of discrete states at one event. An FMU that wants more loops for ever.
 const MOST_UPDATES: usize = 1_000;
 
 /// An FMU of version 3.0.
@@ -23,7 +23,7 @@ pub(super) struct LoadedThree {
     session: Session,
     has_event_mode: bool,
     event: TimeEvent,
-    /// The event when the state was saved.
+    /// The event at the time of saving, by slot.
     saved_event: [TimeEvent; Slot::COUNT],
     /// Inputs that change at any time.
     continuous: Batches<Three>,
@@ -100,7 +100,7 @@ impl LoadedThree {
         if setup.waits { Ok(()) } else { self.start(None) }
     }
 
-    /// An array is set as a whole: elements that nothing is wired to keep what they start with.
+    /// Reads the elements that are not wired: an array is set as a whole, and they keep their start values.
     fn read_unwired_elements(&mut self) -> Result<(), SlaveError> {
         let Self { instance, continuous, discrete, .. } = self;
         let arrays = continuous.iter_mut().chain(discrete).filter(|batch| batch.has_others());
@@ -108,8 +108,8 @@ impl LoadedThree {
         self.check(call, outcome)
     }
 
-    /// From the event mode, in which the instance is: updates the discrete states until they stay, then goes to the step mode.
-    /// Returns whether the FMU wants the simulation to end.
+    /// Updates the discrete states until they stay, from the event mode, then enters the step mode. Returns true if the FMU wants the
+    /// simulation to end.
     fn settle(&mut self) -> Result<bool, SlaveError> {
         let call = "fmi3UpdateDiscreteStates";
         for _ in 0..MOST_UPDATES {
@@ -130,9 +130,8 @@ impl LoadedThree {
         Err(SlaveError::Failed { call: call.into(), time: self.session.time, status: "fmi3OK".into(), message })
     }
 
-    /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new. Another
-    /// event that is due is dealt with.
-    /// Returns whether the FMU wants the simulation to end.
+    /// Sets inputs: those that change at any time by `continuous`; all others by `discrete`, at an event if one is new. Also handles
+    /// another event that is due. Returns true if the FMU wants the simulation to end.
     fn set_inputs(
         &mut self,
         continuous: &dyn Fn(usize) -> f64,
@@ -198,7 +197,7 @@ impl Instance for LoadedThree {
         if self.set_inputs(&mean, &|port| inputs[port][0])? {
             return Ok(Attempt::Came(StepEnd::Terminated(time)));
         }
-        // An event at the start may have changed when the next one is.
+        // An event at the start may have changed the time of the next one.
         let before = leg;
         let leg = self.event.leg(time, length);
         if leg != before {
@@ -213,7 +212,7 @@ impl Instance for LoadedThree {
         }
         self.check("fmi3DoStep", outcome)?;
         let end = time + leg.length;
-        // Without an early return an FMU may be a little elsewhere, where a solver of its own has come to (FMI 3.0.1, §4.2.1).
+        // Without an early return an FMU may be at a slightly different time, that of its own solver (FMI 3.0.1, §4.2.1).
         let is_early = stepped.early_return || stepped.terminate_simulation;
         let at = if is_early { reached("fmi3DoStep", time, leg.length, stepped.last_successful_time)? } else { end };
         let mut progress = if stepped.terminate_simulation {
@@ -240,13 +239,13 @@ impl Instance for LoadedThree {
     fn read(&mut self, inputs: Option<&[f64]>, outputs: &mut [f64]) -> Result<(), SlaveError> {
         if let Some(inputs) = inputs {
             let now = |port: usize| inputs[port];
-            // An FMU that wants to end here says so again at the next step.
+            // An FMU that wants to end here repeats that at the next step.
             self.set_inputs(&now, &now)?;
         }
         let is_guess = self.session.is_initialising && inputs.is_none();
         let Self { instance, outputs: batches, .. } = self;
         let (call, outcome) = batch::read(batches, instance, outputs);
-        // While not all inputs are known, what it cannot say yet is only where to begin from.
+        // While inputs are missing, an output that it cannot compute yet is only an initial guess.
         if !(is_guess && outcome == Outcome::Discarded) {
             self.check(call, outcome)?;
         }
@@ -283,7 +282,7 @@ impl Instance for LoadedThree {
     }
 }
 
-/// Sets a start value; says by which function. Values are within their types, which was looked at.
+/// Sets a start value; returns the function used. Values are within their types, which was checked.
 fn set(instance: &Three, variable: &Variable, values: &Values) -> Called {
     fn integers<T: TryFrom<i128>>(instance: &Three, reference: u32, values: &[i128]) -> Called
     where

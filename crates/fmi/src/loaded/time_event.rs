@@ -1,28 +1,28 @@
-//! Events that an FMU announces: it says when the next one is (`nextEventTime`, FMI 3.0.2, §2.3.5). The step that would pass it
-//! ends there, if the FMU takes steps of any length; where it does not, the event is dealt with at the next communication point.
+//! Time events, announced by the FMU with `nextEventTime` (FMI 3.0.2, §2.3.5). A step that would pass one ends there if the FMU takes
+//! steps of any length; otherwise the event is handled at the next communication point.
 
-/// Times nearer than this are the same: roundings of the time.
+/// Times closer than this (relative) are equal: rounding of the time.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
-/// Part of a step at its end that is not stepped for itself: who asks for steps takes it for rounding.
+/// Rest of a step that is not taken separately: the caller treats it as rounding.
 const REST: f64 = 1e-9;
 
-/// When the next event is.
+/// Time of the next event.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TimeEvent {
     /// (s)
     next: Option<f64>,
-    /// Steps may be of any length.
+    /// True if steps may be of any length.
     variable_step: bool,
-    /// No event is beyond this (s).
+    /// Limit of event times (s).
     stop: f64,
 }
 
-/// A step that is to be taken.
+/// A step to take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Leg {
     /// (s)
     pub(super) length: f64,
-    /// It ends before the end, at an event.
+    /// True if it ends early, at an event.
     pub(super) is_cut: bool,
 }
 
@@ -31,31 +31,31 @@ impl TimeEvent {
         Self { next: None, variable_step, stop: stop.unwrap_or(f64::INFINITY) }
     }
 
-    /// What the FMU says now, which replaces what it has said before.
+    /// Replaces the time of the next event by the one the FMU reports.
     pub(super) fn announce(&mut self, next: Option<f64>) {
         self.next = next.filter(|next| next.is_finite() && *next <= self.stop);
     }
 
-    /// Whether the event is at `now` (s) or has been passed.
+    /// True if the event is at `now` (s) or has been passed.
     pub(super) fn is_due(&self, now: f64) -> bool {
         self.next.is_some_and(|next| next <= now + ROUNDINGS * now.abs())
     }
 
-    /// How far to step of a step from `time` by `length` (s).
+    /// Part to take now of a step from `time` by `length` (s).
     pub(super) fn leg(&self, time: f64, length: f64) -> Leg {
         let whole = Leg { length, is_cut: false };
         let end = time + length;
         let ahead = self.next.filter(|next| self.variable_step && !self.is_due(time) && *next <= end + ROUNDINGS * end);
         match ahead {
             Some(next) if next < end - REST * length => Leg { length: up_to(time, next), is_cut: true },
-            // Slightly further: the FMU need not see an event that is a rounding ahead.
+            // Slightly further: the FMU may overlook an event that is a rounding ahead.
             Some(next) if next > end => Leg { length: up_to(time, next), is_cut: false },
             _ => whole,
         }
     }
 }
 
-/// A length (s) with which a step from `time` is not before `end`.
+/// A length (s) such that a step from `time` does not end before `end`.
 fn up_to(time: f64, end: f64) -> f64 {
     let length = end - time;
     if time + length < end { length.next_up() } else { length }
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(TimeEvent::new(true, None).leg(1.0, 0.5), whole);
     }
 
-    /// An FMU that compares its time with that of the event finds it there.
+    /// An FMU that compares its time with that of the event finds it reached.
     #[test]
     fn no_step_to_an_event_ends_before_it() {
         for numerator in 1..1000 {

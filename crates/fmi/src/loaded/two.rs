@@ -19,7 +19,7 @@ pub(super) struct LoadedTwo {
     session: Session,
     /// Inputs of type `Real` that change at any time.
     continuous: Batches<Two>,
-    /// All other inputs, which take their value at the time.
+    /// All other inputs, which are set to their present value.
     discrete: Batches<Two>,
     outputs: Batches<Two>,
     /// Outputs that may be read in the initialization mode.
@@ -27,14 +27,14 @@ pub(super) struct LoadedTwo {
     derivatives: Option<Derivatives>,
 }
 
-/// Derivatives of the inputs that change at any time, for an FMU that takes them.
+/// Derivatives of the continuous inputs, for an FMU that takes them.
 struct Derivatives {
     references: Vec<u32>,
     ports: Vec<usize>,
     values: Vec<f64>,
-    /// The orders 1 and 2, as many as inputs.
+    /// The orders 1 and 2, one for each input.
     orders: [Vec<i32>; 2],
-    /// Whether the second derivative has ever been something else than zero: before, nothing is said of it.
+    /// True once a second derivative has been other than zero: until then it is not set.
     is_curved: bool,
 }
 
@@ -104,7 +104,7 @@ impl LoadedTwo {
         Ok(())
     }
 
-    /// What a discarded step has come to.
+    /// Result of a discarded step.
     fn discarded(&self, time: f64, length: f64) -> Result<Attempt, SlaveError> {
         let (call, at) = ("fmi2DoStep", self.instance.last_successful_time());
         if self.instance.wants_to_end() {
@@ -169,7 +169,7 @@ impl Instance for LoadedTwo {
             outputs.fill(0.0);
         }
         let (call, outcome) = batch::read(if is_initialising { initial_outputs } else { all }, instance, outputs);
-        // While not all inputs are known, what it cannot say yet is only where to begin from.
+        // While inputs are missing, an output that it cannot compute yet is only an initial guess.
         let is_guess = is_initialising && inputs.is_none();
         if !(is_guess && outcome == Outcome::Discarded) {
             self.check(call, outcome)?;
@@ -200,8 +200,8 @@ impl Instance for LoadedTwo {
     }
 }
 
-/// FMI 2.0.4, §4.2.4: in the initialization mode outputs are read and what is among the initial unknowns. All others count as
-/// what they start with until it is over.
+/// FMI 2.0.4, §4.2.4: in the initialization mode outputs and initial unknowns are read. All others count as their start values until it
+/// is over.
 fn readable_at_start(it: &ModelDescription, plan: &Plan) -> Batches<Two> {
     let is_readable = |variable: usize| {
         let mut unknowns = it.structure.initial_unknowns.iter();
@@ -246,13 +246,13 @@ impl LoadedTwo {
     }
 }
 
-/// Sets a start value; says by which function.
+/// Sets a start value; returns the function used.
 fn set(instance: &Two, reference: u32, values: &Values) -> Called {
     let one = &[reference];
     match values {
         Values::Float(values) => instance.set(one, values),
         Values::Integer(values) => {
-            // They are of 32 bits, which was looked at.
+            // They are of 32 bits, which was checked.
             let values: Vec<i32> = values.iter().filter_map(|value| i32::try_from(*value).ok()).collect();
             instance.set(one, &values)
         }
@@ -261,11 +261,11 @@ fn set(instance: &Two, reference: u32, values: &Values) -> Called {
             instance.set(one, &values)
         }
         Values::String(values) => {
-            // One, without zero bytes, which was looked at.
+            // One, without zero bytes, which was checked.
             let text = values.first().and_then(|text| CString::new(text.as_str()).ok()).unwrap_or_default();
             ("fmi2SetString", instance.set_string(reference, &text))
         }
-        // FMI 2.0 has no such type.
+        // FMI 2.0 lacks this type.
         Values::Binary(_) => ("fmi2SetString", Outcome::Done),
     }
 }

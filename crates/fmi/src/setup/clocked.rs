@@ -1,10 +1,10 @@
-//! Clocks of FMI 3.0. None is ticked: what would wait for one without end is refused.
+//! Clocks of FMI 3.0. None is ticked: a setup that would wait for one for ever is refused.
 use crate::description::{Causality, ModelDescription, Ticks};
 use servobench_config::Choice as _;
 
-/// No clock has to be ticked from outside at times of its own; else which one, and what to do.
+/// Checks that no clock has to be ticked from outside at its own times; the error names the clock and the remedy.
 ///
-/// A triggered input clock is not refused: it stands for something that need not happen.
+/// A triggered input clock is not refused: it stands for an event that need not happen.
 pub(super) fn check(it: &ModelDescription) -> Result<(), (&str, String)> {
     let inputs = it.variables.iter().filter(|variable| variable.causality == Causality::Input);
     let mut clocks = inputs.filter_map(|variable| Some((variable, variable.ticks.filter(Ticks::are_by_time)?)));

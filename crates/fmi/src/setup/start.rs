@@ -1,4 +1,4 @@
-//! Start values, turned into what the variables hold.
+//! Start values, converted to the types of their variables.
 use super::{Value, counts, position, setup};
 use crate::archive::Unpacked;
 use crate::description::{Causality, DataType, Initial, ModelDescription, Values, Variability, Variable, Version};
@@ -13,10 +13,10 @@ pub(crate) struct Start {
     pub(crate) values: Values,
 }
 
-/// Elements of all arrays that structural parameters may ask for.
+/// Greatest number of elements of all arrays together, as structural parameters may set it.
 const MOST_ELEMENTS: usize = 1 << 24;
 
-/// All start values, structural parameters first, and how many elements each variable has with them.
+/// All start values, structural parameters first, and the resulting number of elements of each variable.
 pub(super) fn all(fmu: &Unpacked, given: &[(String, Value)]) -> Result<(Vec<Start>, Vec<usize>), FmuError> {
     let it = fmu.description();
     let mut starts = vec![];
@@ -53,7 +53,7 @@ pub(super) fn all(fmu: &Unpacked, given: &[(String, Value)]) -> Result<(Vec<Star
     Ok((starts, counts))
 }
 
-/// FMI 2.0.5, §2.2.7, and FMI 3.0.2, §2.3.2: before initialisation what is `exact` or `approx` can be set, constants apart.
+/// FMI 2.0.5, §2.2.7, and FMI 3.0.2, §2.3.2: before initialisation `exact` and `approx` variables can be set, except constants.
 fn check_startable(variable: &Variable) -> Result<(), String> {
     let (causality, variability) = (variable.causality.name(), variable.variability.name());
     if variable.variability == Variability::Constant {
@@ -65,7 +65,7 @@ fn check_startable(variable: &Variable) -> Result<(), String> {
     Ok(())
 }
 
-/// What a variable of `count` elements holds.
+/// Values of a variable of `count` elements.
 fn typed(it: &ModelDescription, variable: &Variable, value: &Value, count: usize) -> Result<Values, String> {
     let mut flat = vec![];
     flatten(value, &mut flat)?;
@@ -132,7 +132,7 @@ fn typed(it: &ModelDescription, variable: &Variable, value: &Value, count: usize
     }
 }
 
-/// The elements of lists in lists.
+/// The elements of nested lists.
 fn flatten<'a>(value: &'a Value, flat: &mut Vec<&'a Value>) -> Result<(), String> {
     // Not recursive: lists come from files.
     let mut open = vec![value];
@@ -145,7 +145,7 @@ fn flatten<'a>(value: &'a Value, flat: &mut Vec<&'a Value>) -> Result<(), String
     if flat.is_empty() { Err("a list without elements starts nothing".into()) } else { Ok(()) }
 }
 
-/// A number in as few digits as tell it.
+/// The shortest digits that identify a number.
 fn in_few_digits(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && size.is_finite() && !(1e-3..1e7).contains(&size) {
@@ -155,7 +155,7 @@ fn in_few_digits(number: f64) -> String {
     }
 }
 
-/// `value`, whose number is within the bounds of the variable.
+/// `value`, if its number is within the bounds of the variable.
 fn within<T>(variable: &Variable, number: f64, value: T) -> Result<T, String> {
     let (min, max) = (variable.min.unwrap_or(f64::NEG_INFINITY), variable.max.unwrap_or(f64::INFINITY));
     if number < min || number > max {

@@ -1,4 +1,4 @@
-//! Model descriptions written by hand, and what is wrong with changed ones.
+//! Model descriptions written by hand, and mistakes in changed ones.
 mod mistakes;
 
 use servobench_fmi::{
@@ -124,7 +124,7 @@ fn fmi_3_structure() {
     assert_eq!(it.structure.derivatives[0].variable, at("der(x)"));
 }
 
-/// What many tools leave out has one meaning, and is said.
+/// Omissions of many tools have one meaning, and are remarked on.
 #[test]
 fn what_is_left_out_is_remarked() {
     let text = TWO

@@ -1,8 +1,8 @@
-//! One change each, and the mistake with its place.
+//! Single changes, each with the resulting mistake and its place.
 use super::{THREE, TWO};
 use servobench_fmi::ModelDescription;
 
-/// What is said after one piece of the text was replaced, which is there once.
+/// The error after one piece of the text, which occurs once, was replaced.
 fn said(text: &str, from: &str, to: &str) -> String {
     assert_eq!(text.matches(from).count(), 1, "{from}");
     ModelDescription::read(&text.replace(from, to), "a.xml").unwrap_err().to_string()

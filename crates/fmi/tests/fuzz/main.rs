@@ -1,4 +1,4 @@
-//! Fuzz targets: what somebody else packed. `docs/testing.md` says how to run more of them.
+//! Fuzz targets: foreign archives and descriptions. `docs/testing.md` describes longer runs.
 use servobench_fmi::{Archive, DataType, FmuError, Limits, ModelDescription, Values};
 use servobench_fuzz::{Splice, check, fuzz};
 use std::io::{Cursor, Write};
@@ -17,7 +17,7 @@ const WORDS: &[&str] = &[
     "<Dimension start=\"2\"/>", "<Dimension valueReference=\"1\"/>", "<Start value=\"\"/>", "<Alias name=\"a\"/>",
 ];
 
-/// Read, every reference leads somewhere and every start value fits; refused, there is a place.
+/// In an accepted description every reference resolves and every start value fits; a refusal has a place.
 #[test]
 fn descriptions() {
     let files = Splice::text(&[TWO, THREE], WORDS);
@@ -52,7 +52,7 @@ fn assert_consistent(it: &ModelDescription) {
     }
 }
 
-/// Unpacked, nothing is outside of the folder and nothing is larger than allowed; refused, it is in words.
+/// Unpacking writes nothing outside the folder and nothing larger than allowed; a refusal is in words.
 #[test]
 fn archives() {
     let mut zip = ZipWriter::new(Cursor::new(vec![]));

@@ -1,10 +1,10 @@
-//! Clocks of FMI 3.0: what has to be ticked from outside is refused.
+//! Clocks of FMI 3.0: those that have to be ticked from outside are refused.
 use super::{Room, compiled, messages, setup};
 use servobench_fmi::{Loaded, Value};
 
 const DESCRIPTION: &str = include_str!("three.xml");
 
-/// The FMU with more variables.
+/// The FMU with additional variables.
 fn room(variables: &str) -> Room {
     let description = DESCRIPTION.replace("</ModelVariables>", &format!("{variables}</ModelVariables>"));
     Room::new("three", &compiled("three"), &description)
@@ -33,7 +33,7 @@ fn a_clock_that_is_to_be_ticked_by_time_is_refused() {
     }
 }
 
-/// Nothing ticks a triggered clock, which is as good as one that does not tick.
+/// A triggered clock is never ticked, as if its event did not happen.
 #[test]
 fn what_a_clock_ticks_cannot_be_wired() {
     let room = room(

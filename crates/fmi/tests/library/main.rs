@@ -1,5 +1,4 @@
-//! Libraries written in C for these tests: what they are called with and in which order, and what becomes of each thing that an
-//! FMU may answer.
+//! Libraries written in C for these tests: the calls they receive and their order, and the effect of each answer that an FMU may give.
 #![expect(clippy::float_cmp, reason = "the numbers of these FMUs are exact")]
 
 mod clocks;
@@ -18,14 +17,14 @@ use tempfile::TempDir;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-/// A folder with an FMU in it, and place for more.
+/// A folder with an FMU, and room for more files.
 pub(crate) struct Room {
     folder: TempDir,
     pub(crate) fmu: PathBuf,
 }
 
 impl Room {
-    /// An FMU of a library and a description with something replaced.
+    /// An FMU with a library, and a description with some text replaced.
     pub(crate) fn new(name: &str, library: &[u8], description: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let fmu = folder.path().join(format!("{name}.fmu"));
@@ -50,7 +49,7 @@ impl Room {
         self.folder.path().join("notes")
     }
 
-    /// What an error says, without the name of the folder.
+    /// The text of an error, without the name of the folder.
     pub(crate) fn said(&self, error: &FmuError) -> String {
         error.to_string().replace(self.folder.path().to_str().unwrap(), "")
     }
@@ -93,7 +92,7 @@ pub(crate) fn text(text: &str) -> Value {
     Value::Text(text.into())
 }
 
-/// The messages since the last time.
+/// The messages since the last call.
 pub(crate) fn messages(slave: &mut Loaded) -> Vec<String> {
     slave.take_log().into_iter().map(|line| line.message).collect()
 }

@@ -1,4 +1,4 @@
-//! What cannot be loaded or wired, and what is said of it.
+//! FMUs that cannot be loaded or wired, and their errors.
 use super::{Room, compiled, port, setup, text};
 use servobench_fmi::{Setup, Value};
 

@@ -1,4 +1,4 @@
-//! FMI 3.0. `three.c` refuses what comes in the wrong mode and arrays of the wrong length.
+//! FMI 3.0. `three.c` refuses calls in the wrong mode and arrays of the wrong length.
 use super::{Room, compiled, messages, port, setup, text};
 use servobench_fmi::{Loaded, Setup, Slave, SlaveError, StepEnd, Value};
 use std::fs;
@@ -74,7 +74,7 @@ fn timed(description: &str, first: f64, period: f64) -> Loaded {
     Room::new("three", &compiled("three"), description).load(&setup(&start, &["u", "d"], &["y"])).unwrap()
 }
 
-/// Steps as a master does, to `end` by steps of `length`; returns where it stopped and the output there.
+/// Steps like a master, to `end` by steps of `length`; returns the time reached and the output there.
 fn driven(slave: &mut Loaded, length: f64, end: u32) -> (Vec<f64>, f64) {
     let mut stops = vec![];
     for step in 0..end {
@@ -90,7 +90,7 @@ fn driven(slave: &mut Loaded, length: f64, end: u32) -> (Vec<f64>, f64) {
     (stops, read[0])
 }
 
-/// Oracle: y' is the number of events that have been, which is integrated by hand.
+/// Oracle: y' is the number of events so far, integrated by hand.
 #[test]
 fn an_event_that_is_announced_ends_the_step() {
     let mut slave = timed(DESCRIPTION, 0.375, 0.375);
@@ -106,7 +106,7 @@ fn an_event_that_is_announced_ends_the_step() {
     assert_eq!(driven(&mut at_the_start, 0.5, 2), (vec![0.75], 0.75 + 0.25 * 2.0));
 }
 
-/// Ten times 0.1 and so on are no multiples of 0.1 in binary numbers: no event is early, late or dealt with twice for that.
+/// Ten times 0.1 and the like are not multiples of 0.1 in binary: no event is early, late or handled twice because of that.
 #[test]
 fn events_and_steps_may_differ_by_roundings() {
     let mut slave = timed(DESCRIPTION, 0.3, 0.1);
@@ -124,7 +124,7 @@ fn where_steps_have_one_length_events_are_at_communication_points() {
     assert_eq!(driven(&mut slave, 0.5, 2), (vec![], 0.5));
 }
 
-/// A new discrete input is an event of its own, after which the FMU says again when the next one is.
+/// A new discrete input is an event too, after which the FMU announces the next one again.
 #[test]
 fn an_event_stays_announced_over_others_and_comes_back_with_a_state() {
     let mut slave = timed(DESCRIPTION, 0.375, 0.375);
@@ -159,7 +159,7 @@ fn feedthrough_is_asked_for_by_the_position_of_ports() {
     setup.inputs.push(port("array", 2));
     let slave = room.load(&setup).unwrap();
     let by_output: Vec<_> = (0..3).map(|output| [0, 1, 2].map(|input| slave.feeds_through(output, input))).collect();
-    // Of `y` and of what is no output, nothing is said; `sum` follows the array alone.
+    // The structure is silent on `y` and on variables other than outputs; `sum` follows the array alone.
     assert_eq!(by_output, [[true; 3], [false, false, true], [true; 3]]);
 }
 
@@ -207,7 +207,7 @@ fn ends_and_failures() {
     }
 }
 
-/// y' = d, which is a discrete input: after going back it is another than the FMU has, and its event comes again.
+/// y' = d, a discrete input: after going back it differs from the FMU's, and its event is repeated.
 #[test]
 fn a_step_in_parts_has_its_discrete_inputs() {
     let mut slave = loaded(7, &["d"], &["y", "d"]);
@@ -256,7 +256,7 @@ fn an_early_return_is_within_its_step() {
     assert_eq!(step(12), Ok(StepEnd::Until(1.0)));
 }
 
-/// The library counts, and returns an error for an event mode that was not agreed on.
+/// The library counts calls, and returns an error for an event mode that was not agreed on.
 #[test]
 fn without_the_event_mode_no_event_is_dealt_with() {
     let setup = Setup { without_event_mode: true, stop_time: Some(2.0), ..setup(&[], &["u", "d"], &["y", "events"]) };
@@ -286,7 +286,7 @@ fn one_that_waits_is_started_with_its_inputs() {
     assert_eq!([0, 1, 2].map(|output| slave.is_discrete(output)), [false, true, false]);
 }
 
-/// An event at the stop time or beyond it is met by no step that is longer for it.
+/// No step is lengthened to reach an event at the stop time or beyond it.
 #[test]
 fn no_event_leads_beyond_the_stop_time() {
     let start = [("first", Value::Number(0.5_f64.next_up())), ("period", Value::Number(0.5))];

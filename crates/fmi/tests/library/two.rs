@@ -1,4 +1,4 @@
-//! FMI 2.0. The answer of `two.c` is y' = u with the derivatives that it is given.
+//! FMI 2.0. `two.c` solves y' = u with the derivatives that it is given.
 use super::{Room, compiled, messages, port, setup, text};
 use servobench_fmi::{Loaded, Setup, Severity, Slave, SlaveError, StepEnd, Value};
 use std::fs;
@@ -43,8 +43,8 @@ fn without_tolerance_and_end_it_says_so() {
     assert_eq!(messages(&mut slave)[1], "setup 0 0 0 0 0");
 }
 
-/// Oracle: an input u + u'·t + u''·t²/2 over a step of 0.1 s has the integral u·h + u'·h²/2 + u''·h³/6, whether the FMU gets its
-/// mean or its derivatives.
+/// Oracle: an input u + u'·t + u''·t²/2 over a step of 0.1 s has the integral u·h + u'·h²/2 + u''·h³/6, whether the FMU gets its mean or
+/// its derivatives.
 #[test]
 fn inputs_over_a_step_have_the_right_integral() {
     let (input, h) = ([2.0, 3.0, 5.0], 0.1_f64);
@@ -98,7 +98,7 @@ fn what_is_discarded_says_how_far_it_came() {
     slave.read(None, &mut [0.0]).expect("it goes on");
 }
 
-/// One that discards steps that are longer than 0.3 s, or that go beyond it.
+/// An FMU that discards steps longer than 0.3 s, or beyond it.
 fn discarding(mode: &str, outputs: &[&str]) -> Loaded {
     room().load(&setup(&[("mode", text(mode)), ("longest", Value::Number(0.3))], &["u"], outputs)).unwrap()
 }
@@ -109,7 +109,7 @@ fn integral(t: f64) -> f64 {
     2.0 * t + 3.0 * t * t / 2.0 + 4.0 * t * t * t / 3.0
 }
 
-/// `two.c` leaves nonsense after a step that it discards and fails if it is not taken back then.
+/// `two.c` leaves nonsense after a discarded step and fails if it is not taken back then.
 #[test]
 fn a_step_that_is_discarded_is_taken_in_halves() {
     let mut slave = discarding("coarse", &["y", "steps"]);
@@ -146,7 +146,7 @@ fn where_no_part_is_short_enough_it_says_how_far_it_came() {
     assert!((read[0] - integral(time)).abs() < 1e-14, "{read:?}");
 }
 
-/// The states of an FMU are saved once in 64 steps; `two.c` has its input and its sum in them.
+/// The state of an FMU is saved once in 64 steps; in `two.c` it holds the input and the sum.
 #[test]
 fn what_came_before_a_step_that_is_discarded_comes_again() {
     let mut slave = discarding("coarse", &["y", "u", "steps"]);
@@ -236,7 +236,7 @@ fn what_is_no_number_is_refused_in_both_directions() {
     );
 }
 
-/// `y` depends on `u` alone; `double` is another name of it. Of parameters dependencies say nothing.
+/// `y` depends on `u` alone; `double` is another name of it. Dependencies do not list parameters.
 #[test]
 fn variables_of_one_value_reference_feed_through_alike() {
     let description = DESCRIPTION
@@ -274,7 +274,7 @@ fn a_flood_of_messages_is_cut() {
     assert_eq!(log[10_000].message, "10000 more lines were not kept");
 }
 
-/// Before the first step that is its start, within a step the start of the step.
+/// Time of a message: before the first step its start, within a step the start of the step.
 #[test]
 fn what_it_says_has_the_time_at_which_it_says_it() {
     let setup = Setup { start_time: 0.5, ..setup(&[("mode", text("flood"))], &["u"], &[]) };
@@ -287,7 +287,7 @@ fn what_it_says_has_the_time_at_which_it_says_it() {
     }
 }
 
-/// Instances of one FMU do not know of each other.
+/// Instances of one FMU are independent.
 #[test]
 fn instances_are_apart() {
     let room = room();
@@ -305,7 +305,7 @@ fn instances_are_apart() {
     assert_eq!(setup.outputs, [port("y", 0)]);
 }
 
-/// x(0) may follow u(0): inputs come before the end of the initialization, as often as somebody asks what would follow from them.
+/// x(0) may follow u(0): inputs are set before the end of the initialization, as often as outputs are read for them.
 #[test]
 fn one_that_waits_is_started_with_its_inputs() {
     let waiting =
@@ -326,7 +326,7 @@ fn one_that_waits_is_started_with_its_inputs() {
     slave.step(0.0, 0.5, &[[5.0, 0.0, 0.0], [1.0, 0.0, 0.0]]).unwrap();
     slave.read(None, &mut read).unwrap();
     assert_eq!(read, [2.5, 5.0, 1.0]);
-    // One that nobody starts begins by itself with the first step.
+    // An instance that is not started begins with the first step.
     let mut unasked = load("normal");
     unasked.step(0.0, 0.5, &[[5.0, 0.0, 0.0], [0.0; 3]]).unwrap();
     assert!(!unasked.is_initialising());
@@ -352,7 +352,7 @@ fn what_is_no_real_number_is_discrete() {
     assert_eq!([slave.is_discrete(0), slave.is_discrete(1)], [false, true]);
 }
 
-/// 0.2 + 0.1 is a rounding beyond 0.3, which is no step beyond it; FMI 2.0.4, §2.1.6, has FMUs return an error there.
+/// 0.2 + 0.1 exceeds 0.3 by a rounding, which the FMU must not see: beyond the stop time it may return an error (FMI 2.0.4, §2.1.6).
 #[test]
 fn roundings_are_not_beyond_the_stop_time() {
     let setup = Setup { stop_time: Some(0.3), ..setup(&[("mode", text("strict"))], &["u"], &["y"]) };
