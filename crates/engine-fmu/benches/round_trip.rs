@@ -1,4 +1,4 @@
-//! What a step costs here, in a process of its own, and over pipes, beside threads that do nothing but compute.
+//! Cost of a step in this process, in a separate one, and over pipes, beside threads that do nothing but compute.
 //!
 //! `cargo bench -p servobench-engine-fmu`
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::{JoinHandle, spawn};
 
-/// One input, two outputs: an axis with a force going in, position and velocity out.
+/// One input, two outputs: an axis with a force as input, position and velocity as outputs.
 const WIRES: Wires = Wires { inputs: 1, outputs: 2 };
 /// Steps and readings per sample.
 const TURNS: usize = 1000;
@@ -26,7 +26,7 @@ fn main() {
     }
 }
 
-/// 1 kg: nothing to compute, so that what is measured is the way there and back.
+/// 1 kg: nothing to compute, so that only the exchange is measured.
 #[derive(Default)]
 struct Mass {
     x: f64,
@@ -46,7 +46,7 @@ impl Slave for Mass {
     }
 }
 
-/// Threads that take what they get.
+/// Threads that take what processor time they get.
 struct Load(Arc<AtomicBool>, Vec<JoinHandle<()>>);
 
 impl Load {
@@ -88,7 +88,7 @@ fn isolated(bencher: divan::Bencher, load: usize) {
     bencher.counter(TURNS).bench_local(|| steps_and_readings(&mut slave));
 }
 
-/// One exchange: what a step and a reading are in one.
+/// One exchange, which combines a step and a reading.
 #[divan::bench(args = LOADS)]
 fn over_pipes(bencher: divan::Bencher, load: usize) {
     let mut child = Command::new(std::env::current_exe().unwrap())

@@ -1,9 +1,8 @@
-//! An FMU of which only the description was read: nothing of its library is loaded.
+//! An FMU known only by its description: its library is not loaded.
 use servobench_fmi::{Capabilities, Feedthrough, ModelDescription, Setup, Slave, SlaveError, StepEnd, Version};
 
-/// What stands in for an FMU where none of its code is to run: it can what its description says, is wired as the FMU would be, and
-/// has all
-/// outputs zero. It takes no step.
+/// Stand-in for an FMU whose code must not run: it has the capabilities of the description, is wired as the FMU would be, and all its
+/// outputs are zero. It takes no step.
 pub(crate) struct Described {
     capabilities: Capabilities,
     feedthrough: Feedthrough,
@@ -48,7 +47,7 @@ impl Slave for Described {
         Ok(())
     }
 
-    /// What it gave would be no result.
+    /// Fails: there are no results without the FMU's code.
     fn step(&mut self, time: f64, _: f64, _: &[[f64; 3]]) -> Result<StepEnd, SlaveError> {
         Err(SlaveError::Failed {
             call: "the step".into(),

@@ -7,24 +7,24 @@ use servobench_isolation::Program as HostCommand;
 use servobench_plant::{Drive, Engine, EngineName, FmuModel, Mechanics, MechanicsError, MechanicsSetup, Model};
 use std::io;
 
-/// The engine `fmu`: the mechanics are an FMU.
+/// The engine `fmu`: an FMU as the mechanics.
 #[derive(Debug, Clone, Copy)]
 pub struct Fmu {
-    /// The program that an FMU runs in if it is isolated.
+    /// The program that runs isolated FMUs.
     pub host: fn() -> io::Result<HostCommand>,
-    /// Which code of FMUs runs.
+    /// Permission to run code of FMUs.
     pub code: Code,
 }
 
-/// Which code of FMUs runs. It is whoever starts the program that says so, and nothing in a file.
+/// Permission to run code of FMUs. It is set by the caller of the program, never by a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Code {
-    /// None: an FMU is what its description says, and takes no step.
+    /// None: FMUs are only described, and take no step.
     #[default]
     None,
-    /// In a process of its own.
+    /// In a separate process.
     Isolated,
-    /// Where the scenario says, in this process too.
+    /// As the scenario has it, in this process too.
     Anywhere,
 }
 
@@ -32,7 +32,7 @@ impl Fmu {
     /// The mechanics at tick 0.
     ///
     /// # Errors
-    /// [`MechanicsError`]; [`MechanicsError::Fmu`] has everything that does not fit the file.
+    /// [`MechanicsError`]; [`MechanicsError::Fmu`] lists every mismatch with the FMU.
     pub fn mechanics(&self, setup: &MechanicsSetup) -> Result<FmuMechanics, MechanicsError> {
         setup.check()?;
         let Model::Fmu(model) = &setup.model else {
@@ -53,17 +53,17 @@ impl Fmu {
             outputs: model.outputs().cloned().collect(),
             step: f64::from(model.ticks) * setup.step,
             end: None,
-            // Nothing acts before the first tick: its inputs begin as the FMU has them.
+            // Nothing acts before the first tick: inputs keep the FMU's start values.
             waits: false,
         };
         let slave = self.open(&request).map_err(|mistakes| refused(model, mistakes))?;
         FmuMechanics::new(slave, model, setup.step)
     }
 
-    /// The FMU, initialised and wired; its numbers are SI numbers. Where no code runs, all its outputs are zero.
+    /// The FMU, initialised and wired, with its numbers in SI units. If no code may run, all its outputs are zero.
     ///
     /// # Errors
-    /// Everything that does not fit the file, or why it cannot be started.
+    /// All mismatches with the FMU, or the reason why it cannot be started.
     pub fn open(&self, request: &FmuRequest<'_>) -> Result<Box<dyn Slave>, Vec<FmuMistake>> {
         open(request, self.code, self.host)
     }
@@ -79,7 +79,7 @@ impl Engine for Fmu {
     }
 }
 
-/// What is wrong with the data, or with what the FMU does.
+/// The mistakes in the data, or the FMU's failure, as an error.
 fn refused(model: &FmuModel, mistakes: Vec<FmuMistake>) -> MechanicsError {
     let path = model.file.path.clone();
     match mistakes.iter().find(|mistake| mistake.at == FmuEntry::Conduct) {

@@ -1,10 +1,10 @@
-//! What can go wrong before an FMU in a process of its own takes a step.
+//! Errors before an isolated FMU takes a step.
 use servobench_fmi::SlaveError;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why there is no FMU in a process of its own.
+/// Reason why an FMU cannot be isolated in a process.
 #[derive(Debug, Error)]
 pub enum IsolationError {
     /// The process cannot be started.
@@ -12,40 +12,40 @@ pub enum IsolationError {
     Start {
         /// The program.
         program: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// The system does not give what both processes share.
+    /// The system refused memory or another resource that both processes share.
     #[error("cannot {action}: {source}")]
     System {
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// What is to be loaded cannot be put into words.
+    /// The request to load cannot be serialised.
     #[error("cannot tell the process of the FMU what to load: {0}")]
     Setup(#[source] serde_json::Error),
     /// The FMU cannot be loaded or initialised.
     #[error("{0}")]
     Refused(String),
-    /// It crashed or hung in loading or initialisation.
+    /// The FMU crashed or hung while it was loaded or initialised.
     #[error(transparent)]
     Slave(#[from] SlaveError),
 }
 
-/// Why a process is no host.
+/// Reason why a process cannot be a host.
 #[derive(Debug, Error)]
 pub enum HostError {
-    /// It was not started by a simulation.
+    /// The process was not started by a simulation.
     #[error("standard input is not the memory of a simulation: this program is started by servobench itself")]
     NoPage,
-    /// The system does not give what it needs.
+    /// The system refused a resource.
     #[error("cannot {action}: {source}")]
     System {
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }

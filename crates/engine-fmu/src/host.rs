@@ -1,4 +1,4 @@
-//! The FMU's side: a process that loads one and does what it is asked for.
+//! The FMU's side: a process that loads one FMU and carries out commands.
 use crate::error::HostError;
 use crate::page::Page;
 use crate::protocol::{Command, Message, Status, log_to_line};
@@ -9,24 +9,24 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// How long a host that has nothing to do sleeps at a time. It ends with its keeper.
+/// Time that an idle host sleeps at once. It ends with its keeper.
 const GLANCE: Duration = Duration::from_secs(1);
 /// Bytes of a text that are passed on.
 const LONGEST: usize = 8_000;
 
-/// The memory of this process, for what speaks without being asked.
+/// The shared memory of this process, for messages sent without a command.
 static PAGE: OnceLock<&'static Page> = OnceLock::new();
-/// One speaks at a time.
+/// Lock for writing to the log.
 static SPEAKING: Mutex<()> = Mutex::new(());
 
-/// Notes which function of the FMU is under way where the parent finds it.
+/// Records the FMU's function in progress in shared memory.
 pub(crate) fn note_call(name: &'static str) {
     if let Some(page) = PAGE.get() {
         page.header().answered.note_call(name);
     }
 }
 
-/// Puts what the FMU says where the parent finds it, whatever happens next; `false` if this process is no host.
+/// Writes a log line to shared memory at once, whatever happens next; `false` if this process is not a host.
 pub(crate) fn say_at_once(line: &LogLine) -> bool {
     let _speaking = SPEAKING.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(page) = PAGE.get() else { return false };
@@ -38,15 +38,14 @@ pub(crate) fn say_at_once(line: &LogLine) -> bool {
     true
 }
 
-/// Makes this process the host of one FMU: `load` makes it from what [`Isolated::start`](crate::Isolated::start) was given.
-/// It ends here, with exit code 0, when it is no longer needed: then destructors of the FMU's library, which somebody else has
-/// written, do not run.
+/// Makes this process the host of one FMU: `load` makes the FMU from the setup given to [`Isolated::start`](crate::Isolated::start). The
+/// process exits here, with code 0, when it is no longer needed: destructors of the FMU's library, which is third-party code, do not run.
 ///
-/// To be called before anything else: it makes two processes of this one, see [`contain`]. Standard input is the memory that both share,
-/// and is empty for the FMU.
+/// Must be called before anything else: it splits this process in two, see [`contain`]. Standard input is the memory that both share, and
+/// is empty for the FMU.
 ///
 /// # Errors
-/// [`HostError`] if nobody has started this process as a host. Everything else is told to who has.
+/// [`HostError`] if this process was not started as a host. All other errors are reported to the simulation.
 pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>, String>) -> Result<(), HostError> {
     contain().map_err(|error| match error {
         ContainError::NotStarted => HostError::NoPage,
@@ -76,7 +75,7 @@ pub fn serve<S: DeserializeOwned>(load: impl FnOnce(S) -> Result<Box<dyn Slave>,
     leave_at_once()
 }
 
-/// The memory that is shared, in place of which standard input gets nothing.
+/// The shared memory; standard input is replaced by an empty one.
 fn page() -> Result<&'static Page, HostError> {
     let cannot = |action| move |source| HostError::System { action, source };
     let file = MemoryFile::of_standard_input().map_err(cannot("take standard input"))?;
@@ -87,12 +86,12 @@ fn page() -> Result<&'static Page, HostError> {
 struct Host {
     page: &'static Page,
     listener: Listener,
-    /// Number of the last order.
+    /// Number of the last command.
     number: u32,
 }
 
 impl Host {
-    /// The next order; `None` when there will be none.
+    /// The next command; `None` if no more will come.
     fn next(&mut self) -> Option<Command> {
         self.number = (self.number + 1) & (u32::MAX >> 1);
         let header = self.page.header();
@@ -106,11 +105,11 @@ impl Host {
     }
 
     fn say(&self, message: &Message) {
-        // What cannot be said arrives as no message, which is an error there.
+        // A message that cannot be serialised arrives empty, which is an error there.
         self.page.set_message(&serde_json::to_vec(message).unwrap_or_default());
     }
 
-    /// Does what it is asked for to the end.
+    /// Carries out commands until the end.
     fn serve(&mut self, mut slave: Box<dyn Slave>) {
         let mut work = Work {
             page: self.page,
@@ -137,13 +136,13 @@ impl Host {
     }
 }
 
-/// Room for what is exchanged.
+/// Buffers for the exchanged numbers.
 struct Work {
     page: &'static Page,
     inputs: Vec<[f64; 3]>,
     values: Vec<f64>,
     outputs: Vec<f64>,
-    /// Why the outputs after the last step could not be read, until somebody asks for them.
+    /// Error in reading the outputs after the last step, until they are read.
     failed: Option<SlaveError>,
 }
 
@@ -161,13 +160,13 @@ impl Work {
                 self.take_present();
                 slave.start(Some(&self.values))?;
             }
-            // Neither comes here.
+            // Handled before.
             (Command::Load | Command::End, _) => {}
         }
         Ok(Status::Done)
     }
 
-    /// Takes a step, and reads the outputs at once: whoever asks for them next finds them.
+    /// Takes a step and reads the outputs at once, ready for the next request.
     fn step(&mut self, slave: &mut dyn Slave) -> Result<Status, SlaveError> {
         let values = self.inputs.as_flattened_mut();
         values.iter_mut().zip(self.page.inputs()).for_each(|(value, word)| *value = number(word));
@@ -215,7 +214,7 @@ fn number(word: &AtomicU64) -> f64 {
     f64::from_bits(word.load(Relaxed))
 }
 
-/// What was kept until now.
+/// Passes on the log kept until now.
 fn pass_on(log: &[LogLine]) {
     for line in log {
         say_at_once(line);
@@ -231,7 +230,7 @@ fn without_flood(error: SlaveError) -> SlaveError {
     }
 }
 
-/// The start of a text that may be of any length.
+/// The start of a text of any length.
 fn clipped(text: String) -> String {
     if text.len() <= LONGEST {
         return text;

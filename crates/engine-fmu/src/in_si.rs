@@ -1,23 +1,23 @@
-//! A slave whose numbers are SI numbers.
+//! A slave with numbers in SI units.
 use crate::ports::Ports;
 use servobench_fmi::{
     Capabilities, DataType, DeclaredNumber, FmuMistake, LogLine, Severity, Slave, SlaveError, StepEnd,
 };
 
-/// A slave that was wired with ports, whose numbers are in SI units here and in its own there.
+/// A slave wired with ports: its numbers are in SI units outside and in the FMU's units inside.
 pub struct InSi {
     slave: Box<dyn Slave>,
     ports: Ports,
     /// Inputs of a step, and of a reading, in its units.
     moving: Vec<[f64; 3]>,
     present: Vec<f64>,
-    /// What is said of it before it speaks itself.
+    /// Lines to log before its own.
     notes: Vec<LogLine>,
     doubts: Vec<FmuMistake>,
 }
 
 impl InSi {
-    /// `slave`, whose inputs and outputs are those of `ports` in their order.
+    /// `slave`, whose inputs and outputs are those of `ports` in the same order.
     #[must_use]
     pub fn new(slave: Box<dyn Slave>, ports: Ports) -> Self {
         let inputs = ports.inputs.len();
@@ -31,13 +31,13 @@ impl InSi {
         }
     }
 
-    /// The same with warnings at the beginning of its log.
+    /// The same, with warnings at the beginning of its log.
     #[must_use]
     pub fn with_warnings(self, warnings: &[String]) -> Self {
         Self { notes: warnings.iter().cloned().map(warning).collect(), ..self }
     }
 
-    /// The same with what is doubtful in its request, which its log has, too.
+    /// The same, with doubts about its request, which are logged too.
     #[must_use]
     pub fn with_doubts(mut self, doubts: Vec<FmuMistake>) -> Self {
         self.notes.extend(doubts.iter().map(|doubt| warning(doubt.to_string())));

@@ -1,4 +1,4 @@
-//! The simulation's side of an FMU in a process of its own.
+//! The simulation's side of an isolated FMU.
 use crate::error::IsolationError;
 use crate::page::{Answered, Asked, Page};
 use crate::protocol::{Command, Message, Status, log_of_lines};
@@ -10,14 +10,14 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
-/// How often the process is looked after while it works. Its end is told at once; this is for one that wrote over the
-/// memory that it would be told through.
+/// Interval of checks on the process while it works. Its end is normally reported at once; the checks are for one that has overwritten
+/// the memory used for that.
 const GLANCE: Duration = Duration::from_millis(50);
-/// How long a process may take for its end after it has freed its FMU.
+/// Time for the process to end after it has freed its FMU.
 const LEAVE: Duration = Duration::from_secs(1);
 const OVERWRITTEN: &str = "it wrote over the memory through which it is spoken to";
 
-/// How many numbers go in and out.
+/// Number of exchanged values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wires {
     /// Inputs.
@@ -26,10 +26,10 @@ pub struct Wires {
     pub outputs: usize,
 }
 
-/// An FMU in a process of its own: whatever it does costs its own run only. It is ended when this is dropped.
+/// An FMU isolated in a process: a failure costs only its own run. Dropping this ends the process.
 ///
-/// What it has written on standard output and standard error is part of its log, line by line, with the time of the last step
-/// before it was looked for: it says neither when it was written nor how much it matters.
+/// Standard output and standard error of the process are part of its log, line by line, stamped with the time of the last step before
+/// they were read. The time of writing and the severity are unknown.
 #[derive(Debug)]
 pub struct Isolated {
     process: Contained,
@@ -37,35 +37,35 @@ pub struct Isolated {
     capabilities: Capabilities,
     call_timeout: Duration,
     listener: Listener,
-    /// Number of the last order, from 1.
+    /// Number of the last command, from 1.
     number: u32,
-    /// Time of what was asked for last (s).
+    /// Time of the last request (s).
     time: f64,
-    /// Where the last step has come to (s).
+    /// Time that the last step reached (s).
     reached: f64,
-    /// The outputs are there since the last step.
+    /// True if the outputs have been read since the last step.
     fresh: bool,
-    /// Why it cannot go on.
+    /// Error after which it cannot continue.
     failed: Option<SlaveError>,
     is_initialising: bool,
     has_ended: bool,
-    /// What went wrong at its end, until somebody takes it.
+    /// Problems at its end, until they are logged.
     warnings: Vec<String>,
     known: Option<Known>,
 }
 
-/// What the simulation knows of it without asking.
+/// Facts known without the process.
 #[derive(Debug)]
 pub(crate) struct Known {
     pub(crate) feedthrough: Feedthrough,
-    /// It waits in its initialisation.
+    /// True if it waits in its initialisation.
     pub(crate) waits: bool,
-    /// What it was unpacked to, which goes after it.
+    /// Its unpacked files, which must outlive it.
     pub(crate) _unpacked: Unpacked,
 }
 
 impl Isolated {
-    /// Starts the process, which loads and initialises what `setup` says; see [`serve`](crate::serve).
+    /// Starts the process, which loads and initialises the FMU of `setup`; see [`serve`](crate::serve).
     ///
     /// # Errors
     /// [`IsolationError`]
@@ -78,7 +78,7 @@ impl Isolated {
         Self::start_known(command, setup, wires, bounds, None)
     }
 
-    /// The same for an FMU of which something is known.
+    /// The same for an FMU with known facts.
     pub(crate) fn start_known<S: Serialize>(
         command: &HostCommand,
         setup: &S,
@@ -93,7 +93,7 @@ impl Isolated {
         let page = Arc::new(page);
         let for_its_end = Arc::clone(&page);
         let limits = Limits { memory: bounds.memory, is_foreign: true };
-        // Who waits for an answer is woken.
+        // Wakes whoever waits for an answer.
         let process =
             Contained::start(command, file.into(), None, limits, move || for_its_end.header().answer.give_up())
                 .map_err(|source| IsolationError::Start { program: command.program.clone(), source })?;
@@ -139,19 +139,19 @@ impl Isolated {
         &self.page().header().answered
     }
 
-    /// Gives an order and waits for the answer.
+    /// Sends a command and waits for the answer.
     fn ask(&mut self, command: Command) -> Result<Status, SlaveError> {
         if let Some(error) = &self.failed {
             return Err(error.clone());
         }
         self.fresh = false;
-        // The highest bit is for a doorbell that has given up.
+        // The highest bit marks a doorbell that has given up.
         self.number = (self.number + 1) & (u32::MAX >> 1);
         let header = self.page.header();
         header.asked.command.store(command as u32, Relaxed);
         header.order.ring(self.number);
         let (process, call_timeout, mut watch) = (&self.process, self.call_timeout, None);
-        // The time in which the simulation itself does not run is not the FMU's.
+        // Time in which the simulation itself is suspended does not count.
         let heard = self.listener.wait(&header.answer, self.number, GLANCE, || {
             process.ending().is_none() && watch.get_or_insert_with(Stopwatch::start).elapsed() < call_timeout
         });
@@ -162,11 +162,11 @@ impl Isolated {
         status.ok_or_else(|| self.overwritten())
     }
 
-    /// It does not answer: why.
+    /// The reason why it does not answer.
     fn lost(&mut self, command: Command) -> SlaveError {
         let ended_by_itself = self.process.ending().is_some();
         let (time, call_timeout) = (self.time, self.call_timeout.as_secs_f64());
-        // What a step is by itself need not be said.
+        // The function of an ordinary step need not be named.
         let call = self.answered().call();
         let call: Cow<'static, str> =
             if command == Command::Step && call.ends_with("DoStep") { "".into() } else { call.into() };
@@ -189,13 +189,13 @@ impl Isolated {
         self.fail(error)
     }
 
-    /// The answer is none.
+    /// The answer is invalid.
     fn overwritten(&mut self) -> SlaveError {
         self.process.end();
         self.fail(SlaveError::Crashed { call: "".into(), time: self.time, how: OVERWRITTEN.into() })
     }
 
-    /// Notes that it cannot go on.
+    /// Records that it cannot continue.
     fn fail(&mut self, error: SlaveError) -> SlaveError {
         self.failed = Some(error.clone());
         error
@@ -205,7 +205,7 @@ impl Isolated {
         serde_json::from_slice(&self.page().message()).map_err(|_| self.overwritten())
     }
 
-    /// An answer that is none to a step.
+    /// The error of an answer other than success.
     fn failure(&mut self, status: Status) -> SlaveError {
         let failure = match (status, self.message()) {
             (Status::Message, Ok(Message::Failed(failure))) => failure,
@@ -213,13 +213,13 @@ impl Isolated {
             _ => return self.overwritten(),
         };
         match failure {
-            // It is where it was before, and can go on.
+            // It is where it was before, and can continue.
             SlaveError::Discarded { .. } => failure,
             _ => self.fail(failure),
         }
     }
 
-    /// Asks for something that is done or not.
+    /// Sends a command that either succeeds or fails.
     fn order(&mut self, command: Command) -> Result<(), SlaveError> {
         match self.ask(command)? {
             Status::Done => Ok(()),
@@ -257,9 +257,9 @@ impl Slave for Isolated {
     }
 
     fn end(&mut self) {
-        // What cannot go on is ended without a word: it has had the last one.
+        // One that cannot continue is ended silently: its error has been reported.
         if self.failed.is_none() && !std::mem::replace(&mut self.has_ended, true) {
-            // A sum of times, said without its roundings.
+            // A sum of times, reported without its rounding.
             self.time = (self.reached * 1e12).round() / 1e12;
             let late = self.leave().err();
             self.warnings.extend(late.map(|error| error.to_string()));
@@ -277,7 +277,7 @@ impl Slave for Isolated {
         let status = self.ask(Command::Step)?;
         self.fresh = self.answered().fresh.load(Relaxed) != 0;
         let reached = f64::from_bits(self.answered().reached.load(Relaxed));
-        // What was said when it failed is not where it is.
+        // A time from a failed step is not its present one.
         if status != Status::Message && reached.is_finite() {
             self.reached = reached;
         }
@@ -343,27 +343,27 @@ impl Slave for Isolated {
 }
 
 impl Isolated {
-    /// Gives the inputs of the present.
+    /// Writes the present inputs.
     fn write_present(&self, inputs: &[f64]) {
         let words = self.page().inputs();
         assert_eq!(3 * inputs.len(), words.len(), "inputs are those that the FMU was wired with");
         words.iter().step_by(3).zip(inputs).for_each(|(word, value)| word.store(value.to_bits(), Relaxed));
     }
 
-    /// Has the FMU freed and the process ended.
+    /// Frees the FMU and ends the process.
     fn leave(&mut self) -> Result<(), SlaveError> {
         if let Err(error) = self.order(Command::End) {
-            // It answers and ends: whoever is slow to listen finds it gone.
+            // It answers and ends: a slow listener finds it gone.
             return if self.has_left() { Ok(()) } else { Err(error) };
         }
-        // What has not ended by then is ended later.
+        // If it is still running then, it is killed later.
         self.process.wait_for_end(LEAVE.min(self.call_timeout));
         Ok(())
     }
 }
 
 impl Isolated {
-    /// Whether it has ended as it was asked to, after it had answered.
+    /// True if it has ended as requested, after it had answered.
     fn has_left(&self) -> bool {
         let header = self.page().header();
         header.answer.has_rung(self.number)
@@ -374,7 +374,7 @@ impl Isolated {
 
 impl Drop for Isolated {
     fn drop(&mut self) {
-        // What cannot go on is ended; so is what does not end as it was asked to: its results are all there.
+        // A process that cannot continue or does not end on request is killed: its results are complete.
         if !self.has_ended && self.process.ending().is_none() {
             self.leave().ok();
         }

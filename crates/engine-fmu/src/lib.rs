@@ -1,27 +1,28 @@
-//! FMUs in a process of their own, and FMUs as the mechanics of an axis ([`FmuMechanics`]).
+//! FMUs isolated in separate processes, and FMUs as the mechanics of an axis ([`FmuMechanics`]).
 //!
-//! [`load`] starts one at its place; [`Fmu`] is the engine for an axis, and opens FMUs beside one. The program that hosts FMUs calls [`host`].
+//! [`load`] starts an FMU at its place; [`Fmu`] is the engine for an axis, and opens FMUs beside an axis. The program that hosts FMUs
+//! calls [`host`].
 //!
-//! An FMU is somebody else's native code: it may crash, hang, ask for memory without end or print a gigabyte. In a process of
-//! its own that costs its run only, and is reported as what it is.
+//! An FMU is third-party native code: it may crash, hang, allocate memory without end or print a gigabyte. In a separate process
+//! that costs only its own run, and is reported with its cause.
 //!
 //! ```text
-//! simulation: Isolated ── memory that both see, a doorbell for each direction ── serve: the FMU      (same program, another process)
-//!             Contained    ── standard output and error, its end ─────────────┘
+//! simulation: Isolated ── shared memory, a doorbell for each direction ── serve: the FMU        (same program, another process)
+//!             Contained    ── standard output and error, its end ─────────┘
 //! ```
-//! | what the FMU does | what is said |
+//! | action of the FMU | report |
 //! |---|---|
-//! | crashes, aborts, calls `exit` | signal or exit code, and the last that it wrote on standard error |
-//! | does not come back | which call, after how long; it is ended |
-//! | asks for memory without end, private or shared | how much it may have |
-//! | prints without end | how much was dropped; the end is kept |
-//! | writes over the memory that is shared | that it did; numbers are only numbers there and lengths are cut |
-//! | leaves processes behind | which; they are ended |
+//! | crashes, aborts, calls `exit` | signal or exit code, and its last output on standard error |
+//! | does not return | the call and the time limit; it is killed |
+//! | allocates memory without end, private or shared | its limit |
+//! | prints without end | number of bytes dropped; the end is kept |
+//! | overwrites the shared memory | the fact; numbers there are only numbers and lengths are limited |
+//! | leaves processes behind | their names; they are killed |
 //!
-//! It ends with the simulation, however that ends, and what it has started ends with it; what contains it, and what does not, is the
-//! crate `servobench-isolation`. Nothing is left in the file system: the memory is an anonymous file.
+//! It ends with the simulation, however that ends, and the processes that it has started end with it; the crate `servobench-isolation`
+//! documents what the isolation contains and what it does not. Nothing is left in the file system: the memory is an anonymous file.
 //!
-//! A process of its own needs Linux. Elsewhere an FMU runs in this process ([`Place::Here`]), or not at all.
+//! Isolation needs Linux. Elsewhere an FMU runs in this process ([`Place::Here`]), or not at all.
 
 mod described;
 mod engine;
@@ -47,5 +48,5 @@ pub use isolated::{Isolated, Wires};
 pub use load::{LoadError, Place, host, load};
 pub use mechanics::FmuMechanics;
 pub use ports::Ports;
-/// The program that an FMU runs in: one that calls [`serve`], most simply the same one again.
+/// Program that runs an FMU: one that calls [`serve`], most simply the same one again.
 pub use servobench_isolation::Program as HostCommand;

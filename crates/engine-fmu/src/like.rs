@@ -1,9 +1,9 @@
-//! Names that one could have meant.
+//! Similar names, for messages.
 
-/// Names that are shown.
+/// Greatest number of names.
 const MOST: usize = 5;
 
-/// Of `all` those that contain `name` or are contained in it, whatever the case; the first ones if there are none.
+/// Names of `all` that contain `name` or are contained in it, ignoring case; the first ones if there are none.
 pub(crate) fn like<'a>(name: &str, all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_lowercase();
     let is_like = |other: &str| other.contains(&name) || name.contains(other);

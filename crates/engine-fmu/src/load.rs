@@ -1,4 +1,4 @@
-//! An FMU, here or in a process of its own.
+//! Loading an FMU, into this process or an isolated one.
 use crate::error::{HostError, IsolationError};
 use crate::host::{note_call, say_at_once, serve};
 use crate::isolated::{Isolated, Known, Wires};
@@ -7,22 +7,22 @@ use servobench_fmi::{Bounds, Feedthrough, FmuError, Loaded, Setup, Slave, Unpack
 use servobench_isolation::Program as HostCommand;
 use thiserror::Error;
 
-/// Where an FMU runs.
+/// Place where an FMU runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
-    /// In this process: it is trusted.
+    /// In this process, if it is trusted.
     Here,
-    /// In a process of its own.
+    /// In a separate process.
     Process {
         /// The program, which calls [`host`].
         command: HostCommand,
-        /// What it may take.
+        /// Its limits.
         bounds: Bounds,
     },
 }
 
 impl LoadError {
-    /// Whether the FMU did not get as far as to be refused: it crashed, hung or found no process.
+    /// True if the failure is one of the run, not a refusal: it crashed, hung or the process could not start.
     #[must_use]
     pub const fn is_of_the_run(&self) -> bool {
         match self {
@@ -32,18 +32,18 @@ impl LoadError {
     }
 }
 
-/// Why an FMU cannot be used.
+/// Reason why an FMU cannot be used.
 #[derive(Debug, Error)]
 pub enum LoadError {
     /// In this process.
     #[error(transparent)]
     Fmu(#[from] FmuError),
-    /// In a process of its own.
+    /// In a separate process.
     #[error(transparent)]
     Isolation(#[from] IsolationError),
 }
 
-/// Loads and initialises an FMU at its place. What it was unpacked to stays as long as it lives.
+/// Loads and initialises an FMU at its place. Its unpacked files stay as long as it lives.
 ///
 /// # Errors
 /// [`LoadError`]
@@ -51,7 +51,7 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
     match place {
         Place::Here => Ok(Box::new(Loaded::new(fmu, setup)?)),
         Place::Process { command, bounds } => {
-            // What is wrong with it is better said here, before anything is started.
+            // Mistakes are reported better from here, before anything is started.
             setup.check(fmu)?;
             let wires = Wires { inputs: setup.inputs.len(), outputs: setup.outputs.len() };
             let feedthrough = Feedthrough::new(fmu.description(), setup);
@@ -61,10 +61,10 @@ pub fn load(fmu: &Unpacked, setup: &Setup, place: &Place) -> Result<Box<dyn Slav
     }
 }
 
-/// Makes this process the host of one FMU: what the program of [`Place::Process`] does. See [`serve`].
+/// Makes this process the host of one FMU, for the program of [`Place::Process`]. See [`serve`].
 ///
 /// # Errors
-/// [`HostError`] if nobody has started this process as a host.
+/// [`HostError`] if this process was not started as a host.
 pub fn host() -> Result<(), HostError> {
     send_log_lines_to(say_at_once);
     note_calls(note_call);

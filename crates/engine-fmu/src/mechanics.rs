@@ -5,8 +5,8 @@
 //! FMU    exchange, state ─────────────────────────── step of n ticks with the mean of the efforts, exchange
 //! bodies as exchanged         as they would go on    as exchanged
 //! ```
-//! With n = 1 nothing is extrapolated, and the effort of a tick is held over it: what an engine of our own gets. With n > 1 the
-//! impulse of the efforts is kept, and the axis sees of the FMU what was so up to n ticks ago: a delay of n/2 ticks in the mean.
+//! With n = 1 nothing is extrapolated, and the effort of a tick is held over it, as for a built-in engine. With n > 1 the impulse of the
+//! efforts is kept, and the axis sees the FMU as it was up to n ticks ago: a mean delay of n/2 ticks.
 use crate::motion::Motion;
 use servobench_base::Stateful;
 use servobench_base::state::{Reader, Writer};
@@ -18,40 +18,40 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The engine.
 pub(crate) const NAME: EngineName = EngineName::Fmu;
-/// Part of a step that is left out at its end: the rounding of a time in seconds.
+/// Part of a step that is omitted at its end: the rounding of a time in seconds.
 const ROUNDING: f64 = 1e-9;
-/// Times that an FMU may return early one after the other without having gone on.
+/// Greatest number of consecutive early returns without progress.
 const MOST_STALLS: u32 = 100;
-/// Times that an FMU may return early in one step.
+/// Greatest number of early returns in one step.
 const MOST_PARTS: u32 = 10_000;
-/// Lines of its log in the message of what went wrong: the last ones.
+/// Last lines of its log that an error message includes.
 const LINES: usize = 5;
 
-/// The mechanics that an FMU is.
+/// An FMU as the mechanics of an axis.
 pub struct FmuMechanics {
-    /// Counts in SI units.
+    /// In SI units.
     slave: Box<dyn Slave>,
-    /// What it said and nobody has taken yet.
+    /// Log lines not yet taken.
     said: Vec<LogLine>,
     model: FmuModel,
     /// Length of a base tick (s).
     tick: f64,
     state: State,
-    /// Number of the state that the slave has saved, if it has: in this process no other one has it.
+    /// Number of the state that the slave has saved, if any; unique in this process.
     saved: Option<u64>,
     inputs: Vec<[f64; 3]>,
     outputs: Vec<f64>,
 }
 
-/// States that FMUs of this process have saved.
+/// Number of states saved by FMUs of this process.
 static SAVED: AtomicU64 = AtomicU64::new(0);
 
-/// The state at a tick, the FMU itself apart.
+/// The state at a tick, without that of the FMU.
 #[derive(Debug, Clone, Default, Stateful)]
 struct State {
     /// Ticks since the last exchange.
     since: u32,
-    /// Exchanges up to now.
+    /// Exchanges so far.
     exchanges: u64,
     /// Sums of the inputs since the last exchange.
     #[state(fixed)]
@@ -60,7 +60,7 @@ struct State {
     motions: Vec<Motion>,
     #[state(fixed)]
     bodies: Vec<BodyState>,
-    /// When it wanted the simulation to end (s): at the end of the last step, so that only another one is too much.
+    /// Time when it wanted the simulation to end (s): at the end of the last step, so that only a further step is an error.
     ended: Option<f64>,
 }
 
@@ -96,12 +96,12 @@ impl FmuMechanics {
         Ok(mechanics)
     }
 
-    /// What went wrong, with what the FMU said of it.
+    /// The error, with the FMU's log messages on it.
     fn wrong(&mut self, error: &SlaveError) -> MechanicsError {
         let mut message = error.to_string();
         self.said.extend(self.slave.take_log());
         let warnings = self.said.iter().filter(|line| line.severity > Severity::Info).map(|line| &line.message);
-        // The last one is a part of some errors.
+        // Some errors contain the last message already.
         let said: Vec<_> = warnings.filter(|said| !message.contains(said.as_str())).map(String::as_str).collect();
         if !said.is_empty() {
             message = format!("{message}; it said: {}", said[said.len().saturating_sub(LINES)..].join(" / "));
@@ -109,7 +109,7 @@ impl FmuMechanics {
         native(message)
     }
 
-    /// Adds what acts in this tick.
+    /// Adds the efforts of this tick to the sums.
     fn add(&mut self, effort: f64, input: &Input) -> Result<(), MechanicsError> {
         let (mut effort, single) = (effort, self.state.bodies.len() == 1);
         if self.model.motor_disturbance.is_none() {
@@ -175,7 +175,7 @@ impl FmuMechanics {
         Err(native(format!("the FMU came back early {MOST_PARTS} times in a step to {end} s")))
     }
 
-    /// Takes the outputs of the FMU.
+    /// Reads the outputs of the FMU.
     fn read(&mut self) -> Result<(), MechanicsError> {
         self.slave.read(None, &mut self.outputs).map_err(|error| self.wrong(&error))?;
         for (port, value) in self.model.outputs().zip(&self.outputs) {
@@ -192,7 +192,7 @@ impl FmuMechanics {
         Ok(())
     }
 
-    /// The bodies at the present tick.
+    /// Extrapolates the bodies to the present tick.
     fn go_on(&mut self) {
         let t = f64::from(self.state.since) * self.tick;
         self.state.bodies.iter_mut().zip(&self.state.motions).for_each(|(body, motion)| *body = motion.after(t));
@@ -223,7 +223,7 @@ impl Mechanics for FmuMechanics {
         self.slave.capabilities().saves_state
     }
 
-    /// The slave keeps its state itself, the last one only: what is written has its number.
+    /// The slave keeps only its last saved state; the data written here hold its number.
     fn save(&mut self, to: &mut dyn Writer) -> Result<(), MechanicsError> {
         self.saved = None;
         self.slave.save().map_err(|error| self.wrong(&error))?;
@@ -244,12 +244,12 @@ impl Mechanics for FmuMechanics {
 
     fn end(&mut self) {
         self.slave.end();
-        // What it says now is heard whatever the tick.
+        // Its final messages are taken whatever the tick.
         let lines = self.slave.take_log();
         self.said.extend(lines);
     }
 
-    /// It speaks when it is asked for something: in the ticks between two exchanges nobody looks.
+    /// The FMU logs only when it is called: between two exchanges there is nothing to take.
     fn take_log(&mut self) -> Vec<LogMessage> {
         let mut lines = std::mem::take(&mut self.said);
         if self.state.since == 0 {

@@ -1,13 +1,13 @@
-//! A body between two exchanges with its FMU: it goes on with its velocity.
+//! A body between two exchanges with its FMU: it continues at constant velocity.
 //!
 //! ```text
 //! x(t) = x0 + v·t       v(t) = v       t after the last exchange
 //! ```
-//! v is the velocity that was exchanged, or (x0 − x1)/H of the last two positions, H apart; 0 until there are two.
+//! v is the exchanged velocity, or (x0 − x1)/H from the last two positions, H apart; 0 until there are two.
 use servobench_base::Stateful;
 use servobench_plant::BodyState;
 
-/// What is known of a body's motion.
+/// Motion of a body as exchanged.
 #[derive(Debug, Clone, Stateful)]
 pub(crate) struct Motion {
     /// Time between two exchanges (s).
@@ -23,15 +23,15 @@ impl Motion {
         Self { period, position: None, velocity: 0.0 }
     }
 
-    /// Takes what was exchanged.
+    /// Stores the exchanged position and velocity.
     pub(crate) fn exchange(&mut self, position: f64, velocity: Option<f64>) {
         let by_positions = || self.position.map_or(0.0, |before| (position - before) / self.period);
-        // A negative zero is zero, so that a sum with it is.
+        // A negative zero becomes zero.
         self.velocity = velocity.unwrap_or_else(by_positions) + 0.0;
         self.position = Some(position);
     }
 
-    /// Where it is `t` (s) after the last exchange.
+    /// State `t` (s) after the last exchange.
     pub(crate) fn after(&self, t: f64) -> BodyState {
         BodyState { position: self.position.unwrap_or_default() + t * self.velocity, velocity: self.velocity }
     }
@@ -54,7 +54,7 @@ mod tests {
         })
     }
 
-    /// Oracle: Taylor's theorem. What is left out of the motion is of order p in H, and half the step makes 2^p less of it.
+    /// Oracle: Taylor's theorem. The neglected part of the motion is of order p in H, and half the step divides it by 2^p.
     /// Tolerance: the next order's share, a few H of a hundredth.
     #[test]
     fn errors_fall_with_the_order_that_is_promised() {
@@ -66,7 +66,7 @@ mod tests {
         }
     }
 
-    /// What was exchanged is passed on bit for bit.
+    /// Exchanged values are passed on bit for bit.
     #[test]
     fn at_an_exchange_the_state_is_what_was_exchanged() {
         let mut motion = Motion::new(0.1);
@@ -76,7 +76,7 @@ mod tests {
         }
     }
 
-    /// Oracle: what is known of a single point is that it is there.
+    /// Oracle: a single point determines only a position.
     #[test]
     fn before_there_are_two_points_it_stands_still() {
         let mut motion = Motion::new(0.5);

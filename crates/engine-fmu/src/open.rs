@@ -1,4 +1,4 @@
-//! From what is said of an FMU to one that runs: everything that does not fit is found first.
+//! From the request for an FMU to a running one: all mismatches are found first.
 use crate::described::Described;
 use crate::engine::Code;
 use crate::in_si::InSi;
@@ -11,8 +11,8 @@ use servobench_fmi::{
 use servobench_isolation::Program as HostCommand;
 use std::io;
 
-/// The FMU, initialised and wired; its numbers are SI numbers. `host` is the program that runs one in a process of its own. Where
-/// `code` lets none of its code run, it is only described.
+/// The FMU, initialised and wired, with its numbers in SI units. `host` is the program that runs isolated FMUs. If `code` lets none of
+/// its code run, it is only described.
 pub(crate) fn open(
     request: &FmuRequest<'_>,
     code: Code,
@@ -68,11 +68,11 @@ pub(crate) fn open(
     Ok(Box::new(InSi::new(slave, ports).with_warnings(fmu.remarks()).with_doubts(doubts)))
 }
 
-/// Part of an internal step that a step may be longer or shorter than a whole number of them: times are rounded.
+/// Relative deviation of a step from a whole number of internal steps that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// FMI 3.0.2, §4.3.1, as a note: steps should be whole numbers of the internal steps of the FMU, if these are of one length. Between them
-/// it may be somewhere else than it is asked to be.
+/// FMI 3.0.2, §4.3.1, as a note: steps should be whole numbers of the FMU's internal steps, if these have a fixed length. In between, its
+/// time may differ from the requested one.
 fn step_doubt(step: f64, it: &ModelDescription) -> Option<FmuMistake> {
     let internal =
         it.co_simulation.fixed_internal_step_size.filter(|internal| internal.is_finite() && *internal > 0.0)?;
@@ -96,7 +96,7 @@ fn event_mode_mistake(file: &FmuFile, it: &ModelDescription) -> Option<FmuMistak
     })
 }
 
-/// In this process it can do whatever the program can: that is not the scenario's to say.
+/// In this process it can do whatever the program can: a scenario may not decide that.
 fn isolation_mistake(file: &FmuFile, code: Code) -> Option<FmuMistake> {
     (file.isolation == Isolation::None && code == Code::Isolated).then(|| FmuMistake {
         at: FmuEntry::Isolation,
@@ -105,7 +105,7 @@ fn isolation_mistake(file: &FmuFile, code: Code) -> Option<FmuMistake> {
     })
 }
 
-/// Everything of `setup` that does not fit; start values that do not are taken out.
+/// All mismatches in `setup`; start values that do not fit are removed.
 fn misfits(setup: &mut Setup, fmu: &Unpacked) -> Vec<FmuMistake> {
     let mut mistakes = Vec::new();
     while let Err(error) = setup.check(fmu) {
@@ -137,7 +137,7 @@ fn place(isolation: Isolation, host: fn() -> io::Result<HostCommand>) -> io::Res
     })
 }
 
-/// A start value in the unit of its variable; of a list its elements, in row-major order.
+/// A start value in the unit of its variable; a list as its elements, in row-major order.
 fn value(name: &str, start: &Value, it: &ModelDescription) -> Result<Value, FmuMistake> {
     let mut elements = Vec::new();
     flatten(start, &mut elements);
@@ -162,7 +162,7 @@ fn flatten<'a>(value: &'a Value, elements: &mut Vec<&'a Value>) {
     }
 }
 
-/// A number with something behind it that is no unit, for a variable that is a number.
+/// A number followed by an unknown unit, for a numeric variable.
 fn unknown_unit(name: &str, text: &str, it: &ModelDescription) -> Option<FmuMistake> {
     let variable =
         it.variable(name).filter(|variable| !is_named(variable) && variable.data_type != DataType::Boolean)?;
@@ -206,7 +206,7 @@ fn quantity(name: &str, text: &str, si: f64, exponents: [i32; 4], it: &ModelDesc
     }
 }
 
-/// Whether a value of it is a text.
+/// True if its values are texts.
 fn is_named(variable: &Variable) -> bool {
     matches!(variable.data_type, DataType::String | DataType::Enumeration)
 }

@@ -1,14 +1,14 @@
-//! What the process of an FMU is told to load.
+//! The request to load that the process of an FMU receives.
 use serde::{Deserialize, Serialize};
 use servobench_fmi::{FmuError, Loaded, Setup, Slave, Unpacked};
 use std::path::PathBuf;
 
-/// A setup, and where the FMU is.
+/// A setup and the location of the FMU.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     /// The file, for messages.
     path: PathBuf,
-    /// What was in it.
+    /// Its unpacked content.
     folder: PathBuf,
     setup: Setup,
 }

@@ -1,16 +1,16 @@
 #![expect(unsafe_code, reason = "memory that is shared with another process is seen as atomics")]
-//! The memory that both processes see.
+//! The memory that both processes share.
 //!
 //! ```text
-//! header       the doorbells, the order and the answer, who wrote what: see `Header`
+//! header       the doorbells, the command and the answer, each with its writer: see `Header`
 //! inputs       of each: value, first and second derivative (f64)
 //! outputs      (f64)
 //! message      bytes of an answer that is more than numbers
-//! log          lines of JSON that the FMU said and nobody has taken yet
-//! setup        bytes of what the host is to load
+//! log          lines of JSON that have not been taken yet
+//! setup        bytes of the host's request to load
 //! ```
-//! Everything in it is an atomic: whatever the FMU does to it, it is only wrong numbers. Lengths are the parent's own; those
-//! that come from the other side are cut to what there is.
+//! All of it is atomic: whatever the FMU does to it can only produce wrong numbers. Lengths are kept by the parent; those that come from
+//! the other side are limited to what there is.
 use servobench_isolation::{Doorbell, MemoryFile, SharedMemory};
 use std::sync::atomic::{
     AtomicU8, AtomicU32, AtomicU64,
@@ -18,27 +18,27 @@ use std::sync::atomic::{
 };
 use std::{io, slice};
 
-/// Says that a page is one, of this layout.
+/// Marks a page of this layout.
 const MAGIC: u64 = u64::from_le_bytes(*b"servofm2");
 /// Bytes of an answer that is more than numbers.
 const MESSAGE: usize = 1 << 16;
-/// Bytes of log between two visits.
+/// Bytes of log between two readings.
 const LOG: usize = 1 << 18;
 
-/// What comes before the values; a cache line for each side and purpose.
+/// The part before the values; a cache line for each side and purpose.
 #[repr(C, align(64))]
 #[derive(Debug)]
 pub(crate) struct Header {
-    /// Rings for an order, with its number.
+    /// Rings for a command, with its number.
     pub(crate) order: Doorbell,
-    /// Rings for an answer, with the number of the order.
+    /// Rings for an answer, with the number of the command.
     pub(crate) answer: Doorbell,
     told: Told,
     pub(crate) asked: Asked,
     pub(crate) answered: Answered,
 }
 
-/// What does not change.
+/// Constant part.
 #[repr(C, align(64))]
 #[derive(Debug)]
 pub(crate) struct Told {
@@ -48,43 +48,43 @@ pub(crate) struct Told {
     setup: AtomicU32,
 }
 
-/// What the parent asks for.
+/// The parent's command.
 #[repr(C, align(64))]
 #[derive(Debug)]
 pub(crate) struct Asked {
     /// One of [`Command`](crate::protocol::Command).
     pub(crate) command: AtomicU32,
-    /// From when a step goes (s, bits of an f64).
+    /// Start of a step (s, bits of an f64).
     pub(crate) time: AtomicU64,
-    /// How far (s, bits of an f64).
+    /// Length of a step (s, bits of an f64).
     pub(crate) length: AtomicU64,
 }
 
-/// What the host answers.
+/// The host's answer.
 #[repr(C, align(64))]
 #[derive(Debug)]
 pub(crate) struct Answered {
     /// One of [`Status`](crate::protocol::Status).
     pub(crate) status: AtomicU32,
-    /// Not zero: the outputs are those after the step.
+    /// Not zero if the outputs are those after the step.
     pub(crate) fresh: AtomicU32,
     /// Bytes of the message.
     message: AtomicU32,
     /// Bytes of log.
     log: AtomicU32,
-    /// Lines of the log that found no room.
+    /// Lines of the log dropped for lack of room.
     pub(crate) log_dropped: AtomicU32,
-    /// How far a step has come (s, bits of an f64).
+    /// Time that a step reached (s, bits of an f64).
     pub(crate) reached: AtomicU64,
-    /// Name of the function that is under way, zeros behind it.
+    /// Name of the function in progress, padded with zeros.
     call: [AtomicU64; CALL / 8],
 }
 
-/// Bytes of the name of a function; the longest of the standard has 27.
+/// Bytes of a function's name; the longest of the standard has 27.
 const CALL: usize = 32;
 
 impl Answered {
-    /// Notes which function is called; an empty name when it has come back.
+    /// Records the function that is called; an empty name on return.
     pub(crate) fn note_call(&self, name: &str) {
         let mut bytes = [0; CALL];
         let length = name.len().min(CALL);
@@ -96,7 +96,7 @@ impl Answered {
         }
     }
 
-    /// The function that is under way; empty if there is none, and if this is no name.
+    /// The function in progress; empty if there is none or the bytes are not a name.
     pub(crate) fn call(&self) -> String {
         let words = self.call.iter().map(|word| word.load(Relaxed).to_le_bytes());
         let bytes: Vec<u8> = words.flatten().take_while(|byte| *byte != 0).collect();
@@ -107,7 +107,7 @@ impl Answered {
     }
 }
 
-/// Where things are.
+/// Sizes of the parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Layout {
     inputs: usize,
@@ -116,7 +116,7 @@ struct Layout {
 }
 
 impl Layout {
-    /// Numbers: three for each input, one for each output.
+    /// Number of values: three for each input, one for each output.
     fn numbers(self) -> usize {
         3 * self.inputs + self.outputs
     }
@@ -133,13 +133,13 @@ impl Layout {
 /// Shared memory of this layout.
 #[derive(Debug)]
 pub(crate) struct Page {
-    /// As long as the layout says.
+    /// As long as the layout.
     memory: SharedMemory,
     layout: Layout,
 }
 
 impl Page {
-    /// A page of the parent, and the file that the host finds it in.
+    /// A page of the parent, and its file for the host.
     pub(crate) fn new(inputs: usize, outputs: usize, setup: &[u8]) -> io::Result<(Self, MemoryFile)> {
         let layout = Layout { inputs, outputs, setup: setup.len() };
         let as_u32 = |count: usize| u32::try_from(count).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge));
@@ -155,9 +155,9 @@ impl Page {
         Ok((page, file))
     }
 
-    /// The page in a file that the parent has made; `None` if it is another kind of file.
+    /// The page in a file made by the parent; `None` for another kind of file.
     ///
-    /// Processes that the FMU forks do not have it: only one answers.
+    /// Processes forked by the FMU do not inherit it: only one answers.
     pub(crate) fn adopt(file: &MemoryFile) -> io::Result<Option<Self>> {
         let empty = Layout { inputs: 0, outputs: 0, setup: 0 };
         let Some(memory) = file.adopt(empty.total())? else { return Ok(None) };
@@ -197,7 +197,7 @@ impl Page {
         &all[first..first + count]
     }
 
-    /// Whether what does not change is as it was: an FMU that writes where it should not may have written anywhere.
+    /// True if the constant part is unchanged: an FMU with wild pointers may have written anywhere.
     pub(crate) fn intact(&self) -> bool {
         self.header().told.magic.load(Relaxed) == MAGIC
     }
@@ -211,12 +211,12 @@ impl Page {
         &self.numbers()[3 * self.layout.inputs..]
     }
 
-    /// What the host is to load.
+    /// The host's request to load.
     pub(crate) fn setup(&self) -> Vec<u8> {
         read(self.bytes(MESSAGE + LOG, self.layout.setup))
     }
 
-    /// Writes a message; of one that is too long nothing.
+    /// Writes a message; one that is too long becomes empty.
     pub(crate) fn set_message(&self, message: &[u8]) {
         let kept = if message.len() > MESSAGE { &[] } else { message };
         write(self.bytes(0, kept.len()), kept);
@@ -227,7 +227,7 @@ impl Page {
         read(self.bytes(0, (self.header().answered.message.load(Relaxed) as usize).min(MESSAGE)))
     }
 
-    /// Adds to the log; `false` if there is no room. One thread at a time; the other side may take the log meanwhile.
+    /// Adds to the log; `false` without room. One thread at a time; the other side may take the log meanwhile.
     pub(crate) fn add_log(&self, line: &[u8]) -> bool {
         let log = &self.header().answered.log;
         let mut used = log.load(Acquire);
@@ -246,14 +246,14 @@ impl Page {
         }
     }
 
-    /// Whether there is any log.
+    /// True if there is any log.
     pub(crate) fn has_log(&self) -> bool {
         self.header().answered.log.load(Relaxed) != 0
     }
 
-    /// The log, which is empty afterwards. What is added meanwhile comes behind what is read, and is read too.
+    /// Takes the log. Lines added meanwhile follow those already read, and are read too.
     pub(crate) fn take_log(&self) -> Vec<u8> {
-        // One that never stops is read when its log is full.
+        // Attempts: a log that grows all the time is taken at the latest when it is full.
         const MOST: usize = 16;
         let log = &self.header().answered.log;
         for _ in 0..MOST {
@@ -279,7 +279,7 @@ fn read(from: &[AtomicU8]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Both sides see the same through mappings of their own.
+    /// Both sides see the same through separate mappings.
     #[test]
     fn what_one_side_writes_the_other_reads() {
         let (parent, file) = Page::new(2, 3, b"{\"some\":1}").unwrap();
@@ -300,7 +300,7 @@ mod tests {
         assert_eq!(host.setup(), b"{\"some\":1}", "nothing has run over");
     }
 
-    /// An FMU can write over every byte.
+    /// An FMU can overwrite every byte.
     #[test]
     fn lengths_that_are_nonsense_are_cut() {
         let (page, _file) = Page::new(1, 1, b"").unwrap();
@@ -317,7 +317,7 @@ mod tests {
         assert_eq!(page.take_log().last(), Some(&b'd'));
     }
 
-    /// A thread of the FMU speaks while the log is taken: every line arrives once and in order.
+    /// A thread of the FMU logs while the log is taken: every line arrives once and in order.
     #[test]
     fn log_can_be_taken_while_it_is_written() {
         const LINES: u32 = 20_000;

@@ -1,11 +1,11 @@
-//! What is exchanged with an FMU: its variables, and how their numbers become SI numbers.
+//! Exchanged variables of an FMU, and the conversion of their numbers to SI.
 use crate::like::like;
 use servobench_fmi::{
     BaseUnit, Causality, Choice, DataType, DeclaredNumber, DeclaredUnit, Exponents, FmuEntry, FmuMistake,
     ModelDescription, Port, SiPort, SiUnit, Variability, Variable,
 };
 
-/// Names of SI units that tools write without defining them, with the exponents of kilogram, metre, second and ampere.
+/// Names of SI units that tools use without defining them, with the exponents of kilogram, metre, second and ampere.
 const UNDEFINED: [(&[&str], [i32; 4]); 16] = [
     (&["", "1", "-", "rad"], [0, 0, 0, 0]),
     (&["m"], [0, 1, 0, 0]),
@@ -25,11 +25,11 @@ const UNDEFINED: [(&[&str], [i32; 4]); 16] = [
     (&["Pa", "N/m2"], [1, -1, -2, 0]),
 ];
 
-/// A number that is exchanged, and its unit.
+/// An exchanged number and its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Wire {
     pub(crate) port: Port,
-    /// `None` for what counts in SI units.
+    /// `None` for SI units.
     unit: Option<BaseUnit>,
     is_relative: bool,
     pub(crate) declared: DeclaredNumber,
@@ -44,14 +44,14 @@ impl Wire {
         self.unit.map_or(si, |unit| unit.from_si(si, self.is_relative))
     }
 
-    /// A value and its derivatives to the time.
+    /// A value and its time derivatives.
     pub(crate) fn of_si_in_motion(&self, [value, first, second]: [f64; 3]) -> [f64; 3] {
         let rate = |si| self.unit.map_or(si, |unit| unit.from_si(si, true));
         [self.of_si(value), rate(first), rate(second)]
     }
 }
 
-/// All that is exchanged with an FMU.
+/// All exchanged variables of an FMU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ports {
     pub(crate) inputs: Vec<Wire>,
@@ -59,10 +59,10 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Looks the variables up.
+    /// Looks up the variables.
     ///
     /// # Errors
-    /// [`FmuMistake`] for each variable that cannot be what it is to be.
+    /// [`FmuMistake`] for each variable that does not fit.
     pub fn new<'a>(
         inputs: impl IntoIterator<Item = &'a SiPort>,
         outputs: impl IntoIterator<Item = &'a SiPort>,
@@ -85,7 +85,7 @@ impl Ports {
     }
 }
 
-/// What a variable needs to be set or to be read.
+/// Requirements of variables that are set, or read.
 struct Side {
     entry: fn(String) -> FmuEntry,
     needed: &'static str,
@@ -108,7 +108,7 @@ const OUTPUT: Side = Side {
     fits: |variable| matches!(variable.causality, Causality::Output | Causality::Local),
 };
 
-/// What is wrong, and the way out.
+/// The mistake, and the remedy.
 struct What(String, String);
 
 impl What {
@@ -140,7 +140,7 @@ fn find(it: &ModelDescription, wanted: &SiPort, side: &Side) -> Result<Wire, Wha
     Ok(Wire { port, unit, is_relative: variable.is_relative, declared })
 }
 
-/// As the standard calls it.
+/// Kind of a variable, in the terms of the standard.
 fn is(variable: &Variable) -> String {
     let article = |word: &str| if word.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     match variable.causality {
@@ -156,7 +156,7 @@ fn is(variable: &Variable) -> String {
     }
 }
 
-/// The variable, and which element of it.
+/// The variable and the index of its element.
 fn element<'a>(it: &'a ModelDescription, name: &str, side: &Side) -> Result<(&'a Variable, usize), What> {
     let unknown = || What(format!("the FMU has no variable `{name}`"), names(it, name, side));
     let (variable, indices) = if let Some(variable) = it.variable(name) {
@@ -177,14 +177,14 @@ fn element<'a>(it: &'a ModelDescription, name: &str, side: &Side) -> Result<(&'a
     Ok((variable, usize::try_from(element).unwrap_or(usize::MAX)))
 }
 
-/// The unit of a variable that is to be `wanted`.
+/// The unit of a variable; an error if it does not measure the same as `wanted`.
 fn unit(it: &ModelDescription, variable: &Variable, wanted: Option<&SiUnit>) -> Result<Option<BaseUnit>, What> {
     let Some(unit) = it.unit(variable) else { return Ok(None) };
     let name = &variable.name;
     let undefined = UNDEFINED.iter().find(|(names, _)| names.contains(&unit.name.as_str()));
     let (exponents, base) = match (unit.base, undefined) {
         (Some(base), _) => (mechanical(base.exponents), Some(base)),
-        // Tools that define no units write their names; one that is no SI unit would be taken for one.
+        // Tools without unit definitions write only names; a name that is not of an SI unit would be taken for one.
         (None, Some((_, exponents))) => (Some(*exponents), None),
         (None, None) => {
             let what = format!("`{name}` of the FMU counts in `{}`, of which it does not say what that is", unit.name);
@@ -201,7 +201,7 @@ fn unit(it: &ModelDescription, variable: &Variable, wanted: Option<&SiUnit>) -> 
     }
 }
 
-/// The unit of a variable, which is one that is defined or a name of an SI unit.
+/// The unit of a variable, either defined or a known name of an SI unit.
 fn declared_unit(it: &ModelDescription, variable: &Variable) -> Option<DeclaredUnit> {
     let unit = it.unit(variable)?;
     let exponents = if let Some(base) = unit.base {
@@ -213,13 +213,13 @@ fn declared_unit(it: &ModelDescription, variable: &Variable) -> Option<DeclaredU
     (!unit.name.is_empty()).then(|| DeclaredUnit { name: unit.name.clone(), exponents })
 }
 
-/// Exponents of kilogram, metre, second and ampere, if it has no others but the radian's.
+/// Exponents of kilogram, metre, second and ampere, if all others except the radian's are zero.
 pub(crate) fn mechanical(exponents: Exponents) -> Option<[i32; 4]> {
     let Exponents { kg, m, s, a, k, mol, cd, rad: _ } = exponents;
     ([k, mol, cd] == [0; 3]).then_some([kg, m, s, a])
 }
 
-/// What it has instead.
+/// Suggestions of its variables instead.
 fn names(it: &ModelDescription, name: &str, side: &Side) -> String {
     let fitting = it.variables.iter().filter(|variable| (side.fits)(variable)).map(|variable| variable.name.as_str());
     match &like(name, fitting)[..] {

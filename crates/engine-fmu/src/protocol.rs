@@ -1,8 +1,8 @@
-//! What both sides say to each other.
+//! Messages between both sides.
 use serde::{Deserialize, Serialize};
 use servobench_fmi::{Capabilities, LogLine, SlaveError};
 
-/// What the host is asked for. Its numbers are what is exchanged.
+/// Commands to the host, numbered as exchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Command {
@@ -43,7 +43,7 @@ impl Command {
         .find(|command| *command as u32 == number)
     }
 
-    /// What an FMU does not come back from, in a message.
+    /// Name of a command for the message of a hang.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Load => "loading and initialisation",
@@ -57,15 +57,15 @@ impl Command {
     }
 }
 
-/// How the host answers. Its numbers are what is exchanged.
+/// Status of the host's answer, numbered as exchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Status {
-    /// As asked.
+    /// Done.
     Done = 1,
-    /// A step has come to `reached`.
+    /// A step has reached the time `reached`.
     Until = 2,
-    /// A step has come to `reached`, where the FMU wants the simulation to end.
+    /// A step has reached the time `reached`, where the FMU wants the simulation to end.
     Terminated = 3,
     /// See the message.
     Message = 4,
@@ -82,9 +82,9 @@ impl Status {
 pub(crate) enum Message {
     /// The FMU is loaded and initialised.
     Ready(Capabilities),
-    /// It cannot be loaded or initialised.
+    /// The FMU cannot be loaded or initialised.
     Refused(String),
-    /// It did not do what it was asked for.
+    /// The FMU did not do what was requested.
     Failed(SlaveError),
 }
 
@@ -95,7 +95,7 @@ pub(crate) fn log_to_line(line: &LogLine) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The lines in `bytes`. What is not one, because the FMU wrote over it, is left out.
+/// The log lines in `bytes`. Lines that the FMU has overwritten are skipped.
 pub(crate) fn log_of_lines(bytes: &[u8]) -> impl Iterator<Item = LogLine> {
     bytes.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok())
 }

@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::io::{Read, Write};
 use std::time::Duration;
 
-/// What is wrong with it: in its steps, if nothing else is said.
+/// The defect; in its steps, except where noted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Bad {
     /// Nothing: an integrator of its input; the second output is the time.
@@ -15,13 +15,13 @@ pub(crate) enum Bad {
     Refused(String),
     /// Writes to address zero while it is loaded.
     CrashInLoading,
-    /// Never comes back from being loaded.
+    /// Never returns from loading.
     HangInLoading,
     /// Writes to address zero.
     NullWrite,
     /// Calls itself without end.
     StackOverflow,
-    /// Gives up after a word on standard error.
+    /// Aborts after a message on standard error.
     Abort,
     /// Ends the process.
     Exit(i32),
@@ -29,19 +29,19 @@ pub(crate) enum Bad {
     Panic,
     /// Sends itself a signal.
     Signal(i32),
-    /// Ends the process from a thread of its own while the step goes on.
+    /// Ends the process from another thread while the step continues.
     ExitInThread,
     /// Computes without end.
     Loop,
     /// Stops itself: not even a signal other than SIGKILL reaches it.
     Stop,
-    /// Does not come back from its end.
+    /// Does not return from its end.
     HangInEnd,
-    /// Asks for memory in blocks of this many bytes, writes to them, and dies like a C program that gets none.
+    /// Allocates blocks of this many bytes, writes to them, and dies at the limit like a C program.
     Hoard { block: usize },
-    /// Asks for more memory at once than there may be, as Rust code does.
+    /// Allocates more memory at once than the limit, as Rust code does.
     HugeVector,
-    /// Asks for memory until it gets none, then waits for better times.
+    /// Allocates memory up to the limit, then waits for ever.
     HoardAndHang,
     /// Prints this many bytes on each of standard output and error in a step.
     Print(usize),
@@ -51,13 +51,13 @@ pub(crate) enum Bad {
     LogThenCrash,
     /// Reads standard input.
     ReadInput,
-    /// Closes all files and goes on.
+    /// Closes all files and continues.
     CloseFiles,
     /// Handles all signals itself, then writes to address zero.
     HandleSignals,
-    /// Forks a process that waits for better times, then crashes; says its id.
+    /// Forks a process that waits for ever, then crashes; prints its id.
     ForkThenCrash,
-    /// Starts a process that leaves its session and its parent (a daemon), and goes on; says its id.
+    /// Starts a process that leaves its session and its parent (a daemon), and continues; prints its id.
     Daemon,
     /// The same, then crashes.
     DaemonThenCrash,
@@ -65,13 +65,13 @@ pub(crate) enum Bad {
     Kill(i32),
     /// Writes this much to memory that it shares with processes that it could start, in blocks.
     ShareMemory(usize),
-    /// Writes this much to a file of memory that is not mapped, in blocks.
+    /// Writes this much to an unmapped memory file, in blocks.
     FillMemoryFile(usize),
-    /// Starts processes that write to memory of their own, this much each.
+    /// Starts processes that write to their own memory, this much each.
     Spread { processes: usize, each: usize },
-    /// Forks a process that goes on as if it were the host.
+    /// Forks a process that continues as if it were the host.
     ForkTwin,
-    /// Writes over all memory that is shared with another process.
+    /// Overwrites all memory shared with another process.
     Overwrite(u8),
     /// An output is not a number.
     NaN,
@@ -199,7 +199,7 @@ impl BadSlave {
                 self.log.push(line(time, &format!("{count} bytes on standard input")));
             }
             Bad::CloseFiles => {
-                // SAFETY: what is closed is not used any more, or the process suffers for it.
+                // SAFETY: the closed files are not used any more, or only this process suffers.
                 (0..1000).for_each(|file| unsafe {
                     libc::close(file);
                 });
@@ -218,7 +218,7 @@ impl BadSlave {
             }
             Bad::ForkThenCrash | Bad::Daemon | Bad::DaemonThenCrash | Bad::Kill(_) => self.meddle(time),
             Bad::ShareMemory(_) | Bad::FillMemoryFile(_) | Bad::Spread { .. } => self.share(),
-            // SAFETY: the child goes on like its parent and allocates nothing; the parent waits for its end.
+            // SAFETY: the child continues like its parent and allocates nothing; the parent waits for its end.
             Bad::ForkTwin => unsafe {
                 let twin = libc::fork();
                 if twin == 0 {
@@ -244,7 +244,7 @@ impl BadSlave {
 }
 
 impl BadSlave {
-    /// What concerns other processes.
+    /// Defects that concern other processes.
     fn meddle(&mut self, time: f64) {
         match self.bad {
             Bad::ForkThenCrash => {
@@ -266,7 +266,7 @@ impl BadSlave {
         }
     }
 
-    /// What concerns memory that is not its own alone.
+    /// Defects that concern shared memory.
     fn share(&self) {
         match self.bad {
             Bad::ShareMemory(bytes) => share_memory(bytes),
@@ -292,7 +292,7 @@ impl Drop for BadSlave {
     }
 }
 
-/// Forks a process that does `work`, says its id as `/proc` has it, and waits for better times. The fork is of the only thread.
+/// Forks a process that does `work`, prints its id as `/proc` has it, and waits for ever. Only the calling thread is forked.
 fn fork(work: impl FnOnce()) -> String {
     let (mut said, mut saying) = std::io::pipe().unwrap();
     // SAFETY: there is one thread.
@@ -324,12 +324,12 @@ fn become_a_daemon() {
     }
 }
 
-/// Bytes that are written at a time; after each the FMU computes for a moment, as one that fills its memory does.
+/// Bytes written at a time; after each block the FMU computes for a moment, like one that fills its memory.
 const BLOCK: usize = 16 << 20;
 
 fn share_memory(bytes: usize) {
     for _ in 0..bytes / BLOCK {
-        // SAFETY: a new mapping, as long as it is said to be.
+        // SAFETY: a new mapping of the given length.
         unsafe {
             let (access, shared) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_SHARED | libc::MAP_ANONYMOUS);
             let memory = libc::mmap(std::ptr::null_mut(), BLOCK, access, shared, -1, 0);
@@ -371,9 +371,9 @@ fn deeper(depth: u64) -> u64 {
     if black_box(true) { deeper(frame[7] + 1) + frame[511] } else { 0 }
 }
 
-/// Whether `block` more bytes could be had, of which the first `used` are then written to.
+/// Allocates `block` more bytes and writes to the first `used`; returns false without memory.
 fn hoard(block: usize, used: usize) -> bool {
-    // SAFETY: what is asked for and got is as long as it is said to be; nobody else has it.
+    // SAFETY: the block has the requested length and no other owner.
     unsafe {
         let memory: *mut u8 = libc::malloc(block).cast();
         if memory.is_null() {
@@ -385,14 +385,14 @@ fn hoard(block: usize, used: usize) -> bool {
     true
 }
 
-/// Writes over all that is shared, which is found as one finds it with a wild pointer: somewhere.
+/// Overwrites all shared memory, found in the process map as a wild pointer would hit it.
 fn overwrite(byte: u8) {
     let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
     let page = maps.lines().filter(|line| line.contains("servobench-fmu"));
     for line in page {
         let (from, to) = line.split_whitespace().next().unwrap().split_once('-').unwrap();
         let at = |text| usize::from_str_radix(text, 16).unwrap();
-        // SAFETY: none for whoever uses it; it is mapped and may be written to.
+        // SAFETY: none for whoever uses it; it is mapped and writable.
         unsafe { std::ptr::with_exposed_provenance_mut::<u8>(at(from)).write_bytes(byte, at(to) - at(from)) };
     }
 }

@@ -1,4 +1,4 @@
-//! Ends that an FMU comes to by itself, and calls that it does not come back from.
+//! Ends of an FMU by itself, and calls that do not return.
 use super::*;
 
 #[test]
@@ -63,7 +63,7 @@ fn one_that_does_not_end_is_ended() {
     drop(slave);
 }
 
-/// Whatever it writes: nothing is read out of bounds, and nobody waits for a doorbell that was rung and written over.
+/// Whatever it writes, nothing is read out of bounds, and a doorbell that was rung and overwritten is not waited for.
 #[test]
 fn one_that_writes_over_what_is_shared_is_found_out() {
     for byte in [0x00, 0x01, 0x04, 0x7f, 0xff] {
@@ -92,8 +92,8 @@ fn one_that_closes_all_files_or_reads_input_goes_on() {
     assert!(slave.take_log().iter().any(|line| line.message == "0 bytes on standard input"));
 }
 
-/// The twin has not the memory to answer through, and ends as soon as it wants to; otherwise its sum would be heard, or it would
-/// be waited for without end.
+/// The twin lacks the memory for answers, and ends as soon as it can; otherwise its sum would be received, or it would be waited for
+/// without end.
 #[test]
 fn a_forked_twin_does_not_answer() {
     let mut slave = start(&Bad::ForkTwin, Bounds::default()).unwrap();

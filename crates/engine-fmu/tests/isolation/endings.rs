@@ -1,8 +1,8 @@
-//! Nothing is left behind.
+//! Nothing is left behind by an FMU.
 use super::*;
 use std::process::{Command, Stdio};
 
-/// State of a process as `/proc` has it; `None` if there is none of that id.
+/// State of a process according to `/proc`; `None` without a process of that id.
 fn state(pid: &str) -> Option<char> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     stat.rsplit_once(") ")?.1.chars().next()
@@ -23,8 +23,8 @@ fn children_of(parent: &str) -> Vec<String> {
     ids.filter(is_child).collect()
 }
 
-/// Waits until `done`, which comes: how long it takes is not what is tested. Less than the minute after which the harness of a
-/// host complains of its length, and ends because nobody listens.
+/// Waits until `done`, which is certain: the time it takes is not tested. The limit is below the minute after which the test harness of a
+/// host complains of its length, and ends for lack of a listener.
 fn until(mut done: impl FnMut() -> bool) {
     let call_timeout = std::time::Instant::now() + Duration::from_secs(30);
     while !done() {
@@ -33,7 +33,7 @@ fn until(mut done: impl FnMut() -> bool) {
     }
 }
 
-/// In a process of its own, since other tests have children too.
+/// In a separate process, since other tests have children too.
 #[test]
 fn no_process_stays_behind() {
     let this = std::env::current_exe().unwrap();
@@ -48,7 +48,7 @@ fn lives() {
     for bad in [Bad::Nothing, Bad::NullWrite, Bad::Exit(0), Bad::Loop, Bad::HangInEnd, Bad::Overwrite(0xff)] {
         let mut slave = start(&bad, impatient()).unwrap();
         assert_eq!(children().len(), 1);
-        // How they end is tested elsewhere.
+        // Their end is tested elsewhere.
         slave.step(0.0, 0.1, &[[0.0; 3]]).ok();
         drop(slave);
         assert_eq!(children(), [""; 0], "{bad:?}");
@@ -58,7 +58,7 @@ fn lives() {
     assert_eq!(children(), [""; 0]);
 }
 
-/// It answers and is gone: on some turns it ends before its answer is looked at.
+/// An orderly end: on some turns the process has ended before its answer is read.
 #[test]
 fn an_orderly_end_is_no_crash() {
     for turn in 0..100 {
@@ -82,12 +82,12 @@ fn what_it_has_started_ends_with_it() {
     }
 }
 
-/// The process that an FMU says it has started.
+/// The process that an FMU reports to have started.
 fn started(says: &str) -> String {
     says.split("child ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned()
 }
 
-/// One that has left group, session and parent is found all the same, and the run is told.
+/// A process that has left group, session and parent is found all the same, and reported to the run.
 #[test]
 fn what_it_leaves_behind_is_ended_and_named() {
     let mut slave = start(&Bad::Daemon, Bounds::default()).unwrap();
@@ -102,10 +102,10 @@ fn what_it_leaves_behind_is_ended_and_named() {
     assert_eq!(state(&started(&daemon)), None);
 }
 
-/// The bench, its own keeper and other processes of the user are out of reach where the system gives it a namespace.
+/// The bench, its keeper and other processes of the user are out of reach if the system gives the FMU a namespace.
 #[test]
 fn it_reaches_no_other_process() {
-    // As the root may, or everybody else with a user namespace, which a test with its threads cannot have.
+    // Possible for root, or for all others with a user namespace, which a test with its threads cannot have.
     if !Command::new("unshare").args(["--pid", "--fork", "true"]).status().is_ok_and(|status| status.success()) {
         eprintln!("skipped: it_reaches_no_other_process needs a PID namespace, which this system does not allow here");
         return;
@@ -120,7 +120,7 @@ fn it_reaches_no_other_process() {
     other.wait().unwrap();
 }
 
-/// A simulation that is killed takes its FMUs along.
+/// Killing a simulation ends its FMUs.
 #[test]
 fn it_ends_with_the_simulation() {
     let this = std::env::current_exe().unwrap();
@@ -132,7 +132,7 @@ fn it_ends_with_the_simulation() {
         .unwrap();
     let lines = std::io::BufRead::lines(std::io::BufReader::new(simulation.stdout.take().unwrap()));
     let pid = lines.map(Result::unwrap).find_map(|line| Some(line.split_once("host of ")?.1.to_owned())).unwrap();
-    // The keeper, the first process of the namespace where there is one, and the host.
+    // The keeper, the first process of the namespace if there is one, and the host.
     let mut family = vec![pid];
     until(|| {
         family.truncate(1);
@@ -143,15 +143,15 @@ fn it_ends_with_the_simulation() {
     });
     simulation.kill().unwrap();
     simulation.wait().unwrap();
-    // Whoever inherits the keeper reaps it, or leaves it a zombie (Z), which is ended too.
+    // The process that inherits the keeper reaps it, or leaves it a zombie (Z), which has ended too.
     until(|| family.iter().all(|pid| matches!(state(pid), None | Some('Z' | 'X'))));
 }
 
-/// Not a test: has an FMU that hangs, and says its id.
+/// Not a test: runs an FMU that hangs, and prints its id.
 #[test]
 #[ignore = "the process that another test starts"]
 fn waits() {
-    // Its call_timeout is longer than anybody's: what ends it is the end of this process.
+    // Its call_timeout is very long: only the end of this process ends it.
     let mut slave = start(&Bad::Loop, Bounds::default()).unwrap();
     let [pid] = children().try_into().unwrap();
     println!("host of {pid}");

@@ -22,14 +22,14 @@ fn one_that_hoards_memory_is_reported_as_that() {
     assert!(how.starts_with(said) && how.contains("did not come back within 1 s"), "{how}");
 }
 
-/// A crash without hoarding is not blamed on memory.
+/// A crash without large allocations is not blamed on memory.
 #[test]
 fn one_that_has_memory_is_not_reported_as_that() {
     let how = crash_of_step(&Bad::NullWrite, bounded());
     assert!(!how.contains("memory that it may have"), "{how}");
 }
 
-/// What it writes last is kept; it never waits for a reader.
+/// Its last output is kept; it never waits for a reader.
 #[test]
 fn one_that_prints_without_end_goes_on() {
     const MUCH: usize = 64 << 20;

@@ -1,8 +1,8 @@
-//! One that does nothing wrong does the same as without isolation.
+//! A well-behaved FMU gives the same results as without isolation.
 use super::*;
 use servobench_fmi::{LogLine, Severity, StepEnd};
 
-/// What comes of the same calls.
+/// Outputs of a fixed sequence of calls.
 fn life(slave: &mut dyn Slave) -> Vec<f64> {
     let (mut seen, mut outputs) = (Vec::new(), [0.0; 2]);
     let mut note = |outputs: &[f64; 2]| seen.extend(outputs);
@@ -28,7 +28,7 @@ fn life(slave: &mut dyn Slave) -> Vec<f64> {
     seen
 }
 
-/// To the bit: the numbers are passed on, not worked on.
+/// To the bit: numbers are passed on unchanged.
 #[test]
 fn every_number_is_the_same_as_in_one_process() {
     let mut here = Bad::Nothing.load().unwrap();
@@ -63,7 +63,7 @@ fn what_it_fails_with_is_said_and_not_without_end() {
     assert!(message.ends_with("x … (92000 bytes more)"));
 }
 
-/// The outputs are read with the step; that they cannot be is said when they are asked for.
+/// The outputs are read with the step; an error in that is reported when they are requested.
 #[test]
 fn an_output_that_is_not_a_number_is_said_when_it_is_read() {
     let mut slave = start(&Bad::NaN, Bounds::default()).unwrap();

@@ -3,7 +3,7 @@ use super::*;
 
 const BOUND: u64 = 300_000_000;
 
-/// 6 GB went through a bound of private memory. They are not used up here: the process is ended long before.
+/// 6 GB once passed a bound on private memory. They are not used up here: the process is killed long before.
 #[test]
 fn shared_memory_counts_too() {
     const MUCH: usize = 6_000_000_000;
@@ -15,7 +15,7 @@ fn shared_memory_counts_too() {
     }
 }
 
-/// What is shared by several processes counts once, as does a file that is open and mapped.
+/// Memory shared by several processes counts once, as does a file that is open and mapped.
 #[test]
 fn memory_below_the_bound_is_no_concern() {
     for bad in [Bad::ShareMemory(150_000_000), Bad::FillMemoryFile(150_000_000)] {

@@ -1,4 +1,4 @@
-//! What is exchanged with an FMU, and when.
+//! Values and times of the exchanges with an FMU.
 use super::*;
 use servobench_plant::{BodyState, EngineName, MechanicsError};
 use std::sync::{Arc, Mutex};
@@ -9,7 +9,7 @@ fn efforts(tick: u32) -> (f64, f64) {
     (2.0 * (700.0 * t).sin() + 0.5, 100.0 * (90.0 * t).cos())
 }
 
-/// To the bit: what the FMU gets and gives is passed on.
+/// To the bit: the FMU's inputs and outputs are passed on.
 #[test]
 fn with_an_exchange_in_every_tick_it_is_what_the_fmu_is() {
     let mut fmu = mechanics(ExactFmu::new(TICK), &model(1), &IN_SI);
@@ -24,8 +24,8 @@ fn with_an_exchange_in_every_tick_it_is_what_the_fmu_is() {
     assert!(here.bodies()[1].position.abs() > 1e-4, "it moves");
 }
 
-/// Oracle: an engine of our own that is stepped n ticks at once, with the mean of the efforts; bit for bit at the exchanges,
-/// but for the rounding of the mean, which a relative 1e-12 covers over 100 steps.
+/// Oracle: a built-in engine stepped n ticks at once, with the mean of the efforts; bit for bit at the exchanges, except for the rounding
+/// of the mean, which a relative 1e-12 covers over 100 steps.
 #[test]
 fn between_exchanges_the_fmu_gets_the_mean_of_the_efforts() {
     const N: u32 = 4;
@@ -62,7 +62,7 @@ fn worst(ticks: u32) -> f64 {
         let torque = if tick < 80 { 2.0 } else { 0.0 };
         fmu.advance(&input(torque, 0.0)).unwrap();
         here.advance(&input(torque, 0.0)).unwrap();
-        // Any engine that is exact agrees at the exchanges: what is seen is what was extrapolated.
+        // Any exact engine agrees at the exchanges: the difference is that of the extrapolation.
         if tick > 160 {
             worst = worst.max((fmu.bodies()[1].position - here.bodies()[1].position).abs());
         }
@@ -70,17 +70,17 @@ fn worst(ticks: u32) -> f64 {
     worst
 }
 
-/// Oracle: the engine with a step of a tick. The order of the extrapolation is tested where it is made; here that time and period are
-/// right: half the step makes 4 times less of it. The mode has ω·H = 0.05 and 0.1, and its next order a tenth of that: 20 % each way.
+/// Oracle: the engine with a step of a tick. The order of the extrapolation is tested with its code; this tests its time and period: half
+/// the step divides the error by 4. The mode has ω·H = 0.05 and 0.1, and its next order a tenth of that: 20 % each way.
 #[test]
 fn bodies_go_on_between_exchanges() {
-    // The last tick before an exchange is 7/8 and 3/4 of a step after the last.
+    // The last tick before an exchange is 7/8 and 3/4 of a step after the previous one.
     let (coarse, fine) = (worst(8), worst(4));
     let observed = (coarse / fine * (0.75 / 0.875_f64).powi(2)).log2();
     assert!((observed - 2.0).abs() < 0.3, "{coarse} {fine} {observed}");
 }
 
-/// Stands still, answers as it is told and notes what it gets.
+/// A slave at rest that gives scripted answers and records its steps.
 struct Scripted {
     answer: fn(f64, f64) -> Result<StepEnd, SlaveError>,
     position: f64,
@@ -111,7 +111,7 @@ fn single_body(ticks: u32) -> FmuModel {
     FmuModel { motor, load: None, load_disturbance: None, ..model(ticks) }
 }
 
-/// What comes of a tick with this answer.
+/// The result of a tick with this answer.
 fn tick(answer: fn(f64, f64) -> Result<StepEnd, SlaveError>) -> Result<(), MechanicsError> {
     mechanics(Scripted::new(answer), &single_body(1), &IN_SI).advance(&input(1.0, 0.0))
 }
@@ -201,7 +201,7 @@ fn a_prescribed_motion_is_refused() {
     assert!(matches!(result, Err(MechanicsError::Unsupported { engine: EngineName::Fmu, .. })));
 }
 
-/// Moves with 3 rad/s.
+/// A slave that moves with 3 rad/s.
 struct Ramp(f64);
 
 impl Slave for Ramp {
@@ -216,7 +216,7 @@ impl Slave for Ramp {
     }
 }
 
-/// Oracle: the velocity that the positions have. Tolerance: a rounding each of product, sum, difference and quotient.
+/// Oracle: the velocity derived from the positions. Tolerance: a rounding each of product, sum, difference and quotient.
 #[test]
 fn without_a_velocity_it_is_that_of_the_positions() {
     let mut fmu = mechanics(Ramp(0.0), &single_body(1), &IN_SI);

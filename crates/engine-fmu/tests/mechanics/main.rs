@@ -1,4 +1,4 @@
-//! An FMU as the mechanics. The FMUs of these tests are engines of our own behind the interface of one.
+//! An FMU as the mechanics. The FMUs of these tests are built-in engines behind the FMU interface.
 mod allocation;
 mod exchange;
 mod ports;
@@ -56,7 +56,7 @@ fn input(torque: f64, load_disturbance: f64) -> Input {
     Input { actuation: Actuation::Effort(torque), motor_disturbance: 0.0, load_disturbance }
 }
 
-/// A description of FMI 2.0 with these variables: name, causality, unit (none if empty).
+/// A description of FMI 2.0 with these variables: name, causality, unit (empty for none).
 fn description(variables: &[(&str, &str, &str)]) -> ModelDescription {
     let scalar = |(k, (name, causality, unit)): (usize, &(&str, &str, &str))| {
         let start = if *causality == "input" { " start=\"0\"" } else { "" };

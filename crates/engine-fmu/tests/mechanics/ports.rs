@@ -1,9 +1,8 @@
-//! Names and units of the variables that are exchanged.
+//! Names and units of exchanged variables.
 use super::*;
 use servobench_fmi::FmuEntry;
 
-/// Passes on to an FMU in SI units what comes in others, the other way round for what comes out: what a tool does that counts
-/// in them.
+/// Wraps an FMU in SI units as one in other units, converting both inputs and outputs, like a tool that uses these units.
 struct InOtherUnits(ExactFmu);
 
 impl Slave for InOtherUnits {
@@ -21,8 +20,8 @@ impl Slave for InOtherUnits {
     }
 }
 
-/// Oracle: the same FMU in SI units. Tolerance: a few roundings each way at every tick, relative to what there is; the axis is
-/// an oscillator with damping, in which they do not grow.
+/// Oracle: the same FMU in SI units. Tolerance: a few roundings each way at every tick, relative to the value; the axis is a damped
+/// oscillator, in which they do not grow.
 #[test]
 fn units_are_those_of_the_description() {
     let others = [
@@ -67,7 +66,7 @@ fn ports_are_in_the_order_in_which_they_are_exchanged() {
     assert_eq!(names(model.outputs().collect()), ["angle", "speed", "x", "v"]);
 }
 
-/// All of it at once, so that a file is mended in one go.
+/// All mistakes at once, so that a file is mended in one go.
 #[test]
 fn everything_that_is_wrong_is_said() {
     let wrong = [
@@ -97,7 +96,7 @@ fn everything_that_is_wrong_is_said() {
     );
 }
 
-/// A unit without a definition is what its name says, if that is the SI unit.
+/// A unit without a definition is the SI unit of that name, if there is one.
 #[test]
 fn si_units_need_no_definition() {
     let mut variables = IN_SI;

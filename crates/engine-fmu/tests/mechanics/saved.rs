@@ -1,4 +1,4 @@
-//! An FMU keeps the last state that it has saved, and no other.
+//! An FMU keeps only its last saved state.
 use super::*;
 use servobench_base::state::{Reader, words};
 use servobench_plant::{BodyState, EngineName, MechanicsError};

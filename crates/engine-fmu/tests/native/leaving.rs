@@ -1,4 +1,4 @@
-//! How the process of an FMU ends.
+//! End of the process of an FMU.
 use super::{ENGINE, File};
 use servobench_engine_fmu::{HostCommand, Place, load};
 use servobench_fmi::{Bounds, Port, Setup, Unpacked};

@@ -1,4 +1,4 @@
-//! The engine `fmu` with real libraries in C, which are compiled and packed by the test as a tool would.
+//! The engine `fmu` with real libraries in C, compiled and packed by the test as a tool would.
 mod leaving;
 mod oscillator;
 
@@ -41,7 +41,7 @@ const DESCRIPTION: &str = r#"<?xml version="1.0"?>
 <InitialUnknowns><Unknown index="3"/></InitialUnknowns></ModelStructure>
 </fmiModelDescription>"#;
 
-/// What the library can do that it should not.
+/// Misbehaviour of the library.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 enum Mischief {
@@ -57,12 +57,12 @@ enum Mischief {
     Say,
 }
 
-/// Not a test: the process that an FMU of these tests lives in.
+/// Not a test: the process that runs an FMU of these tests.
 #[test]
 #[ignore = "the process that the other tests start"]
 fn host() {
     match serve() {
-        // Somebody runs all tests that are ignored.
+        // A run of all ignored tests.
         Ok(()) | Err(HostError::NoPage) => {}
         Err(error) => panic!("{error}"),
     }
@@ -76,7 +76,7 @@ const ENGINE: Fmu = Fmu {
     code: Code::Anywhere,
 };
 
-/// The FMU's file, which is there as long as this is.
+/// The FMU's file, which exists as long as this value.
 struct File {
     _folder: TempDir,
     path: PathBuf,
@@ -142,7 +142,7 @@ fn setup(file: &File, mischief: Mischief, isolation: Isolation) -> MechanicsSetu
 }
 
 fn build(mischief: Mischief, isolation: Isolation) -> FmuMechanics {
-    // What it was unpacked to is its own.
+    // The FMU keeps its unpacked files itself.
     ENGINE.mechanics(&setup(&File::new(), mischief, isolation)).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -150,7 +150,7 @@ fn push() -> Input {
     Input { actuation: Actuation::Effort(FORCE), motor_disturbance: 0.0, load_disturbance: 0.0 }
 }
 
-/// Where the mass is at each tick.
+/// Position and velocity of the mass at each tick.
 fn way(mut mass: FmuMechanics) -> Vec<(f64, f64)> {
     (0..1000)
         .map(|_| {
@@ -174,7 +174,7 @@ fn a_mass_goes_as_newton_says_here_and_in_a_process_of_its_own() {
     }
 }
 
-/// What comes of its second step.
+/// The error of its second step.
 fn second_step(mischief: Mischief, call_timeout: Duration) -> MechanicsError {
     let mut mass = build(mischief, isolated(call_timeout));
     mass.advance(&push()).unwrap();
@@ -216,21 +216,21 @@ fn one_that_prints_ten_megabytes_in_a_step_goes_on() {
     assert_eq!(printed.text, "standard output: (20 MB before this were dropped)");
 }
 
-/// What it said in the call that it did not come back from.
+/// Its last message in a call that did not return.
 #[test]
 fn the_last_that_it_said_is_in_the_report() {
     let error = second_step(Mischief::SayThenCrash, Duration::from_mins(1));
     assert!(error.to_string().contains("the mass is 20 kg"), "{error}");
 }
 
-/// Where it runs does not matter: what it said has its time and is there after its end.
+/// Isolation makes no difference: a message has its time and can be read after the end.
 #[test]
 fn what_it_says_is_the_same_here_and_in_a_process_of_its_own() {
     let said = |isolation, mischief| {
         let mut mass = build(mischief, isolation);
         let mut said = mass.take_log();
         for _ in 0..4 {
-            // How it ends is tested elsewhere.
+            // Its end is tested elsewhere.
             let went = mass.advance(&push());
             said.extend(mass.take_log());
             if went.is_err() {
@@ -252,7 +252,7 @@ fn what_it_says_is_the_same_here_and_in_a_process_of_its_own() {
     assert_eq!(said(isolated(Duration::from_mins(1)), Mischief::SayThenCrash), cry);
 }
 
-/// What it was unpacked to goes with it, even if it crashes.
+/// Its unpacked files are removed with it, even if it crashes.
 #[test]
 fn nothing_stays_in_the_folder_for_temporary_files() {
     let this = std::env::current_exe().unwrap();
@@ -265,14 +265,14 @@ fn nothing_stays_in_the_folder_for_temporary_files() {
     assert_eq!(left, [""; 0]);
 }
 
-/// Not a test: what the one above looks at.
+/// Not a test: the process that the test above starts.
 #[test]
 #[ignore = "the process that another test starts"]
 fn crashes_alone() {
     for mischief in [Mischief::Nothing, Mischief::Crash] {
         let mut mass = build(mischief, isolated(Duration::from_mins(1)));
         mass.advance(&push()).unwrap();
-        // How it ends is tested elsewhere.
+        // Its end is tested elsewhere.
         mass.advance(&push()).ok();
     }
 }

@@ -1,8 +1,7 @@
-//! Two masses with a spring and a damper between them, split into two FMUs by force and displacement: the orders that
-//! `docs/coupling.md` promises hold with FMUs, what is unstable is found, and iterating holds where that is so.
+//! Two masses with a spring and a damper between them, split into two FMUs by force and displacement: the orders that `docs/coupling.md`
+//! promises hold with FMUs, instability is detected, and iterating stays stable there.
 //!
-//! The FMUs are loaded as a scenario loads them. Each is exact for the inputs that it is
-//! told: what is left is the coupling's own error.
+//! The FMUs are loaded as a scenario loads them. Each is exact for its inputs: only the coupling's own error remains.
 mod files;
 mod masses;
 
@@ -19,8 +18,8 @@ const STIFF: TwoMasses = TwoMasses { m1: 1.0, m2: 2.0, c: 4e6, d: 200.0, force: 
 
 /// Steps (base ticks): H from 1/256 s on, ω·H = 0.048, in three halvings.
 const STEPS: [u32; 4] = [32, 16, 8, 4];
-/// An error C·H^p·(1 + D·H) has over a halving of H the slope p + D·H/(2·ln 2). D is a time of the system, here at most a few
-/// 1/ω: in the last halving, with ω·H = 0.012, 5·0.012/1.39 = 0.04.
+/// Over a halving of H an error C·H^p·(1 + D·H) has the slope p + D·H/(2·ln 2). D is a time of the system, here at most a few 1/ω: in the
+/// last halving, with ω·H = 0.012, 5·0.012/1.39 = 0.04.
 const SLOPE: f64 = 0.04;
 
 fn iterated(tolerance: f64) -> Method {
@@ -41,7 +40,7 @@ fn promises() -> impl Iterator<Item = (Method, Order, f64)> {
     })
 }
 
-/// Where both are at each eighth of a second, up to 1 s.
+/// State of both at each eighth of a second, up to 1 s.
 fn way(masses: &TwoMasses, files: &Files, isolation: Isolation, settings: &Settings) -> [[f64; 4]; 8] {
     let mut master = masses.coupled(files, isolation, settings).unwrap();
     [1, 2, 3, 4, 5, 6, 7, 8].map(|eighth| {
@@ -52,7 +51,7 @@ fn way(masses: &TwoMasses, files: &Files, isolation: Isolation, settings: &Setti
     })
 }
 
-/// Greatest error of a state on the way. Weighted with ω for displacements, so that they count like velocities.
+/// Greatest error of a state over the run. Displacements are weighted with ω, so that they count like velocities.
 fn error(masses: &TwoMasses, files: &Files, settings: &Settings) -> f64 {
     let way = way(masses, files, Isolation::None, settings);
     let errors = way.iter().zip(1..).flat_map(|(state, eighth)| {
@@ -62,7 +61,7 @@ fn error(masses: &TwoMasses, files: &Files, settings: &Settings) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Errors fall with the order that `promised` makes of the one from rest, and come nearer to it with each halving.
+/// Errors fall with the order that `promised` makes of the one from rest, and approach it with each halving.
 fn hold_to(promised: impl Fn(&Method, f64) -> f64, masses: &TwoMasses, files: &Files) {
     for (method, order, from_rest) in promises() {
         let promised = promised(&method, from_rest);
@@ -81,7 +80,7 @@ fn errors_fall_with_the_promised_order_from_rest() {
     hold_to(|_, promised| promised, &RESOLVED, &Files::new());
 }
 
-/// An explicit method starts with what it knows: a first step of order 0, whose error of order 2 stays.
+/// An explicit method starts from its initial values: a first step of order 0, whose error of order 2 stays.
 #[test]
 fn errors_fall_with_the_promised_order_when_moving_at_the_start() {
     let moving = TwoMasses { force: (0.0, 8.0), v1: 1.0, ..RESOLVED };
@@ -108,7 +107,7 @@ fn in_processes_of_their_own_all_is_the_same_to_the_bit() {
     }
 }
 
-/// The run over `seconds`, or what ended it.
+/// The run over `seconds`, or the error that ended it.
 fn run(files: &Files, settings: &Settings, seconds: u32) -> Outcome {
     let mut master = STIFF.coupled(files, super::isolated(Duration::from_mins(1)), settings)?;
     while master.tick().0 < u64::from(seconds * RATE) {
@@ -133,11 +132,11 @@ fn a_stiff_spring_is_too_much_for_jacobi_and_the_reason_says_where() {
     }
 }
 
-/// After 2 s the vibration has died out (ζ·ω·t = 300) and both move with m₁/(m₁ + m₂) of the velocity that the first began with, and with
-/// an error that comes from the exchanges of the vibration. The mass is given a line for the force, whose second derivative within the
-/// step is c·x₂'' for the spring, which is given a line for x₁. A line is c·x₂''·H³/12 off in each step, together c·v₂·H²/12: relative to
-/// the momentum c·H²/(12·(m₁ + m₂)), 11 % and 2.6 %. The bound is a quarter above, for what is of higher order in ω·H. The velocities
-/// agree to what the tolerance of the force moves: 1e-9 of at most 1633 N (ω·μ·v) through 1e-3 s, and less.
+/// After 2 s the vibration has died out (ζ·ω·t = 300) and both move with m₁/(m₁ + m₂) of the initial velocity of the first mass, plus an
+/// error from the exchanges during the vibration. The mass gets a line for the force, whose second derivative within the step is c·x₂''
+/// for the spring, which gets a line for x₁. A line is c·x₂''·H³/12 off in each step, together c·v₂·H²/12: relative to the momentum
+/// c·H²/(12·(m₁ + m₂)), 11 % and 2.6 %. The bound is a quarter above, for terms of higher order in ω·H. The velocities agree within the
+/// effect of the force's tolerance: 1e-9 of at most 1633 N (ω·μ·v) through 1e-3 s, and less.
 #[test]
 fn the_iterated_method_solves_what_jacobi_cannot() {
     let files = Files::new();

@@ -3,7 +3,7 @@ use crate::packed;
 use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// The FMUs' files, which are there as long as this is.
+/// The FMUs' files, which exist as long as this value.
 pub(crate) struct Files {
     _folder: TempDir,
     pub(crate) mass: PathBuf,
@@ -16,7 +16,7 @@ impl Files {
         Self::with("true")
     }
 
-    /// FMUs that take none: they are given means.
+    /// FMUs that take no derivatives: they get means.
     pub(crate) fn that_hold() -> Self {
         Self::with("false")
     }

@@ -1,4 +1,4 @@
-//! Two masses with a spring and a damper between them: as two FMUs that are coupled, and as they are together.
+//! Two masses with a spring and a damper between them: as two coupled FMUs, and as one system.
 use super::files::Files;
 use crate::ENGINE;
 use servobench_base::{Divider, Rate};
@@ -21,12 +21,12 @@ pub(crate) struct TwoMasses {
     pub(crate) d: f64,
     /// Amplitude F₀ (N) and angular frequency w (rad/s) of the force on the first mass, F₀·(1 − cos wt)².
     pub(crate) force: (f64, f64),
-    /// Velocity of the first mass at the beginning (m/s).
+    /// Initial velocity of the first mass (m/s).
     pub(crate) v1: f64,
 }
 
 impl TwoMasses {
-    /// Both FMUs, coupled by the force that the spring gives and the motion that it takes.
+    /// Both FMUs, coupled by the spring's force and the mass's motion.
     pub(crate) fn coupled(&self, files: &Files, isolation: Isolation, settings: &Settings) -> Outcome {
         let Self { m1, m2, c, d, force: (amplitude, w), v1 } = *self;
         let start = [("m", m1), ("v", v1), ("amplitude", amplitude), ("w", w)];
@@ -74,7 +74,7 @@ impl TwoMasses {
 
 pub(crate) type Outcome = Result<Master<Coupled>, CouplingError<SlaveError>>;
 
-/// x₁, v₁, x₂, v₂ now.
+/// Present x₁, v₁, x₂, v₂.
 pub(crate) fn state(master: &Master<Coupled>) -> [f64; 4] {
     [(0, 0), (0, 1), (1, 1), (1, 2)].map(|(block, port)| master.value(Port { block, port }).unwrap())
 }
