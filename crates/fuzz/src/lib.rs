@@ -1,4 +1,4 @@
-//! Fuzz targets as tests: a property that must hold whatever the input.
+//! Fuzz targets as tests: a property that must hold for every input.
 //!
 //! ```
 //! use servobench_fuzz::{Splice, check, fuzz};
@@ -9,7 +9,7 @@
 //!     assert!(text.parse::<f64>().is_err() || !text.contains('_'));
 //! });
 //! ```
-//! Structured input is put together of [`Number`], ranges, tuples, arrays and what [`produce`] gives:
+//! Structured input is composed of [`Number`], ranges, tuples, arrays and the values of [`produce`]:
 //!
 //! ```
 //! use servobench_fuzz::{Number, ValueGenerator, check, fuzz};
@@ -17,8 +17,8 @@
 //! let pairs = (Number::any(), 1..10_u8).map_gen(|(number, times)| (number, number * f64::from(times)));
 //! fuzz(check!(), 1_000, pairs, |(one, many): &(f64, f64)| assert!(one.is_nan() || one.abs() <= many.abs()));
 //! ```
-//! `cargo test` runs a target on the same seeded inputs each time, then on those that a fuzzer left. Another number of
-//! inputs: `SERVOBENCH_SWEEP=1000000`. Built for libFuzzer (docs/testing.md), the same target is guided by coverage.
+//! `cargo test` runs a target on the same seeded inputs each time, then on those that a fuzzer left. `SERVOBENCH_SWEEP=1000000` changes
+//! the number of inputs. Built for libFuzzer (docs/testing.md), the same target is guided by coverage.
 
 mod number;
 mod seeded;

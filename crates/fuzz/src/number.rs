@@ -1,10 +1,10 @@
-//! Numbers as people and machines get them wrong.
+//! Numbers with the errors of people and machines.
 use crate::splice::below;
 use bolero::Driver;
 use bolero::generator::ValueGenerator;
 
-/// Any `f64`: every bit pattern may come. Most are such as a request may hold, within thirty decades or within three, many
-/// of them round, so that two are equal now and then; what breaks arithmetic comes more often than chance would bring it.
+/// Any `f64`: every bit pattern may occur. Most are plausible values of a request, within thirty decades or within three, many of them
+/// round, so that two are equal now and then; values that break arithmetic occur more often than by chance.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
     signs: Signs,
@@ -12,20 +12,20 @@ pub struct Number {
 
 #[derive(Debug, Clone, Copy)]
 enum Signs {
-    /// As often as not.
+    /// Half of the numbers negative.
     Both,
-    /// One in 64.
+    /// One in 64 negative.
     HardlyEverNegative,
 }
 
 impl Number {
-    /// Of both signs.
+    /// Numbers of both signs.
     #[must_use]
     pub const fn any() -> Self {
         Self { signs: Signs::Both }
     }
 
-    /// One in 64 is negative: for what has to be positive.
+    /// Numbers of which one in 64 is negative, for values that must be positive.
     #[must_use]
     pub const fn magnitude() -> Self {
         Self { signs: Signs::HardlyEverNegative }
@@ -52,14 +52,14 @@ const SPECIAL: [f64; 16] = [
     0.5,
 ];
 
-/// What people type.
+/// Numbers that people type.
 const ROUND: [f64; 8] = [1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 5.0, 7.5];
 
 impl ValueGenerator for Number {
     type Output = f64;
 
     fn generate<D: Driver>(&self, driver: &mut D) -> Option<f64> {
-        // An input that has come to its end goes on with zeros: the number 1.
+        // An exhausted input continues with zeros: the number 1.
         let value = match below(driver, 64)? {
             0..=23 => ROUND[below(driver, ROUND.len())?] * [1.0, 0.1, 10.0, 0.01, 100.0, 1e-3][below(driver, 6)?],
             24..=52 => decades(driver, 3.0)?,
@@ -75,7 +75,7 @@ impl ValueGenerator for Number {
     }
 }
 
-/// A number between 10^−`most` and 10^`most`, each decade as often as another.
+/// A number between 10^−`most` and 10^`most`, all decades equally likely.
 fn decades<D: Driver>(driver: &mut D, most: f64) -> Option<f64> {
     let part = f64::from(driver.produce::<u32>()?) / f64::from(u32::MAX);
     Some(10.0_f64.powf(most * (2.0 * part - 1.0)))

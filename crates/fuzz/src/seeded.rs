@@ -1,7 +1,6 @@
-//! An engine of bolero's that feeds a target the same inputs each time.
+//! A bolero engine that feeds a target the same inputs each time.
 //!
-//! Bolero's own engine for `cargo test` takes its seeds from the operating system: a failure in one run would be gone in
-//! the next.
+//! Bolero's engine for `cargo test` takes its seeds from the operating system: a failure in one run would be gone in the next.
 use bolero::generator::ValueGenerator;
 use bolero::generator::bolero_generator::driver::ByteSliceDriver;
 use bolero::{Engine, Test};
@@ -10,7 +9,7 @@ use bolero_engine::input::Bytes;
 use bolero_engine::{Failure, panic};
 use std::fmt::Debug;
 
-/// Runs a target on so many inputs, the first of them the same for every number.
+/// Runs a target on a number of inputs; a larger number begins with the same inputs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seeded {
     pub(crate) inputs: u64,
@@ -39,15 +38,15 @@ where
     }
 }
 
-/// What `generator` makes as its input number `number`, for those who hold something else than a test against it: a program.
+/// Input number `number` of `generator`, for use outside tests: by a program.
 ///
-/// Where the bytes of the number do not suffice for an input there is none.
+/// `None` if the bytes of that number do not suffice for an input.
 pub fn seeded<G: ValueGenerator>(generator: &G, number: u64) -> Option<G::Output> {
     let bytes = bytes(number);
     generator.generate(&mut ByteSliceDriver::new(&bytes, &Options::default()))
 }
 
-/// What a generator makes its input number `number` of: 16 to 512 bytes.
+/// Bytes from which a generator makes its input number `number`: 16 to 512.
 fn bytes(number: u64) -> Vec<u8> {
     let words = 2 << (number % 6);
     let mut state = number;
@@ -66,7 +65,7 @@ fn next(state: &mut u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The first numbers of the generator from seed 0, as its published C code gives them.
+    /// The first numbers of the generator from seed 0, according to its published C code.
     #[test]
     fn the_generator_is_splitmix64() {
         let mut state = 0;

@@ -1,7 +1,7 @@
-//! Inputs that are almost right: real files, cut into words and put together wrongly.
+//! Inputs that are almost right: real files, cut into words and joined wrongly.
 //!
-//! Random bytes never get past the outermost parser. A real file with a few words changed does, and what is wrong with it
-//! is found, or missed, deep inside.
+//! Random bytes never get past the outermost parser. A real file with a few changed words does, and its mistakes are found, or missed,
+//! deep inside.
 use bolero::Driver;
 use bolero::generator::ValueGenerator;
 use std::borrow::Cow;
@@ -9,31 +9,31 @@ use std::collections::BTreeSet;
 use std::ops::Bound::{Excluded, Included};
 use std::ops::Range;
 
-/// Files of bytes.
+/// Generator of changed files of bytes.
 #[derive(Debug, Clone)]
 pub struct Splice {
-    /// The words of each.
+    /// The words of each file.
     files: Vec<Vec<Vec<u8>>>,
-    /// Words to put in.
+    /// Words to insert.
     dictionary: Vec<Vec<u8>>,
-    /// All words of files and dictionary, each once, by their kind.
+    /// All words of files and dictionary, each once, by kind.
     kinds: [Vec<Vec<u8>>; 3],
 }
 
-/// Files of text; see [`Splice::text`].
+/// Generator of changed texts; see [`Splice::text`].
 #[derive(Debug, Clone)]
 pub struct SplicedText(Splice);
 
 type Words<'a> = Vec<Cow<'a, [u8]>>;
 
-/// No input has more words, so that doubling cannot fill the memory.
+/// Greatest number of words of an input, so that doubling cannot fill the memory.
 const MOST_WORDS: usize = 1 << 14;
 
 impl Splice {
-    /// Of files of bytes, each byte a word.
+    /// Splices files of bytes, each byte a word.
     ///
     /// # Panics
-    /// When there is no file or no word to put in.
+    /// If there is no file or no word to insert.
     #[must_use]
     pub fn bytes(files: &[&[u8]], dictionary: &[&[u8]]) -> Self {
         assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
@@ -41,10 +41,10 @@ impl Splice {
         Self::new(files.iter().map(bytes).collect(), dictionary.iter().map(|word| word.to_vec()).collect())
     }
 
-    /// Of texts: a word is a number, a name, or any other character.
+    /// Splices texts: a word is a number, a name, or any other character.
     ///
     /// # Panics
-    /// When there is no file or no word to put in.
+    /// If there is no file or no word to insert.
     #[must_use]
     pub fn text(files: &[&str], dictionary: &[&str]) -> SplicedText {
         assert!(!files.is_empty() && !dictionary.is_empty(), "there is nothing to splice");
@@ -72,7 +72,7 @@ fn kind(word: &[u8]) -> usize {
     }
 }
 
-/// Numbers and names whole, anything else by the character.
+/// Words of a text: numbers and names whole, anything else by the character.
 fn words(text: &str) -> Vec<&str> {
     let in_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+');
     let mut words = vec![];
@@ -140,7 +140,7 @@ impl Splice {
                 let byte = below(driver, word.len())?;
                 word.to_mut()[byte] = driver.produce()?;
             }
-            // What changes least gets furthest, so most often.
+            // The smallest changes get furthest, so they are the most frequent.
             7..=10 => {
                 let Some(word) = words.get_mut(at.start) else { return Some(()) };
                 *word = self.another(kind(word), driver)?;
@@ -160,7 +160,7 @@ impl Splice {
         Some(())
     }
 
-    /// Another word of a kind: one of ours, or a number of any magnitude.
+    /// Another word of a kind: one of the known words, or a number of any magnitude.
     fn another<'a, D: Driver>(&'a self, kind: usize, driver: &mut D) -> Option<Cow<'a, [u8]>> {
         let ours = &self.kinds[kind];
         if ours.is_empty() || kind == 0 && driver.produce()? {
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(words(text).concat(), text);
     }
 
-    /// What each kind of change makes of three words, among the inputs of one sweep.
+    /// Result of each kind of change on three words, among the inputs of one sweep.
     #[test]
     fn every_kind_of_change_happens() {
         let seen = Mutex::new(BTreeSet::new());

@@ -1,18 +1,18 @@
-//! One target: the property, its inputs, and how many of them.
+//! A fuzz target: the property, its inputs, and their number.
 use crate::seeded::Seeded;
 use bolero::generator::ValueGenerator;
 use bolero::{BorrowedInput, ByteSliceGenerator, DefaultEngine, TestTarget};
 use std::fmt::Debug;
 use std::panic::RefUnwindSafe;
 
-/// What `check!()` makes at the place where it stands.
+/// Result of `check!()`, which marks the place of the target.
 pub type Target = TestTarget<ByteSliceGenerator, DefaultEngine, BorrowedInput>;
 
-/// Holds `property` against `inputs` seeded inputs of `generator`, or as many as `SERVOBENCH_SWEEP` says; then against
-/// every file in `__fuzz__/<target>/{crashes,corpus}` beside the test; then, under a fuzzer, against what that finds.
+/// Checks `property` against `inputs` seeded inputs of `generator`, or `SERVOBENCH_SWEEP` of them if that is set; then against every file
+/// in `__fuzz__/<target>/{crashes,corpus}` beside the test; then, under a fuzzer, against the fuzzer's inputs.
 ///
 /// # Panics
-/// When the property does, after making the input small; when `SERVOBENCH_SWEEP` is no whole number.
+/// If the property panics, after shrinking the input; if `SERVOBENCH_SWEEP` is not a whole number.
 pub fn fuzz<G>(target: Target, inputs: u64, generator: G, property: impl Fn(&G::Output) + RefUnwindSafe)
 where
     G: ValueGenerator,
