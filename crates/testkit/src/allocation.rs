@@ -1,4 +1,4 @@
-//! How often and how much a thread allocates.
+//! Number and size of a thread's allocations.
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -7,7 +7,7 @@ thread_local! {
     static LARGEST: Cell<usize> = const { Cell::new(0) };
 }
 
-/// The system's allocator, which counts; a test makes it its `#[global_allocator]`. Growing a block is an allocation, too.
+/// The system's allocator with counters; a test sets it as its `#[global_allocator]`. Growing a block counts as an allocation.
 #[derive(Debug, Clone, Copy)]
 pub struct CountingAllocator;
 
@@ -18,7 +18,7 @@ impl CountingAllocator {
         COUNT.get()
     }
 
-    /// What `call` gives, and its largest allocation (bytes).
+    /// Result of `call`, and its largest allocation (bytes).
     pub fn largest_of<T>(call: impl FnOnce() -> T) -> (T, usize) {
         LARGEST.set(0);
         let given = call();

@@ -1,7 +1,7 @@
-//! What tests of several crates need; nothing but tests and benchmarks depends on it.
+//! Helpers for the tests of several crates; only tests and benchmarks depend on it.
 //!
 //! - [`Random`]: seeded random numbers, the same in every run.
-//! - [`CountingAllocator`]: how often and how much a thread allocates.
+//! - [`CountingAllocator`]: number and size of a thread's allocations.
 //!
 //! ```
 //! use servobench_testkit::{CountingAllocator, Random};

@@ -1,6 +1,6 @@
 //! Seeded random numbers.
 
-/// Random numbers that are the same in every run. `SplitMix64` (Steele, Lea & Flood 2014).
+/// Random numbers, the same in every run. `SplitMix64` (Steele, Lea & Flood 2014).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
@@ -34,12 +34,12 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Between 10^low and 10^high, every decade alike.
+    /// Between 10^low and 10^high, all decades equally likely.
     pub fn decades(&mut self, low: f64, high: f64) -> f64 {
         10.0_f64.powf(low + (high - low) * self.unit())
     }
 
-    /// From `low` to `high`, both above zero, evenly in the logarithm.
+    /// From `low` to `high`, both above zero, uniform in the logarithm.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.unit())
     }
@@ -54,7 +54,7 @@ impl Random {
         usize::try_from(self.below(length as u64)).unwrap_or_default()
     }
 
-    /// One of `choices`, of which there is one at least.
+    /// One of `choices`, which must not be empty.
     pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.index(choices.len())]
     }
