@@ -244,7 +244,7 @@ impl Unpacked {
         &self.path
     }
 
-    /// The folder with what was in it.
+    /// The folder with its unpacked files.
     #[must_use]
     pub fn folder(&self) -> &Path {
         match &*self.folder {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
 use tempfile::TempDir;
 
-/// Beginning of their names, before the process number.
+/// Prefix of the folders' names, followed by the process number.
 const PREFIX: &str = "servobench-fmu-";
 
 /// Existing folders of this process.

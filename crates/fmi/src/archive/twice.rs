@@ -35,7 +35,7 @@ struct Entry {
 }
 
 /// Names that occur in the directory more than once with the same bytes, each with its count. The directory begins at `start` in a `file`
-/// of `bytes`; its entries lie `offset` behind their stated positions.
+/// of `bytes`; local headers lie `offset` behind their stated positions.
 ///
 /// # Errors
 /// [`ArchiveProblem`] for a name with different bytes.

@@ -12,7 +12,7 @@ const MOST_PARTS: u32 = 1 << 10;
 /// Calls after which the state is saved again.
 const MOST_CALLS: usize = 64;
 
-/// Memory for going back.
+/// Calls and states to repeat discarded steps in parts.
 pub(super) struct Redo {
     /// True if the FMU can go back and take steps of another length.
     is_able: bool,

@@ -16,9 +16,9 @@ pub(super) struct Session {
     pub(super) capabilities: Capabilities,
     /// Its time (s).
     pub(super) time: f64,
-    /// Its time, for the log.
+    /// Its time, as stamped on log lines.
     clock: Clock,
-    /// Time limit of steps (s).
+    /// Stop time, which no step exceeds (s).
     stop: Option<f64>,
     /// True in the initialisation mode.
     pub(super) is_initialising: bool,

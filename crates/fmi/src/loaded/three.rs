@@ -14,7 +14,7 @@ use crate::setup::{Setup, Start};
 use crate::slave::{Capabilities, LogLine, SlaveError, StepEnd};
 use std::ffi::CString;
 
-/// Updates of discrete states at one event. An FMU that wants more loops for ever.
+/// Most updates of discrete states at one event. An FMU that wants more loops for ever.
 const MOST_UPDATES: usize = 1_000;
 
 /// An FMU of version 3.0.

@@ -3,7 +3,7 @@
 
 /// Times closer than this (relative) are equal: rounding of the time.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
-/// Rest of a step that is not taken separately: the caller treats it as rounding.
+/// Relative rest of a step that is not taken separately: the caller treats it as rounding.
 const REST: f64 = 1e-9;
 
 /// Time of the next event.
