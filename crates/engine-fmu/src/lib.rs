@@ -14,8 +14,8 @@
 //! |---|---|
 //! | crashes, aborts, calls `exit` | signal or exit code, and its last output on standard error |
 //! | does not return | the call and the time limit; it is killed |
-//! | allocates memory without end, private or shared | its limit |
-//! | prints without end | number of bytes dropped; the end is kept |
+//! | allocates unbounded memory, private or shared | its limit |
+//! | prints unbounded text | number of bytes dropped; the end is kept |
 //! | overwrites the shared memory | the fact; numbers there are only numbers and lengths are limited |
 //! | leaves processes behind | their names; they are killed |
 //!

@@ -3,7 +3,7 @@
 //! ```text
 //! tick   k·n                  k·n+1 …                (k+1)·n
 //! FMU    exchange, state ─────────────────────────── step of n ticks with the mean of the efforts, exchange
-//! bodies as exchanged         as they would go on    as exchanged
+//! bodies as exchanged         as extrapolated        as exchanged
 //! ```
 //! With n = 1 nothing is extrapolated, and the effort of a tick is held over it, as for a built-in engine. With n > 1 the impulse of the
 //! efforts is kept, and the axis sees the FMU as it was up to n ticks ago: a mean delay of n/2 ticks.
@@ -153,7 +153,7 @@ impl FmuMechanics {
         for _ in 0..MOST_PARTS {
             match self.slave.step(time, length, &self.inputs).map_err(|error| self.wrong(&error))? {
                 StepEnd::Done => return self.read(),
-                // An event at the very start is one too, but not without end.
+                // An event at the very start counts too, but not for ever.
                 StepEnd::Until(reached) if reached >= time && stalls < MOST_STALLS && reached < end - rounding => {
                     stalls = if reached > time { 0 } else { stalls + 1 };
                     time = reached;

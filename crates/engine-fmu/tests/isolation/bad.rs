@@ -19,7 +19,7 @@ pub(crate) enum Bad {
     HangInLoading,
     /// Writes to address zero.
     NullWrite,
-    /// Calls itself without end.
+    /// Recurses for ever.
     StackOverflow,
     /// Aborts after a message on standard error.
     Abort,
@@ -31,7 +31,7 @@ pub(crate) enum Bad {
     Signal(i32),
     /// Ends the process from another thread while the step continues.
     ExitInThread,
-    /// Computes without end.
+    /// Computes for ever.
     Loop,
     /// Stops itself: not even a signal other than SIGKILL reaches it.
     Stop,

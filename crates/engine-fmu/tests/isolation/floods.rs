@@ -1,4 +1,4 @@
-//! Memory and text without end.
+//! Unbounded memory and text.
 use super::*;
 use servobench_fmi::Severity;
 
