@@ -6,7 +6,7 @@ use std::{env, fs, io};
 /// Folders of ready scenarios in the repository. The demo is embedded with the models.
 const READY: [&str; 2] = ["scenarios", "scenarios-fmu"];
 const DEMO: &str = "scenarios/demo";
-/// Ends of the names of scenarios and of what they name. Beside them lie FMUs that the scenarios say how to make.
+/// Extensions of scenarios and the files that they name. FMUs beside them are made by commands stated in the scenarios.
 const KINDS: [&str; 2] = ["toml", "csv"];
 
 fn main() -> io::Result<()> {

@@ -1,4 +1,4 @@
-//! Which program this is: the identity that the linker has written into it, a digest of what it linked.
+//! Identity of this program: the build ID written by the linker, a digest of what it linked.
 use object::read::ReadCache;
 use object::{File, Object as _};
 use std::fmt::Write as _;
@@ -14,9 +14,9 @@ pub(crate) fn program() -> &'static str {
     })
 }
 
-/// What the linker has written.
+/// Build ID written by the linker; `None` without one.
 fn linked() -> Option<String> {
-    // Of a file of some hundred megabytes only the parts that are asked for are read.
+    // Only the required parts of a file of some hundred megabytes are read.
     let source = ReadCache::new(std::fs::File::open(std::env::current_exe().ok()?).ok()?);
     let id = File::parse(&source).ok()?.build_id().ok()??.to_owned();
     Some(id.iter().fold(String::new(), |mut text, byte| {

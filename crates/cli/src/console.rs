@@ -1,7 +1,6 @@
-//! What is said: results on standard output, everything else on standard error.
+//! Console output: results on standard output, everything else on standard error.
 //!
-//! It is the one gate for texts: whatever comes here may quote what somebody else wrote, and leaves it as
-//! [`servobench_report::shown`] has it.
+//! All texts pass through here, since any may quote foreign text; they leave as [`servobench_report::shown`] makes them.
 use crate::error::CliError;
 use servobench_report::{Style, shown};
 use servobench_results::printable_json;
@@ -9,13 +8,13 @@ use std::ffi::OsStr;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Prints `text` on standard output, fit for a terminal. A reader that went away (`| head`) has what it wanted; what cannot be written for
-/// any other reason is an error.
+/// Prints `text` on standard output, fit for a terminal. A reader that closed the pipe (`| head`) is not an error; any other failure to
+/// write is.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     print_bytes(shown(text, has_colour(&std::io::stdout())).as_bytes())
 }
 
-/// The same with a text in parts, whole lines each, as they come.
+/// Prints a text in parts, whole lines each, as they come.
 pub(crate) fn print_parts<E>(parts: impl Iterator<Item = Result<String, E>>) -> Result<(), CliError>
 where
     CliError: From<E>,
@@ -32,15 +31,15 @@ where
     print_bytes(text.as_bytes())
 }
 
-/// Bytes of a text in parts that are printed at once.
+/// Bytes of a text in parts that are collected before printing.
 const BLOCK: usize = 1 << 16;
 
-/// The same with JSON, which keeps its meaning.
+/// Prints JSON, escaped so that it keeps its meaning.
 pub(crate) fn print_json(json: &str) -> Result<(), CliError> {
     print_bytes(printable_json(json).as_bytes())
 }
 
-/// The same with what is no text, and with texts for programs that quote nobody.
+/// Prints bytes unchanged: data that is not text, or texts for programs without foreign parts.
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -49,7 +48,7 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
     }
 }
 
-/// Says `text` on standard error, fit for a terminal. When that is closed or full, there is nobody to tell.
+/// Writes `text` to standard error, fit for a terminal. Failure is ignored: there is nowhere to report it.
 pub(crate) fn say(text: &str) {
     let mut stderr = std::io::stderr().lock();
     let colour = has_colour(&stderr);
@@ -60,17 +59,17 @@ fn has_colour(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// From now on what panics is said here too: its message may quote a scenario.
+/// Routes panic messages through here from now on: they may quote a scenario.
 pub(crate) fn say_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         let text = panic.to_string();
-        // As always where there is nothing to take out: with the thread, and the stack where that is asked for.
+        // The default hook where nothing has to be escaped: with the thread, and the stack if requested.
         if shown(&text, false) == text { default(panic) } else { say(&format!("{text}\n")) }
     }));
 }
 
-/// This program for commands to be pasted: by its name where that is enough, otherwise as it was started.
+/// This program in commands to be pasted: by its name where the shell finds it, otherwise as it was started.
 fn program() -> String {
     let started = std::env::args().next().unwrap_or_else(|| "servobench".into());
     let path = Path::new(&started);
@@ -80,20 +79,20 @@ fn program() -> String {
         .map_or_else(|| started.clone(), |name| name.to_string_lossy().into_owned())
 }
 
-/// A command to be pasted into a shell: this program with `words`, each read as it is.
+/// A command to be pasted into a shell: this program with `words`, quoted.
 pub(crate) fn command(words: &[&str]) -> String {
     let quoted = |word: &str| shlex::try_quote(word).map_or_else(|_| word.to_owned(), Into::into);
     let words: Vec<String> = std::iter::once(program().as_str()).chain(words.iter().copied()).map(quoted).collect();
     words.join(" ")
 }
 
-/// What a shell starts that is told `name` alone, with this list of folders.
+/// Program that a shell starts for `name` alone, with this search path.
 fn found_by(name: &OsStr, search: &OsStr) -> Option<PathBuf> {
     let found = std::env::split_paths(search).map(|folder| folder.join(name)).find(|path| path.is_file());
     found.and_then(|path| path.canonicalize().ok())
 }
 
-/// How tables are shown on standard output.
+/// Style of tables on standard output.
 pub(crate) fn style() -> Style {
     Style { colour: has_colour(&std::io::stdout()), ..Style::default() }
 }

@@ -8,10 +8,10 @@ use servobench_results::{printable, printable_lines};
 use servobench_scenario::{Diagnostic, Shown, Sources, shown};
 use std::ops::Range;
 
-/// What is named in place of a file where a mistake is in an option.
+/// Name in place of a file for a mistake in an option.
 const COMMAND_LINE: &str = "command line";
 
-/// Columns that a diagnostic is laid out for.
+/// Width of a diagnostic, in columns.
 const WIDTH: usize = 80;
 
 /// Everything that is wrong with a scenario, with its name and the number of mistakes.
@@ -21,7 +21,7 @@ pub(crate) fn mistakes(mistakes: &[Diagnostic], sources: &Sources) -> String {
     format!("{name}: {} {plural}\n{}", mistakes.len(), render(mistakes, sources, Severity::Error))
 }
 
-/// The diagnostics as a person reads them, one after the other; of many in one file the first, and how many more there are.
+/// The diagnostics as readable text, one after the other; of many in one file the first, and the number of others.
 pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Severity) -> String {
     let plain = handler(ThemeStyles::none());
     let coloured = handler(ThemeStyles::ansi());
@@ -36,8 +36,8 @@ pub(crate) fn render(diagnostics: &[Diagnostic], sources: &Sources, severity: Se
                 handler.render_report(&mut text, report.as_ref()).is_ok().then_some(text)
             };
             match drawn(&plain) {
-                // It quotes the file as it is: where that is not fit for a terminal there are no colours, since nobody could
-                // tell them from it.
+                // It quotes the file verbatim: text that is not fit for a terminal gets no colours, which could not be
+                // distinguished from it.
                 Some(text) if printable_lines(&text) != text => text,
                 Some(text) => drawn(&coloured).map_or(text, |coloured| painted(&coloured)),
                 // A span that cannot be drawn is still named by its line.
@@ -53,10 +53,10 @@ fn handler(styles: ThemeStyles) -> GraphicalReportHandler {
     GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false)
 }
 
-/// Bytes of the lines that an excerpt shows: nobody reads more of a line.
+/// Most bytes of the lines in an excerpt.
 const WIDEST: usize = 2000;
 
-/// Whether the lines of `span`, and the one on either side, are wider than an excerpt can show.
+/// True if the lines of `span`, with the one on either side, are too long for an excerpt.
 fn is_too_wide(text: &str, span: &Range<usize>) -> bool {
     let before = text.get(..span.start).unwrap_or_default().rsplit('\n').take(2).map(str::len).sum::<usize>();
     let behind = text.get(span.end..).unwrap_or_default().split('\n').take(2).map(str::len).sum::<usize>();

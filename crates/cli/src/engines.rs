@@ -1,10 +1,10 @@
-//! The engines that this build has: the only place that knows of engine features.
+//! The engines of this build: the only place that depends on engine features.
 use crate::fmu_trust::FmuTrust;
 use servobench::Engines;
 use servobench_plant::Engine;
 use servobench_sim::FmuOpener;
 
-/// The engines of this build, with this one for FMUs.
+/// The engines of this build, with the given one for FMUs.
 macro_rules! with_fmus_of {
     ($fmu:expr) => {
         &[
@@ -39,12 +39,12 @@ const fn fmu_opener(_: FmuTrust) -> &'static dyn FmuOpener {
     &servobench_sim::NoFmus
 }
 
-/// Every engine of this build. Of FMUs runs the code that the command line lets run.
+/// Every engine of this build, with the permission for code of FMUs from the command line.
 pub(crate) fn installed() -> Engines {
     with(FmuTrust::settled())
 }
 
-/// Every engine of this build, of FMUs the code that `trust` lets run.
+/// Every engine of this build, with the permission `trust` for code of FMUs.
 pub(crate) const fn with(trust: FmuTrust) -> Engines {
     let installed = match trust {
         FmuTrust::Describe => DESCRIBED,

@@ -1,5 +1,4 @@
-//! Why a command could not do what it was asked to: one type, each variant with the error of the crate that it comes from, and one
-//! match from it to the exit code.
+//! Errors of commands: one type, each variant with the error of the crate that it comes from, and one match from it to the exit code.
 use crate::commands::{AdviseMistake, Findings, PlanMistake};
 use crate::diagnostics::mistakes;
 use crate::exit::{Exit, of_run_error};
@@ -23,11 +22,11 @@ use std::path::PathBuf;
 use std::process::ExitStatus;
 use thiserror::Error;
 
-/// How to get the viewer.
+/// Instructions for getting the viewer.
 const GET_VIEWER: &str = "there is no Rerun viewer: `cargo xtask viewer` fetches one, and so does \
                           `pip install rerun-sdk==0.36.3`";
 
-/// Why a command could not do what it was asked to.
+/// Error of a command.
 #[derive(Debug, Error)]
 pub(crate) enum CliError {
     // Invalid input.
@@ -35,7 +34,7 @@ pub(crate) enum CliError {
     Scenario(#[from] LoadError),
     #[error("{}", lines(.0))]
     Scenarios(Vec<Unusable>),
-    /// What is wrong in a scenario beyond its own mistakes.
+    /// Mistakes in a scenario that are found after it was read.
     #[error("{}", mistakes(.diagnostics, .sources))]
     Mistakes { diagnostics: Vec<Diagnostic>, sources: Box<Sources> },
     #[error("there is no scenario (`*.toml`) in `{}`", .folder.display())]
@@ -92,7 +91,7 @@ pub(crate) enum CliError {
     NothingForTheViewer,
     #[error(transparent)]
     ReadRecording(TraceError),
-    /// In the words of `servobench-view`.
+    /// Message of `servobench-view`.
     #[error("{0}")]
     NotDrawn(String),
     #[error(transparent)]
@@ -136,13 +135,13 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Export(Box<servobench_fmu::FmuError>),
 
-    // Invalid input, or what could not be carried out.
+    // Invalid input, or work that could not be carried out.
     #[error("{}", lines(.0))]
     Runs(Vec<FailedRun>),
     #[error(transparent)]
     Check(Findings),
 
-    // What could not be carried out.
+    // Work that could not be carried out.
     #[error(transparent)]
     NoAdvice(#[from] AdviseError),
     #[error("{0}; nothing was begun")]
@@ -215,7 +214,7 @@ impl FailedRun {
 }
 
 impl CliError {
-    /// What the program ends with.
+    /// Exit code of the program.
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Scenario(_)

@@ -1,4 +1,4 @@
-//! Exit codes of the program. A reader that goes away (`| head`) changes nothing: the verdict keeps its code.
+//! Exit codes of the program. A reader that closes the pipe (`| head`) does not change them.
 use servobench_results::Outcome;
 use servobench_suite::RunError;
 use std::process::ExitCode;
@@ -14,10 +14,10 @@ pub(crate) const CODES: [(&str, &str); 7] = [
     ("143", "interrupted by SIGTERM; results of runs that have ended are kept"),
 ];
 
-/// Which code a suite ends with whose runs ended with several.
+/// Precedence among the exit codes of a suite's runs.
 pub(crate) const PRECEDENCE: &str = "Of several, 2 comes before 3 before 4.";
 
-/// The exit codes in a paragraph, for the help.
+/// The exit codes in a paragraph, for `--help`.
 pub(crate) fn help() -> String {
     let own = CODES.iter().filter(|(code, _)| *code != "1");
     let codes = own.map(|(code, meaning)| format!("{code} {}", meaning.replace(';', ",")));
@@ -33,9 +33,9 @@ pub(crate) enum Exit {
     Input,
     /// A run could not be carried out.
     Run,
-    /// A run failed, or has what is denied.
+    /// A run failed, or has something that `--deny` names.
     Failed,
-    /// It was told to stop.
+    /// Stopped by an interrupt.
     Interrupted,
 }
 
@@ -70,7 +70,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// What a run that came to this ends the program with.
+/// Exit code for a run with this outcome.
 pub(crate) const fn of_outcome(outcome: Outcome) -> Exit {
     match outcome {
         Outcome::Passed | Outcome::Unjudged => Exit::Passed,
@@ -80,7 +80,7 @@ pub(crate) const fn of_outcome(outcome: Outcome) -> Exit {
     }
 }
 
-/// What a run without a verdict ends the program with.
+/// Exit code for a run that ended with this error.
 pub(crate) const fn of_run_error(error: &RunError) -> Exit {
     if error.is_input() { Exit::Input } else { Exit::Run }
 }

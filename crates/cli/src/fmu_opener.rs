@@ -1,4 +1,4 @@
-//! FMUs of scenarios: who opens them, and the program that they run in.
+//! Opening of FMUs in scenarios, and the program that runs them.
 use servobench_engine_fmu::{Code, Fmu, HostCommand};
 use servobench_fmi::{FmuMistake, FmuRequest, Slave};
 use servobench_sim::FmuOpener;
@@ -7,8 +7,8 @@ use std::io;
 /// The command with which this program hosts an FMU.
 pub(crate) const HOST: &str = "fmu-host";
 
-/// The engine `fmu`, and whoever opens FMUs beside an axis: without running any code of theirs, in processes of their own, and where
-/// the scenario says.
+/// The engine `fmu`, which also opens FMUs beside an axis: without running any of their code, in separate processes, or as the scenario
+/// specifies.
 pub(crate) const DESCRIBED: Fmu = Fmu { host, code: Code::None };
 pub(crate) const ISOLATED: Fmu = Fmu { host, code: Code::Isolated };
 pub(crate) const ANYWHERE: Fmu = Fmu { host, code: Code::Anywhere };

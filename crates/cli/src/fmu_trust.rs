@@ -1,22 +1,22 @@
-//! Which code of FMUs may run: that is for the command line to say, and for no scenario.
+//! Permission to run code of FMUs: only the command line grants it, not a scenario.
 use crate::args::{CheckArgs, Command, FmuTrustArgs};
 #[cfg(feature = "fmu")]
 use servobench_fmi::Isolation;
 use servobench_scenario::{Diagnostic, Invalid, LoadError, Loaded};
 use std::sync::OnceLock;
 
-/// Which code of FMUs runs in this process and those that it starts.
+/// Permission for this process and those that it starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FmuTrust {
-    /// None: their descriptions are read.
+    /// No code runs; only descriptions are read.
     Describe,
-    /// In processes of their own.
+    /// Code runs in separate processes.
     Isolated,
-    /// Where their scenarios say, in this process too.
+    /// Code runs as scenarios specify, in this process too.
     AsTheScenarioSays,
 }
 
-/// What the command line says; before it has said anything no code runs.
+/// Permission by the command line; none before it is set.
 static TRUST: OnceLock<FmuTrust> = OnceLock::new();
 
 /// The option that lets code run without isolation.
@@ -24,7 +24,7 @@ static TRUST: OnceLock<FmuTrust> = OnceLock::new();
 const ALLOW: &str = "--allow-unisolated-fmus";
 
 impl FmuTrust {
-    /// What `command` allows.
+    /// Permission granted by `command`.
     pub(crate) const fn of(command: &Command) -> Self {
         match command {
             Command::Run(args) => Self::running(args.suite.fmus),
@@ -40,19 +40,19 @@ impl FmuTrust {
         if args.allow_unisolated_fmus { Self::AsTheScenarioSays } else { Self::Isolated }
     }
 
-    /// From now on this is what the command line says.
+    /// Sets the permission for the rest of the program.
     pub(crate) fn settle(self) {
-        // It says it once.
+        // The first setting stays.
         TRUST.set(self).ok();
     }
 
-    /// What the command line says.
+    /// Permission by the command line.
     pub(crate) fn settled() -> Self {
         TRUST.get().copied().unwrap_or(Self::Describe)
     }
 }
 
-/// `loaded`, unless it wants code of an FMU to run where the command line does not let it.
+/// `loaded`, unless it needs code of an FMU to run without isolation and the command line does not allow that.
 pub(crate) fn trusted(loaded: Loaded) -> Result<Loaded, LoadError> {
     if FmuTrust::settled() != FmuTrust::Isolated {
         return Ok(loaded);
@@ -65,7 +65,7 @@ pub(crate) fn trusted(loaded: Loaded) -> Result<Loaded, LoadError> {
     Err(LoadError::Invalid(Box::new(Invalid { diagnostics, warnings, sources })))
 }
 
-/// What a check that runs no code has to say of `loaded`: a run of it needs a word of the command line.
+/// Warnings of a check that runs no code: a run of `loaded` needs an option on the command line.
 pub(crate) fn doubts(loaded: &Loaded) -> Vec<Diagnostic> {
     if FmuTrust::settled() == FmuTrust::Describe { unisolated(loaded, "will need") } else { Vec::new() }
 }
@@ -76,7 +76,7 @@ fn unisolated(_: &Loaded, _: &str) -> Vec<Diagnostic> {
     Vec::new()
 }
 
-/// Each place where `loaded` wants an FMU to run without isolation.
+/// Places in `loaded` where an FMU is to run without isolation.
 #[cfg(feature = "fmu")]
 fn unisolated(loaded: &Loaded, needs: &str) -> Vec<Diagnostic> {
     let scenario = &loaded.scenario;

@@ -1,10 +1,8 @@
-//! Interrupted programs leave no process, no half-written file, no recording that no results name, and no FMU that was
-//! unpacked.
+//! Interrupted programs leave no process, no half-written file, no recording that no results name, and no unpacked FMU.
 //!
-//! A suite is told to stop by the first SIGINT: what is under way comes to its end, nothing else begins, and the results are
-//! written. On the second one, and on SIGTERM, it ends now, as every other command does on the first: the processes that were
-//! started are ended, then the files removed, the results written, and the program ends as it would have without all this, so that
-//! a shell sees 130 or 143 and knows why.
+//! The first SIGINT stops a suite: active runs finish, no other begins, and the results are written. The second one, and SIGTERM, end it
+//! at once, as the first ends every other command: started processes are killed, then the files removed, the results written, and the
+//! program ends by the signal's default action, so that a shell sees 130 or 143.
 use crate::console::say;
 use crate::error::CliError;
 use servobench_isolation::{Interrupt, Interrupts, end_all};
@@ -14,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Until what is under way in other threads has seen that its process or its file is gone.
+/// Time for other threads to notice that their process or file is gone.
 const BREATH: Duration = Duration::from_millis(20);
 
 /// `true` when nothing is to begin any more.
@@ -27,7 +25,7 @@ pub(crate) fn is_stopping() -> bool {
     STOPPING.load(Ordering::SeqCst)
 }
 
-/// `true` while the program is being ended: what a process that is ended for it leaves undone is nobody's failure.
+/// `true` while the program is being ended: a process killed for that is not a failure.
 pub(crate) fn is_ending() -> bool {
     ENDING.load(Ordering::SeqCst)
 }
@@ -42,28 +40,28 @@ pub(crate) fn end_if_ending() {
 /// Files of this run that no results name yet.
 static UNTOLD: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A file was written, and goes away with the run if that is interrupted.
+/// Registers a written file, which is removed if the run is interrupted.
 pub(crate) fn written(file: &Path) {
     untold().push(file.to_owned());
 }
 
-/// The results are written: what they name stays.
+/// Keeps the registered files, because results now name them.
 pub(crate) fn told() {
     untold().clear();
 }
 
 fn untold() -> MutexGuard<'static, Vec<PathBuf>> {
-    // Nothing is ever left half done with it.
+    // A panic never leaves the list half changed.
     UNTOLD.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on an interrupted program removes what it did not finish in `folder`.
+/// Makes an interrupted program remove its unfinished files in `folder`.
 pub(crate) fn watch(folder: &Path) -> Result<(), CliError> {
     listen(folder, |_| true, || {})
 }
 
-/// From now on the first SIGINT stops a suite that writes into `folder`; what ends it at once calls `close` when nothing of it
-/// runs any more.
+/// Makes the first SIGINT stop a suite that writes into `folder`; an interrupt that ends it at once calls `close` after its processes have
+/// ended.
 pub(crate) fn watch_suite(folder: &Path, close: impl FnOnce() + Send + 'static) -> Result<(), CliError> {
     let is_last = |interrupt: Interrupt| {
         let is_last = STOPPING.swap(true, Ordering::SeqCst) || !interrupt.is_from_keyboard();
@@ -75,7 +73,7 @@ pub(crate) fn watch_suite(folder: &Path, close: impl FnOnce() + Send + 'static) 
     listen(folder, is_last, close)
 }
 
-/// Ends the program on an interrupt of which `is_last` says so.
+/// Ends the program on the first interrupt for which `is_last` returns true.
 fn listen(
     folder: &Path,
     is_last: impl Fn(Interrupt) -> bool + Send + 'static,
@@ -94,8 +92,7 @@ fn listen(
     Ok(())
 }
 
-/// From now on a file that grows beyond what the process may write (`RLIMIT_FSIZE`) is an error of the write, as a full disk
-/// is, and not the end of the process.
+/// Makes a write beyond the process's limit (`RLIMIT_FSIZE`) an error, like a full disk, instead of the end of the process.
 pub(crate) fn refuse_large_files() -> Result<(), CliError> {
     servobench_isolation::refuse_large_files().map_err(CliError::Signals)
 }
@@ -112,20 +109,20 @@ fn end(interrupt: Interrupt, folder: &Path, close: impl FnOnce()) -> ! {
     }
     remove_unpacked(&ended);
     for file in files.iter() {
-        // What cannot be removed is only in the way.
+        // A file that cannot be removed does no harm.
         std::fs::remove_file(file).ok();
     }
     close();
     interrupt.end()
 }
 
-/// FMUs that were unpacked by programs that were killed.
+/// Removes FMUs that killed programs had unpacked.
 fn remove_abandoned() {
     #[cfg(feature = "fmu")]
     servobench_fmi::remove_abandoned();
 }
 
-/// FMUs that were unpacked, here and by workers, which had no time for it.
+/// Removes FMUs unpacked by this process and by its killed workers.
 #[cfg(feature = "fmu")]
 fn remove_unpacked(ended: &[u32]) {
     servobench_fmi::remove_unpacked(ended);
@@ -134,7 +131,7 @@ fn remove_unpacked(ended: &[u32]) {
 #[cfg(not(feature = "fmu"))]
 fn remove_unpacked(_: &[u32]) {}
 
-/// Removes files under way of this process: their names have its id.
+/// Removes unfinished files of this process, whose names contain its id.
 fn remove_unfinished(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         if unfinished_by(&entry.file_name().to_string_lossy()) == Some(std::process::id()) {

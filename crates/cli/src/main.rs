@@ -36,7 +36,7 @@ fn main() -> ExitCode {
         console::say(&format!("servobench: {error}\n"));
         return error.exit().into();
     }
-    // A panic is a defect of ours; it must not end the program with a code that means something else.
+    // A panic is a defect of this program; it must not end with a code that means something else.
     catch_unwind(|| dispatch(&cli.command)).unwrap_or(Exit::Run).into()
 }
 

@@ -1,4 +1,4 @@
-//! What a run leaves in its folder: recording, timing diagram, drawing for the viewer. Each file is there whole or not at all.
+//! Files of a run in its folder: recording, timing diagram, drawing for the viewer. Each is written whole or not at all.
 use crate::args::Keep;
 use crate::build_id;
 use crate::error::CliError;
@@ -22,8 +22,8 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// When a file that says so was written: now, or at the time that the build asks for, by the convention of reproducible
-/// builds (<https://reproducible-builds.org/specs/source-date-epoch/>).
+/// Time of writing stated in files: now, or that of `SOURCE_DATE_EPOCH`, by the convention of reproducible builds
+/// (<https://reproducible-builds.org/specs/source-date-epoch/>).
 pub(crate) fn write_time() -> Result<Timestamp, CliError> {
     let Some(told) = std::env::var_os("SOURCE_DATE_EPOCH") else { return Ok(Timestamp::now()) };
     let seconds = told.to_str().and_then(|text| text.parse().ok());
@@ -31,32 +31,32 @@ pub(crate) fn write_time() -> Result<Timestamp, CliError> {
     time.ok_or(CliError::SourceDateEpoch(told))
 }
 
-/// Ends of the names of the files of a run.
+/// Suffixes of the files of a run.
 const RECORDING: &str = ".parquet";
 const DIAGRAM: &str = ".timing.svg";
 const FOR_THE_VIEWER: &str = ".rrd";
 
-/// The run that may leave a file called `name`.
+/// The run to which a file called `name` would belong.
 pub(crate) fn run_of(name: &str) -> Option<&str> {
     [RECORDING, DIAGRAM, FOR_THE_VIEWER].into_iter().find_map(|end| name.strip_suffix(end))
 }
 
-/// What a run left in its folder.
+/// Files that a run wrote into its folder.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Written {
     /// Name of the recording.
     pub(crate) recording: Option<String>,
     /// Its seal.
     pub(crate) recording_seal: Option<String>,
-    /// Names of all files, that of the recording among them.
+    /// Names of all files, including the recording.
     pub(crate) files: Vec<String>,
 }
 
-/// Writes the recording of `job` into `folder`. Beside it goes its timing diagram where it has signals, and with a program that draws it
-/// the recording for the Rerun viewer, under a verdict.
+/// Writes the recording of `job` into `folder`, its timing diagram where it has signals and, with a program that draws it, the recording
+/// for the Rerun viewer with a verdict.
 ///
 /// # Errors
-/// With what was written until then.
+/// Includes the files written until then.
 pub(crate) fn write_recording(
     job: &Job,
     recording: &Recording,
@@ -81,7 +81,7 @@ fn write_each(
     written.recording_seal = seal_of(&path).map_err(|error| CliError::Write { path: path.clone(), error })?;
     written.recording = Some(name.clone());
     written.note(name);
-    // What a task requests alone has no edges that are worth a drawing.
+    // A task's requests alone have no edges that are worth a drawing.
     if recording.signals.iter().any(|signal| signal.source != REQUEST_KIND.0) {
         let name = format!("{}{DIAGRAM}", job.id);
         let diagram = timing_diagram(recording, &TimingOptions::default())?;
@@ -109,14 +109,13 @@ impl Written {
     }
 }
 
-/// How many recordings in `folder` neither `runs` nor the comparison beside them name. A folder that cannot be read
-/// is said to hold none.
+/// Number of recordings in `folder` that neither `runs` nor the comparison beside them name; 0 for an unreadable folder.
 pub(crate) fn older_recordings(folder: &Path, runs: &dyn Runs) -> usize {
     let stem = |path: &Path| path.file_stem().map(OsStr::to_owned);
     let is_recording = |path: &Path| path.extension().is_some_and(|kind| kind == "parquet" || kind == "rrd");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut found: HashSet<_> = entries.filter(|path| is_recording(path)).filter_map(|path| stem(&path)).collect();
-    // What a comparison names but its recording is none.
+    // Of a comparison's files only its recording counts.
     for name in files_of_results(&folder.join(COMPARISON)).unwrap_or_default() {
         stem(name.as_ref()).map(|stem| found.remove(&stem));
     }
@@ -127,7 +126,7 @@ pub(crate) fn older_recordings(folder: &Path, runs: &dyn Runs) -> usize {
     found.len()
 }
 
-/// Which run it is, for results, and what it left.
+/// Identity of a run for results, with its files.
 pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
     let scenario = &job.scenario;
     RunIdentity {
@@ -147,20 +146,20 @@ pub(crate) fn identity(job: &Job, written: Written) -> RunIdentity {
     }
 }
 
-/// Which run it is, for lists of runs.
+/// Identity of a run for lists of runs.
 pub(crate) fn unfinished(job: &Job) -> Unfinished {
     let Scenario { name, path, axis, .. } = &job.scenario;
     let file = path.as_ref().map(|path| path.display().to_string());
     Unfinished { name: name.clone(), file, engine: job.engine.to_string(), axis: axis.name }
 }
 
-/// Digest of all that the run of `job` is made of.
+/// Digest of all inputs of the run of `job`.
 pub(crate) fn inputs_of(job: &Job) -> Digest {
     let scenario = &job.scenario;
     let start = Digester::default().with(build_id::program()).with(job.engine.to_string()).with(&scenario.name);
     let start = scenario.overrides.iter().fold(start.with(&job.text), |digester, one| digester.with(one.to_string()));
     let parameters = scenario.parameters.iter().fold(start, |digester, one| digester.with(&one.key).with(&one.value));
-    // What files hold, in the order in which the scenario names them; where they are makes no difference.
+    // The content of files, in the order in which the scenario names them; their location does not matter.
     let files = scenario.made_of.iter().fold(parameters, |digester, file| digester.with(&file.sha256));
     files.finish()
 }
@@ -189,7 +188,7 @@ const fn of_move(step: &Step) -> bool {
     matches!(step, Step::Move(_))
 }
 
-/// Whether a run that came to `outcome` leaves its recording. One that is unjudged has nothing that failed.
+/// True if a run with this `outcome` keeps its recording. An unjudged run did not fail.
 pub(crate) const fn is_kept(keep: Keep, outcome: Outcome) -> bool {
     match keep {
         Keep::All => true,
@@ -198,7 +197,7 @@ pub(crate) const fn is_kept(keep: Keep, outcome: Outcome) -> bool {
     }
 }
 
-/// What a viewer says of a run that was judged.
+/// Verdict on a judged run, for a viewer.
 pub(crate) fn shown(recording: &Recording, metrics: &Metrics, verdict: &Verdict) -> view::Verdict {
     let judged = RunResult::judged(RunIdentity::default(), recording, metrics, verdict);
     said_of(judged.verdict, judged.reasons, judged.warnings)
@@ -216,7 +215,7 @@ pub(crate) fn said_of(outcome: Outcome, reasons: Vec<String>, warnings: Vec<Stri
     view::Verdict { outcome, reasons: printable(reasons), warnings: printable(warnings) }
 }
 
-/// What a viewer is told beside the recording: limits and the settling window.
+/// Options for a viewer beside the recording: limits and the settling window.
 pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
     ViewOptions {
         limits: channel_limits(scenario).into_iter().map(|(signal, limit)| (signal.name().to_owned(), limit)).collect(),
@@ -228,7 +227,7 @@ pub(crate) fn view_options(scenario: &Scenario) -> ViewOptions {
     }
 }
 
-/// The synchronous motor of `scenario` and what bounds it.
+/// The synchronous motor of `scenario` and its bounds.
 fn motor_limits(scenario: &Scenario) -> Option<MotorLimits> {
     let Actuator::Pmsm { motor, dc_link, drive, .. } = &scenario.actuator else { return None };
     let (current, _) = drive.params.current_loop()?;

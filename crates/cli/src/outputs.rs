@@ -1,7 +1,7 @@
-//! What a command writes, and that nothing of it is what it reads.
+//! Outputs of a command, which must not overwrite its inputs.
 //!
 //! Every command names all its outputs here before anything runs and gets an [`Output`] for each, by which alone it writes. Refused are
-//! an output that is an input, whatever it is called (a link, a detour), one that another option names too, and a folder.
+//! an output that is an input under any name (a link, a detour), one that another option names too, and a folder.
 mod place;
 mod target;
 
@@ -17,14 +17,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use thiserror::Error;
 
-/// What stands for standard output behind `-o`.
+/// Standard output as the value of `-o`.
 const STDOUT: &str = "-";
 
-/// The files that this process reads, and what each of them is in words.
+/// The files that this process reads, each with its description.
 static INPUTS: Mutex<Option<HashMap<FileId, String>>> = Mutex::new(None);
 
-/// Notes that the file at `path` is read, which is `what`: `the scenario a.toml`, `the table of --points`. What is no regular file
-/// holds nothing that could be lost.
+/// Notes that the file at `path` is read, and its description `what`: `the scenario a.toml`, `the table of --points`. Other than regular
+/// files have nothing to lose.
 pub(crate) fn reads(path: &Path, what: impl Display) {
     if std::fs::metadata(path).is_ok_and(|found| found.is_file()) {
         note(FileId::of(path).ok(), what);
@@ -42,22 +42,22 @@ fn note(file: Option<FileId>, what: impl Display) {
     }
 }
 
-/// What the file is that is read, if it is.
+/// Description of the file if it is an input.
 fn input(file: &FileId) -> Option<String> {
     inputs().as_ref().and_then(|inputs| inputs.get(file)).cloned()
 }
 
 fn inputs() -> MutexGuard<'static, Option<HashMap<FileId, String>>> {
-    // Nothing is left half done with it.
+    // A panic never leaves the map half changed.
     INPUTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes the folder for everything.
+/// Makes a folder and its parents.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(folder).map_err(|error| CliError::MakeFolder { folder: folder.to_owned(), error })
 }
 
-/// Why something is not written.
+/// Refusal to write an output.
 #[derive(Debug, Error)]
 pub(crate) enum Refused {
     #[error("{option}: `{}` is {input} and would be lost; name another file", .path.display())]
@@ -81,7 +81,7 @@ pub(crate) struct Outputs<'a> {
     folders: Vec<ClaimedFolder<'a>>,
 }
 
-/// A folder for files with names of its own.
+/// A folder that claims certain file names.
 struct ClaimedFolder<'a> {
     option: String,
     place: Place,
@@ -102,7 +102,7 @@ impl<'a> Outputs<'a> {
             return Err(Refused::Folder { option: option.to_owned(), path: path.to_owned() });
         }
         spares(option, path)?;
-        // A device has room for all.
+        // Several options may write to one device.
         if kind != Destination::Device {
             let place = Place::of(path);
             let of_a_folder = self.folders.iter().find(|folder| folder.claims(&place)).map(|folder| &folder.option);
@@ -115,26 +115,26 @@ impl<'a> Outputs<'a> {
         Ok(Output::at(path, kind))
     }
 
-    /// A file at `path` that does not exist yet; where one does, `way_out` says what to do.
+    /// A new file at `path`; if one exists, the error gives the advice `way_out`.
     pub(crate) fn new_file(&mut self, option: &str, path: &Path, way_out: &'static str) -> Result<Output, Refused> {
-        // A link that leads nowhere is there, too.
+        // A dangling link exists, too.
         if std::fs::symlink_metadata(path).is_ok() {
             return Err(Refused::Exists { path: path.to_owned(), way_out });
         }
         self.anywhere(option, path)
     }
 
-    /// The same, where that was asked for.
+    /// The file at `path`, if there is one.
     pub(crate) fn optional(&mut self, option: &str, path: Option<&Path>) -> Result<Option<Output>, Refused> {
         path.map(|path| self.file(option, path)).transpose()
     }
 
-    /// The same, in a folder that is made when there is none.
+    /// The file at `path`, whose folder is made if missing.
     pub(crate) fn anywhere(&mut self, option: &str, path: &Path) -> Result<Output, Refused> {
         self.file(option, path).map(Output::anywhere)
     }
 
-    /// The file at `path`; standard output without one and for `-`.
+    /// The file at `path`; standard output for `None` and for `-`.
     pub(crate) fn or_standard(&mut self, option: &str, path: Option<&Path>) -> Result<Output, Refused> {
         match path {
             Some(path) if path.as_os_str() != STDOUT => self.file(option, path),
@@ -142,8 +142,7 @@ impl<'a> Outputs<'a> {
         }
     }
 
-    /// The folder at `path`, which `option` names, for files whose names are `is_name_of_its_own`. There may be many: they are
-    /// not listed.
+    /// The folder at `path`, which `option` names, for all files whose names satisfy `is_name_of_its_own`: they may be too many for a list.
     pub(crate) fn folder(
         &mut self,
         option: &str,
@@ -153,7 +152,7 @@ impl<'a> Outputs<'a> {
         if std::fs::metadata(path).is_ok_and(|found| !found.is_dir()) {
             return Err(Refused::NoFolder { option: option.to_owned(), path: path.to_owned() });
         }
-        // Only what is there already can be an input.
+        // Only an existing file can be an input.
         for entry in std::fs::read_dir(path).into_iter().flatten().flatten() {
             if entry.file_name().to_str().is_some_and(&is_name_of_its_own) {
                 let taken = entry.path();
@@ -174,7 +173,7 @@ impl<'a> Outputs<'a> {
     }
 }
 
-/// Refuses to write over what is read.
+/// Refuses to overwrite an input.
 fn spares(option: &str, path: &Path) -> Result<(), Refused> {
     match FileId::of(path).ok().and_then(|file| input(&file)) {
         Some(input) => Err(Refused::Input { option: option.to_owned(), path: path.to_owned(), input }),
@@ -182,7 +181,7 @@ fn spares(option: &str, path: &Path) -> Result<(), Refused> {
     }
 }
 
-/// Whether `name`, which may come from anywhere, is that of a file beside those that name it.
+/// Checks that `name`, from an untrusted source, is a plain file name without a folder.
 pub(crate) fn is_name(name: &str) -> Result<(), Refused> {
     let is_one = Path::new(name).file_name() == Some(OsStr::new(name)) && !name.contains(['/', '\\', '\0']);
     if is_one { Ok(()) } else { Err(Refused::Name { name: name.to_owned() }) }
@@ -195,18 +194,18 @@ pub(crate) struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Where it is.
+    /// Path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where the file `name` in it is, of those that it is for. What writes there replaces a link and does not follow it.
+    /// Path of the claimed file `name` in the folder. Writing there replaces a link and does not follow it.
     pub(crate) fn place(&self, name: &str) -> Result<PathBuf, Refused> {
         is_name(name)?;
         Ok(self.path.join(name))
     }
 
-    /// The file `name` in it, of those that it is for.
+    /// The claimed file `name` in the folder.
     pub(crate) fn file(&self, name: &str) -> Result<Output, Refused> {
         Ok(Output::at(&self.place(name)?, Destination::File))
     }

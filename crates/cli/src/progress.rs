@@ -1,4 +1,4 @@
-//! Progress of the runs: a bar on a terminal, plain lines otherwise; how many are done, which, since when and how long still.
+//! Progress of the runs: a bar on a terminal, plain lines otherwise; number of runs done, their names, elapsed and remaining time.
 use crate::console::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use servobench_isolation::Stopwatch;
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 /// Steps of the bar for one run.
 const STEPS: f64 = 1000.0;
 
-/// Shows how far the runs are; on standard error, so that results can be piped.
+/// Display of progress on standard error, so that results can be piped.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    /// Runs from one line to the next one; 0: there are none.
+    /// Runs between two lines; 0 for no lines.
     lines: u64,
     quiet: bool,
     done: AtomicU64,
@@ -38,13 +38,13 @@ impl Progress {
         Self { bar, lines: u64::from(!quiet && !terminal), quiet, done: AtomicU64::new(0), runs, start: Instant::now() }
     }
 
-    /// The same with a line for each percent of the runs and not for each of them.
+    /// The same with a line for each percent of the runs instead of each run.
     pub(crate) fn by_percent(self) -> Self {
         Self { lines: self.lines * (self.runs as u64).div_ceil(100), ..self }
     }
 
-    /// A listener for the run `id`: is told the share that is done, from 0 to 1. A run that takes longer than `slow` is named, and again
-    /// each time that has doubled.
+    /// A listener for the run `id`, which receives the share that is done, from 0 to 1. A run that takes longer than `slow` is named, and
+    /// again each time that has doubled.
     pub(crate) fn of_run(&self, id: &str, slow: Duration) -> impl FnMut(f64) {
         // The bar goes to the terminal by itself.
         self.bar.set_message(printable(id));
@@ -57,7 +57,7 @@ impl Progress {
                 self.bar.inc((step - shown) as u64);
                 shown = step;
             }
-            // The last word is that of the run that has ended.
+            // The last message of a run is that of its end.
             if watch.elapsed() >= slow && share < 1.0 {
                 self.say(&format!("slow: {id}: {:.0} % done after {}\n", share * 100.0, seconds(slow)));
                 slow *= 2;
@@ -89,7 +89,7 @@ impl Progress {
     }
 }
 
-/// How long the runs that are left take if they take as long as those before: `, about 12 s left`; empty at the end.
+/// Estimate of the remaining time from that of the runs before: `, about 12 s left`; empty at the end.
 fn left(elapsed: Duration, done: u64, runs: u64) -> String {
     match runs.saturating_sub(done) {
         0 => String::new(),

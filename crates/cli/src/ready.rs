@@ -1,20 +1,20 @@
-//! Ready scenarios, embedded: those of the folders `scenarios` and `scenarios-fmu` of the repository, the templates of `init` among them.
+//! Embedded ready scenarios: those in `scenarios` and `scenarios-fmu` of the repository, including the templates of `init`.
 use crate::error::CliError;
 use crate::sources::SWEEP;
 use servobench_files::nearest;
 use servobench_scenario::{embedded_demo, embedded_model, written_values};
 use std::path::{Component, Path};
 
-/// Tables, sweeps and scenarios but those of the demo: path in the repository, and text.
+/// Tables, sweeps and scenarios without those of the demo: path in the repository, and text.
 static FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/ready.rs"));
 
-/// Folder of most.
+/// Folder of most ready scenarios.
 const SCENARIOS: &str = "scenarios";
 /// Folder of the demo.
 const DEMO: &str = "scenarios/demo";
 /// Folder of the templates of `init`.
 const TEMPLATES: &str = "scenarios/templates";
-/// Begin of the line that names the schema by its path in the repository.
+/// Beginning of the line that names the schema by its path in the repository.
 const SCHEMA: &str = "#:schema ";
 
 /// A ready scenario or sweep.
@@ -26,12 +26,12 @@ pub(crate) struct Ready {
     text: &'static str,
 }
 
-/// A ready scenario with all that it names.
+/// A ready scenario with all files that it names.
 #[derive(Debug, Default)]
 pub(crate) struct Written {
     /// Files to write beside each other, the scenario first: name and text.
     pub(crate) files: Vec<(String, String)>,
-    /// Files that it names and that are not embedded: FMUs.
+    /// Named files that are not embedded: FMUs.
     pub(crate) missing: Vec<String>,
 }
 
@@ -53,10 +53,10 @@ pub(crate) fn templates() -> impl Iterator<Item = Ready> {
     all().into_iter().filter(|ready| ready.folder == TEMPLATES)
 }
 
-/// The one called `name`: `figure-3b`, `plc/figure-3b`, or its path in the repository.
+/// The scenario called `name`: `figure-3b`, `plc/figure-3b`, or its path in the repository.
 ///
 /// # Errors
-/// With the names that may be meant when there is none or several.
+/// Lists possible names when none or several match.
 pub(crate) fn named(name: &str) -> Result<Ready, CliError> {
     let asked = name.trim_start_matches("scenarios/").trim_end_matches(".toml").trim_end_matches(".sweep");
     let all = all();
@@ -91,7 +91,7 @@ impl Ready {
         name.trim_end_matches(".sweep")
     }
 
-    /// Folder and name, which only one has.
+    /// Folder and name, which together are unique.
     fn full_name(&self) -> String {
         if self.folder == SCENARIOS { self.name().to_owned() } else { format!("{}/{}", self.folder(), self.name()) }
     }
@@ -112,7 +112,7 @@ impl Ready {
         value.map(|(_, text)| text).unwrap_or_default()
     }
 
-    /// The scenario and every file that it names, for one folder.
+    /// The scenario and every file that it names, with paths adapted to one folder.
     pub(crate) fn written(&self) -> Written {
         let mut written = Written::default();
         gather(&self.path(), self.text, &mut written);
@@ -120,7 +120,7 @@ impl Ready {
     }
 }
 
-/// Adds the file at `path` of the repository, and those that it names: all in one folder, with their names in the text accordingly.
+/// Adds the file at `path` of the repository and those that it names: all in one folder, with names in the text adapted.
 fn gather(path: &str, text: &str, written: &mut Written) {
     let mut text =
         text.split_once('\n').filter(|(first, _)| first.starts_with(SCHEMA)).map_or(text, |(_, rest)| rest).to_owned();
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(count, all.len());
     }
 
-    /// Nothing of the repository is there: in the folder are the files that were written.
+    /// The folder holds only the written files, not the repository.
     #[test]
     fn every_one_loads_from_an_empty_folder() {
         for ready in all() {

@@ -17,29 +17,29 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What stands for standard input among the scenarios.
+/// Standard input among the scenarios.
 const STDIN: &str = "-";
-/// What a scenario from there is called, and its text in messages.
+/// Name of a scenario from standard input, and of its text in messages.
 const NAME_OF_STDIN: &str = "stdin";
 
-/// How the names of sweep files end, which stand beside scenarios.
+/// Suffix of sweep files, which lie beside scenarios.
 pub(crate) const SWEEP: &str = ".sweep.toml";
 
-/// What came in on standard input, or is taken to have: it can be read once.
+/// Text from standard input, or in its place: it can be read only once.
 static TEXT_OF_STDIN: OnceLock<String> = OnceLock::new();
 
-/// What came in on standard input, if it was read.
+/// The text from standard input, if it was read.
 pub(crate) fn stdin() -> Option<String> {
     TEXT_OF_STDIN.get().cloned()
 }
 
-/// From now on `text` is what comes in on standard input.
+/// Sets `text` in place of standard input.
 pub(crate) fn give_stdin(text: String) {
-    // What was read already stays.
+    // Text that was read already stays.
     TEXT_OF_STDIN.set(text).ok();
 }
 
-/// Whether `path` is standard input and no file.
+/// True if `path` means standard input.
 pub(crate) fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == STDIN
 }
@@ -72,14 +72,14 @@ pub(crate) fn files(paths: &[PathBuf], root: Option<&Path>) -> Result<Vec<PathBu
     Ok(files)
 }
 
-/// Whether the file at `path` is a sweep, by its name.
+/// True if the file at `path` is a sweep, by its name.
 fn is_sweep(path: &Path) -> bool {
     path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.ends_with(SWEEP))
 }
 
 /// Folders that were searched: a link may lead back to one of them.
 struct Searched {
-    /// Nothing outside is searched.
+    /// Boundary of the search.
     root: PathBuf,
     folders: HashSet<FileId>,
 }
@@ -87,7 +87,7 @@ struct Searched {
 impl Searched {
     fn search(&mut self, folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CliError> {
         let wrong = |error| CliError::Read { path: folder.to_owned(), error };
-        // Where the system does not tell folders apart it has no such links.
+        // A system without identifiers of folders has no such links.
         if FileId::of(folder).is_ok_and(|id| !self.folders.insert(id)) {
             return Ok(());
         }
@@ -136,13 +136,13 @@ pub(crate) struct Unusable {
 }
 
 impl Unusable {
-    /// What is wrong with it, a line each.
+    /// Mistakes, one line each.
     pub(crate) fn reasons(&self) -> Vec<String> {
         reasons(&self.error)
     }
 }
 
-/// Why a scenario could not be loaded, a line for each mistake.
+/// Reasons why a scenario could not be loaded, one line for each mistake.
 pub(crate) fn reasons(error: &LoadError) -> Vec<String> {
     match error {
         LoadError::Invalid(invalid) => invalid.lines(),
@@ -150,7 +150,7 @@ pub(crate) fn reasons(error: &LoadError) -> Vec<String> {
     }
 }
 
-/// Everything that is wrong with it, as a person reads it, with an empty line before whatever follows.
+/// All mistakes as readable text, with an empty line at the end.
 impl fmt::Display for Unusable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let end = if matches!(self.error, LoadError::Read { .. }) { "\n" } else { "" };
@@ -158,7 +158,7 @@ impl fmt::Display for Unusable {
     }
 }
 
-/// Every file by itself, when its turn comes: one that cannot be used does not keep the others from being used.
+/// Loads every file by itself, when its turn comes: an unusable one does not stop the others.
 pub(crate) fn each(
     paths: &[PathBuf],
     with: &OverrideArgs,
@@ -169,13 +169,13 @@ pub(crate) fn each(
             warn(&loaded);
             Ok(Ok(source(loaded)))
         }
-        // A suite whose scenarios cannot be read now is another one when they can.
+        // A suite whose scenarios cannot be read for lack of resources would be another one when they can.
         Err(error) if error.is_shortage() => Err(CliError::Shortage(error)),
         Err(error) => Ok(Err(Unusable { path, error })),
     }))
 }
 
-/// A file that was read before, once more: it was noted, and what is doubtful in it was said.
+/// Reads a file again, without noting it or repeating its warnings.
 pub(crate) fn again(path: &Path, with: &OverrideArgs) -> Result<Source, LoadError> {
     parsed(path, with).and_then(trusted).map(source)
 }
@@ -185,8 +185,8 @@ pub(crate) fn varied(document: &Document, overrides: &[Override]) -> Result<Sour
     document.scenario(overrides).and_then(trusted).map(source)
 }
 
-/// The scenario file at `path`, which is varied, and the scenario with the values of `overrides`: its files are noted, and warnings about
-/// it are said. It and all files that it names are below `root`.
+/// The scenario file at `path`, to be varied, and the scenario with the values of `overrides`: its files are noted, and its warnings
+/// reported. It and all files that it names are below `root`.
 pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<(Document, Source), LoadError> {
     reads(path, format_args!("the scenario {}", path.display()));
     let document = Document::open(path, Some(root))?;
@@ -196,8 +196,8 @@ pub(crate) fn base(path: &Path, overrides: &[Override], root: &Path) -> Result<(
     Ok((document, source(loaded)))
 }
 
-/// A file that was read before, with the values of `overrides` beside those of `with`: what it names is noted, and what is doubtful in it
-/// said unless that is in `said` already.
+/// Reads a file again with the values of `overrides` beside those of `with`: its files are noted, and its warnings reported unless they
+/// are in `said` already.
 pub(crate) fn variant(
     path: &Path,
     with: &OverrideArgs,
@@ -227,7 +227,7 @@ pub(crate) fn read(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError
     loaded(path, with).inspect(warn)
 }
 
-/// A file, or what comes in on standard input; what is read for it is noted.
+/// Reads a file, or standard input, and notes all files that are read.
 fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     if !is_stdin(path) {
         reads(path, format_args!("the scenario {}", path.display()));
@@ -235,7 +235,7 @@ fn loaded(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     parsed(path, with).inspect(|loaded| note_files(loaded, path, with.root.as_deref()))
 }
 
-/// A file, or what comes in on standard input: files that it names are looked for in the current folder.
+/// Reads a file, or standard input: files named there are looked for in the current folder.
 fn parsed(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     let OverrideArgs { overrides, root } = with;
     if !is_stdin(path) {
@@ -250,13 +250,13 @@ fn parsed(path: &Path, with: &OverrideArgs) -> Result<Loaded, LoadError> {
     Document::parse(NAME_OF_STDIN, &text, Some(Path::new("")), root.as_deref())?.at(path).scenario(overrides)
 }
 
-/// Notes the files that the scenario at `path` is made of: nothing is written over them.
+/// Notes the files that the scenario at `path` is made of, so that they are not overwritten.
 fn note_files(loaded: &Loaded, path: &Path, given: Option<&Path>) {
     let folder = if is_stdin(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
     // Without a root nothing was read.
     let Ok(root) = root_of(folder, given) else { return };
     let what = format!("a file of the scenario {}", named(path));
-    // Those that are built in have names that are no paths.
+    // Names of built-in files are not paths.
     for file in &loaded.scenario.made_of {
         reads(&root.join(&file.path), &what);
     }
@@ -289,10 +289,10 @@ pub(crate) fn demo(with: &OverrideArgs) -> Result<Vec<Source>, LoadError> {
     loaded.map(|loaded| loaded.inspect(warn).map(source)).collect()
 }
 
-/// Set where warnings of files are left to the report.
+/// True if warnings of files are left to the report.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on warnings of files are not said when they are read: the report counts them.
+/// Suppresses warnings when files are read: the report counts them.
 pub(crate) fn leave_warnings_to_the_report() {
     IS_QUIET.store(true, Ordering::Relaxed);
 }
@@ -303,7 +303,7 @@ fn warn(loaded: &Loaded) {
     }
 }
 
-/// Why a scenario could not be loaded, as a person reads it.
+/// Reasons why a scenario could not be loaded, as readable text.
 pub(crate) fn told(error: &LoadError) -> String {
     match error {
         LoadError::Invalid(invalid) => mistakes(&invalid.diagnostics, &invalid.sources),

@@ -1,4 +1,4 @@
-//! Carries out a suite: its runs side by side, each noted when it has ended, whatever ends the program.
+//! Carries out a suite: its runs in parallel, each noted when it ends, so that any end of the program keeps them.
 mod complete;
 mod denied;
 mod files;
@@ -34,23 +34,22 @@ use std::sync::Arc;
 use std::time::Instant;
 use thiserror::Error;
 
-/// The runs of a suite by their places in it, each made ready when its turn has come: how many there are makes next to no difference to
-/// memory.
+/// The runs of a suite by index, each prepared when its turn comes, so that their number hardly affects memory.
 pub(crate) trait Plan: Sync {
-    /// The places of the runs; those of files that cannot be used are left out.
+    /// Indices of the runs, without those of files that cannot be used.
     fn places(&self) -> Box<dyn Iterator<Item = usize> + '_>;
-    /// The name of a run: that of its files.
+    /// The name of a run, which its files have too.
     fn id(&self, index: usize) -> Cow<'_, str>;
-    /// A run, as it was when the suite began.
+    /// A run; an error if its inputs have changed since the suite began.
     fn job(&self, index: usize) -> Result<Job, NotReady>;
-    /// What is known of a run that is not made, beside what it is called.
+    /// Identity of a run that is not carried out, besides its name.
     fn identity(&self, index: usize) -> RunIdentity;
-    /// Whether the runs are one scenario with a few keys that differ: results name those and not all that the scenario says, and there
-    /// are too many runs to name each that has ended.
+    /// True if the runs are one scenario with a few varied keys: results name only those, and there are too many runs to report the end of
+    /// each.
     fn is_sweep(&self) -> bool;
 }
 
-/// Why a run is not made.
+/// Reason why a run is not carried out.
 #[derive(Debug, Error)]
 pub(crate) enum NotReady {
     #[error("the scenario, or a file that it names, has changed since the suite began: run the suite again")]
@@ -59,19 +58,18 @@ pub(crate) enum NotReady {
     Invalid(Vec<String>),
 }
 
-/// How a suite is carried out.
+/// Settings with which a suite is carried out.
 #[derive(Clone, Copy)]
 pub(crate) struct Carrying<'a> {
     pub(crate) plan: &'a dyn Plan,
     pub(crate) args: &'a SuiteArgs,
     pub(crate) keep: Keep,
     pub(crate) engines: &'a Engines,
-    /// Draws each recording that stays.
+    /// Draws each recording that is kept.
     pub(crate) view_program: Option<&'a ViewProgram>,
 }
 
-/// The program that draws recordings, if `args` ask for drawings; `keep` says which recordings there will be. To be asked before anything
-/// runs.
+/// The program that draws recordings, if `args` request drawings; `keep` selects the recordings. To be called before anything runs.
 pub(crate) fn view_program(args: &SuiteArgs, keep: Keep) -> Result<Option<ViewProgram>, CliError> {
     match (args.rrd, keep) {
         (false, _) => Ok(None),
@@ -81,7 +79,7 @@ pub(crate) fn view_program(args: &SuiteArgs, keep: Keep) -> Result<Option<ViewPr
 }
 
 impl Carrying<'_> {
-    /// Runs what has not ended yet, and lets `end` say what came of all. `begun` notes what has come to its end before anything runs.
+    /// Runs what has not ended yet and lets `end` report all results. `begun` notes results that exist before anything runs.
     pub(crate) fn out(
         self,
         ledger: Ledger,
@@ -95,7 +93,7 @@ impl Carrying<'_> {
                 if is_sweep {
                     say(&(run_count(&kept, Style::default()) + "\n"));
                 } else {
-                    // What cannot be read is among the troubles.
+                    // Unreadable results are among the troubles.
                     brief(&kept).map_while(Result::ok).for_each(|part| say(&part));
                 }
                 say_all(&troubles);
@@ -106,7 +104,7 @@ impl Carrying<'_> {
         interrupt::end_if_ending();
         let Some(Closed { kept, troubles }) = ledger.close() else { return Ok(Exit::Interrupted) };
         let exit = troubles.iter().fold(exit_of(&kept), |worst, trouble| worst.worse(trouble.exit()));
-        // What could not be written does not keep the verdicts from being said.
+        // Verdicts are reported even if files could not be written.
         let said = end(&kept, ledger.folder().path());
         say_all(&troubles);
         said?;
@@ -114,7 +112,7 @@ impl Carrying<'_> {
         Ok(if interrupt::is_stopping() { Exit::Interrupted } else { exit })
     }
 
-    /// Runs all that have not ended. Once the suite is to stop, none begins.
+    /// Runs all that have not ended. After a stop, none begins.
     fn run_all(self, ledger: &Ledger) -> Result<(), CliError> {
         let Self { plan, args, .. } = self;
         let limits = workers::limits(args.time_limit, args.memory.memory_limit);
@@ -168,7 +166,7 @@ impl Carrying<'_> {
         Ok(())
     }
 
-    /// Runs one job and writes its recording, if that is to stay. One that cannot be written takes the verdict away.
+    /// Runs one job and writes its recording, if that is kept. A failed write makes the outcome an error.
     fn one(self, job: &Job, workers: &Workers, out: &OutputFolder, progress: &Progress) -> RunResult {
         let write = |recording, outcome, shown: &dyn Fn() -> view::Verdict| {
             if output::is_kept(self.keep, outcome) {
@@ -228,7 +226,7 @@ impl Carrying<'_> {
     }
 }
 
-/// What a suite ends with.
+/// Exit code of a suite.
 pub(crate) fn exit_of(runs: &dyn Runs) -> Exit {
     runs.heads().fold(Exit::Passed, |worst, run| worst.worse(of_outcome(run.verdict)))
 }
@@ -239,11 +237,11 @@ fn say_all(troubles: &[CliError]) {
     }
 }
 
-/// What brings the runs that are left, or that ended with an error: `3 of 8 runs have no result yet; to run them: servobench run
-/// --resume DIR`; empty where none is.
+/// Advice for runs that are left or ended with an error: `3 of 8 runs have no result yet; to run them: servobench run --resume DIR`; empty
+/// without any.
 pub(crate) fn how_to_resume(runs: &dyn Runs, subcommand: &str, args: &SuiteArgs, out: &Path) -> String {
     let mut words = vec![subcommand.to_owned(), "--resume".to_owned(), out.to_string_lossy().into_owned()];
-    // What a journal does not say.
+    // Options that a journal does not hold.
     words.extend(args.fmus.allow_unisolated_fmus.then(|| "--allow-unisolated-fmus".to_owned()));
     for (option, path) in [("--root", &args.with.root), ("--junit", &args.junit)] {
         words.extend(path.iter().flat_map(|path| [option.to_owned(), path.to_string_lossy().into_owned()]));

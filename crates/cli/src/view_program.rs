@@ -12,12 +12,12 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use thiserror::Error;
 
-/// How to get the program.
+/// Instructions for getting the program.
 const GET: &str = "`cargo build --release -p servobench-view` builds it, and the archive has it in `bin`";
-/// How often a program that draws is looked after.
+/// Period of checks on a drawing program.
 const GLANCE: Duration = Duration::from_secs(1);
 
-/// Why there is no program to draw with.
+/// Reasons why the drawing program cannot be used.
 #[derive(Debug, Error)]
 pub(crate) enum NoViewProgram {
     #[error(
@@ -51,7 +51,7 @@ impl ViewProgram {
         }
     }
 
-    /// Draws `recordings` as `request` says into `output`: the whole file or nothing.
+    /// Draws `recordings` into `output` as specified by `request`: the whole file or nothing.
     pub(crate) fn draw(&self, recordings: &[&Path], request: &Request, output: &Output) -> Result<(), CliError> {
         let request = request.to_json()?;
         output.by_process(|file| {
@@ -60,10 +60,10 @@ impl ViewProgram {
             let paths = recordings.iter().map(|path| path.as_os_str().to_owned());
             let args = std::iter::once(CONTAINED.into()).chain(paths).collect();
             let program = Program { program: self.0.clone(), args, env: Vec::new() };
-            // It takes what recordings and drawing need, which this program has bounded.
+            // Its memory is that of recordings and drawing, which this program has bounded.
             let limits = Limits { memory: u64::MAX, is_foreign: false };
             let process = Contained::start(&program, stdin.into(), Some(file.into()), limits, || ()).map_err(start)?;
-            // One that has ended reads nothing, and how it ended is what counts.
+            // Writing fails if the program has ended; its exit status is checked below.
             to_stdin.write_all(request.as_bytes()).ok();
             drop(to_stdin);
             while process.ending().is_none() {

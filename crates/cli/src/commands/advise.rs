@@ -1,4 +1,4 @@
-//! `servobench advise`: the fastest set-point that keeps the limits of a scenario on every machine of a box.
+//! `servobench advise`: the fastest set-point that keeps the limits of a scenario on every machine within the given tolerances.
 mod runs;
 
 use crate::args::{AdviseArgs, Shapers};
@@ -42,11 +42,11 @@ pub(crate) enum AdviseMistake {
     Machine { settings: String, why: String },
 }
 
-/// How far the frequency of the load is from that of the scenario, where nobody says so, and its damping ratio.
+/// Default tolerances of the load's frequency and damping ratio, as factors of those of the scenario.
 const FREQUENCIES: [f64; 2] = [0.9, 1.1];
 const DAMPINGS: [f64; 2] = [0.5, 2.0];
 
-/// Finds it, and says it with its price and its certainty.
+/// Finds the set-point and prints it with its price and its certainty.
 pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     let folder = args.scenario.parent().unwrap_or_else(|| Path::new(""));
     let root = root_of(folder, args.with.root.as_deref())
@@ -93,7 +93,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
         has_window: scenario.measure.window.is_some(),
         shaper_frequency: frequency,
     };
-    // What cannot be written does not keep the advice from being said.
+    // The advice is printed before a write can fail.
     print(&advice_text(&question, &advice, &options, style()))?;
     if let Some(output) = output {
         let json = advice_json(&question, &advice, &options);
@@ -102,7 +102,7 @@ pub(crate) fn advise(args: &AdviseArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// What the machines may be.
+/// Tolerances of the machines: those of `--within`, or the default ones.
 fn ranges(args: &AdviseArgs, motion: Coordinate, mode: Option<&LoadMode>) -> Result<Vec<Range>, CliError> {
     if !args.within.is_empty() {
         let names: Vec<&str> = args.within.iter().map(|range| range.key.as_str()).collect();
@@ -111,7 +111,7 @@ fn ranges(args: &AdviseArgs, motion: Coordinate, mode: Option<&LoadMode>) -> Res
     Ok(default_ranges(mode.ok_or(AdviseMistake::NoMode)?, motion))
 }
 
-/// The spring of the scenario that is nearest to the load, in keys of the table that has it: no machine gets a spring that the scenario has not.
+/// Default tolerances of the spring nearest to the load, in keys of that spring's table: no machine gets a spring that the scenario lacks.
 fn default_ranges(mode: &LoadMode, motion: Coordinate) -> Vec<Range> {
     let range = |key: &str, value: f64, factors: [f64; 2], unit: &str, stretch| Range {
         key: format!("{}.{key}", mode.table),
@@ -129,7 +129,7 @@ fn default_ranges(mode: &LoadMode, motion: Coordinate) -> Vec<Range> {
         Coordinate::Linear => ("N/m", "N s/m"),
         Coordinate::Rotary => ("Nm/rad", "Nm s/rad"),
     };
-    // The frequency goes with the root of the stiffness.
+    // The frequency is proportional to the root of the stiffness.
     let stiffnesses = FREQUENCIES.map(|factor| factor * factor);
     vec![
         range("stiffness", mode.link.stiffness, stiffnesses, stiffness, Stretch::Root),
@@ -137,7 +137,7 @@ fn default_ranges(mode: &LoadMode, motion: Coordinate) -> Vec<Range> {
     ]
 }
 
-/// A mass moves a mode where nothing else says what its frequency is.
+/// `range` with its effect on the mode; a mass or stiffness moves the mode unless the frequency is given by its own key.
 fn with_stretch(range: &KeyRange, names: &[&str]) -> Range {
     let (table, last) = range.key.rsplit_once('.').unwrap_or(("", &range.key));
     let has_frequency = names.contains(&format!("{table}.frequency").as_str());
@@ -149,7 +149,7 @@ fn with_stretch(range: &KeyRange, names: &[&str]) -> Range {
     Range { key: range.key.clone(), ends: range.ends, unit: range.unit.clone(), stretch }
 }
 
-/// The frequency in the middle of the box, or that which the scenario has.
+/// The frequency in the middle of its tolerance, else the measured mode's, else the load's.
 fn frequency(machines: &Machines, measured: Option<f64>, mode: Option<&LoadMode>) -> Option<f64> {
     let middle = machines.middle();
     let own = machines.ranges().iter().zip(middle).find(|(range, _)| range.stretch == Stretch::Frequency);
@@ -211,10 +211,10 @@ fn families(
     Ok(families)
 }
 
-/// Significant digits of what a shaper is made for: nobody sets more.
+/// Significant digits of a shaper's frequency and damping: settings have no more.
 const DIGITS: usize = 4;
 
-/// What takes the shaper of the scenario away, if it has one.
+/// Override that removes the shaper of the scenario, if it has one.
 fn without_shaper(base: &Source) -> Vec<String> {
     let has_one = base.scenario.parameters.iter().any(|one| one.key.starts_with("setpoint.shaper"));
     if has_one { vec!["setpoint.shaper={ kind = \"none\" }".to_owned()] } else { Vec::new() }
@@ -234,8 +234,8 @@ mod tests {
         (springs, chain.bodies().iter().map(|body| body.inertia).collect())
     }
 
-    /// However the spring of a scenario is given and whatever is bolted to it: as many springs, the same inertias, and the mode from −10 to
-    /// +10 % of its own frequency.
+    /// For every form of the spring and everything bolted to it: as many springs, the same inertias, and the mode from −10 to +10 % of its
+    /// frequency.
     #[test]
     fn each_machine_of_a_default_tolerance_has_the_structure_of_the_scenario() {
         let table = |spring: &str| format!("table = {{ mass = \"3.4 kg\", {spring} }}\n");

@@ -24,11 +24,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 use thiserror::Error;
 
-/// How long an isolated engine may take to read a model.
+/// Longest time for an isolated engine to read a model.
 const WORKER_TIMEOUT: Duration = Duration::from_mins(1);
 
-/// Reports every mistake of every file in one go: what is wrong in the file, and in a file without such what the engines
-/// that it names object to.
+/// Reports every mistake of every file in one go: mistakes in the file and, in a file without any, the objections of the engines that it
+/// names.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let limits = workers::limits(None, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&std::env::temp_dir(), WORKER_TIMEOUT, limits)?);
@@ -66,17 +66,17 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// What keeps scenarios from being valid.
+/// Reasons why scenarios are not valid, or could not be checked.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
-    /// What is wrong with them, a file each.
+    /// Mistakes, one entry for each file.
     wrong: Vec<CliError>,
     /// Why some could not be checked.
     failed: Vec<Unasked>,
 }
 
 impl Findings {
-    /// What the program ends with.
+    /// Exit code of the program.
     pub(crate) fn exit(&self) -> Exit {
         if self.wrong.is_empty() { Exit::Run } else { Exit::Input }
     }
@@ -91,7 +91,7 @@ impl fmt::Display for Findings {
 
 impl std::error::Error for Findings {}
 
-/// An engine that could not be asked about a scenario.
+/// An engine that could not check a scenario.
 #[derive(Debug, Error)]
 #[error("{}: {}", sources::named(.file), printable(&.error.to_string()))]
 struct Unasked {
@@ -99,21 +99,21 @@ struct Unasked {
     error: RunError,
 }
 
-/// What the engines of a scenario say of it.
+/// Findings of the engines about a scenario.
 #[derive(Default)]
 struct Asked {
     mistakes: Vec<Diagnostic>,
     /// Engines that this build lacks.
     missing: Vec<EngineName>,
-    /// Why others could not be asked.
+    /// Errors of engines that could not check it.
     failed: Vec<RunError>,
-    /// How late what axis and FMUs exchange is.
+    /// Delays of the signals exchanged between axis and FMUs, as text.
     late: String,
-    /// Doubts about what they exchange.
+    /// Doubts about these signals.
     exchange_doubts: Vec<Doubt>,
-    /// What can be said of it without running it, when there is no mistake.
+    /// Preview of the run, when there is no mistake.
     preview: Option<Preview>,
-    /// What is doubtful in it.
+    /// Doubts about the scenario, shown as warnings.
     doubts: Vec<Diagnostic>,
 }
 
@@ -148,7 +148,7 @@ impl Asked {
                     Some(line) => loaded.mistake_in_mjcf(line, objection.message, &objection.help),
                     None => loaded.mistake(&objection.key, objection.message, objection.help),
                 };
-                // What is no engine's own is said by each of them.
+                // A mistake that concerns all engines is reported by each of them.
                 if !asked.mistakes.contains(&mistake) {
                     asked.mistakes.push(mistake);
                 }
@@ -161,7 +161,7 @@ impl Asked {
         asked
     }
 
-    /// What can be said of `loaded`, whose `jobs` nothing keeps from being built.
+    /// Previews `loaded`, whose `jobs` can all be built, and collects its doubts.
     fn look_ahead(&mut self, loaded: &Loaded, jobs: &[Job], workers: &Workers) {
         let Some(first) = jobs.first() else { return };
         let names: Vec<EngineName> = jobs.iter().map(|job| job.engine).collect();
@@ -193,7 +193,7 @@ fn previewed(preview: &Preview, in_full: bool) -> String {
     }
 }
 
-/// The connections of a scenario and how late each is: in columns, or below each other where names are too long for that.
+/// The connections of a scenario and their delays: in columns, or below each other where names are too long for that.
 fn listed(scenario: &str, delays: &[ConnectionDelay]) -> String {
     if delays.is_empty() {
         return String::new();
@@ -220,7 +220,7 @@ fn listed(scenario: &str, delays: &[ConnectionDelay]) -> String {
     format!("{name}{heading}\n{}", delays.iter().map(line).collect::<String>())
 }
 
-/// How late a connection is, in words: `1 step, 0.0625 ms`.
+/// Delay of a connection, in words: `1 step, 0.0625 ms`.
 fn age(delay: &ConnectionDelay) -> String {
     let steps = match delay.steps {
         0 => return "no delay".to_owned(),
@@ -228,11 +228,11 @@ fn age(delay: &ConnectionDelay) -> String {
         steps => format!("{steps} steps"),
     };
     let how = if delay.is_extrapolated { ", extrapolated" } else { "" };
-    // To the nanosecond: a number of ticks is no round number of seconds.
+    // To the nanosecond: a number of ticks is not a round number of seconds.
     format!("{steps}, {} ms{how}", (delay.delay * 1e9).round() / 1e6)
 }
 
-/// Which engines had no say.
+/// Remark about engines that this build lacks; empty without any.
 fn not_asked(missing: &[EngineName]) -> String {
     let all = EngineName::ALL.iter().filter(|(_, engine, _)| missing.contains(engine));
     let names: Vec<String> = all.map(|(name, ..)| format!("`{name}`")).collect();

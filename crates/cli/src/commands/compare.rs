@@ -1,4 +1,4 @@
-//! `servobench compare`: runs side by side, what differs in them and in what they give.
+//! `servobench compare`: runs side by side, with the differences in their scenarios and in their results.
 mod earlier;
 mod heading;
 mod labels;
@@ -33,8 +33,8 @@ use servobench_view_request::check_labels;
 use slowing::Slowing;
 use variants::Wanted;
 
-/// Runs the scenarios in their variants on one engine, says what differs, which wins by how much where that can be said, and writes one
-/// recording of them all.
+/// Runs the scenarios in their variants on one engine, reports differences and, where decidable, the winner and its lead, and writes one
+/// recording of all runs.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let mut wanted = variants::wanted(args)?;
     let earlier = earlier_runs(args, &wanted)?;
@@ -57,7 +57,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         }
     }
     let name = recording::name(&wanted);
-    // The comparison itself does without.
+    // The comparison itself does not need it.
     let view_program = ViewProgram::find().inspect_err(|missing| {
         say(&format!("servobench: warning: no recording for the viewer: {missing}\n"));
     });
@@ -95,7 +95,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         moves: &run.recording.moves,
         noise: if one.job.scenario.seeds().is_empty() { Noise::None } else { Noise::Seeds(seeds) },
     });
-    // Of results of before there is one seed; whether a scenario of the same name had random numbers then is taken from that of now.
+    // Earlier results have one seed; whether they had random numbers is taken from the scenario of the same name now.
     let before = earlier.iter().map(|one| {
         let is_random = wanted.iter().any(|now| !now.job.scenario.seeds().is_empty());
         let noise = if is_random { Noise::Seeds(&[]) } else { Noise::None };
@@ -122,14 +122,14 @@ fn write_list(out: &OutputFolder, json: &str) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The runs of earlier results that stand beside those of now.
+/// The runs of earlier results shown beside those of now.
 fn earlier_runs(args: &CompareArgs, wanted: &[Wanted]) -> Result<Vec<Earlier>, CliError> {
     let jobs: Vec<&Job> = wanted.iter().map(|one| &one.job).collect();
     let taken: Vec<&str> = wanted.iter().map(|one| one.label.as_str()).collect();
     earlier::read(&args.against, &jobs, &taken)
 }
 
-/// Results of the runs, whose one recording is called `name`, if it was drawn.
+/// Results of the runs, which share the recording `name` if it was drawn.
 fn results(name: Option<&str>, wanted: &[Wanted], runs: &[Run]) -> Vec<RunResult> {
     let name = name.map(str::to_owned);
     let written = Written { recording: name.clone(), files: name.into_iter().collect(), ..Written::default() };
@@ -151,7 +151,7 @@ fn seeded(wanted: &[Wanted], jobs: &[(usize, Job)], runs: Vec<Run>) -> Vec<Vec<R
     all
 }
 
-/// Runs all of them; without one of them there is no comparison.
+/// Runs all jobs; an error when one of them could not be carried out.
 fn carried_out(args: &CompareArgs, jobs: &[&Job]) -> Result<Vec<Run>, CliError> {
     let limits = workers::limits(args.time_limit, args.memory.memory_limit);
     let (engines, workers) = (engines::installed(), workers::of(&args.out, args.worker_timeout, limits)?);
@@ -175,7 +175,7 @@ fn carried_out(args: &CompareArgs, jobs: &[&Job]) -> Result<Vec<Run>, CliError> 
     if failed.is_empty() { Ok(runs) } else { Err(CliError::Runs(failed)) }
 }
 
-/// Table, who is out, conclusion, notes.
+/// Table, excluded runs, conclusion, notes.
 fn text_of(args: &CompareArgs, comparison: &Comparison<'_>, heading: &str, drawn: Option<&str>) -> String {
     let style = style();
     let out = comparison.out(style.width);

@@ -1,4 +1,4 @@
-//! `servobench completions`: what a shell completes command lines by.
+//! `servobench completions`: shell completions.
 use crate::args::{CompletionsArgs, visible};
 use crate::console::print_bytes;
 use crate::error::CliError;

@@ -29,7 +29,7 @@ fn listed(all: &[Ready], style: Style) -> String {
     text + "servobench examples NAME writes one of them with the files that it names.\n"
 }
 
-/// Writes all files of `ready` into `folder`; what was written, and how to go on.
+/// Writes all files of `ready` into `folder`; returns their names and the next commands.
 fn write(ready: &Ready, folder: &Path) -> Result<String, CliError> {
     let Written { files, missing } = ready.written();
     let mut outputs = Outputs::default();

@@ -1,4 +1,4 @@
-//! `servobench explain`: the reference of a name, from the descriptions that the program works by.
+//! `servobench explain`: the reference of a name, from the descriptions that the program itself works with.
 mod definition;
 
 use crate::args::ExplainArgs;
@@ -13,7 +13,7 @@ use servobench_report::{Style, two_columns, wrapped};
 use servobench_scenario::{KeyFile, KeyReference, key_references, keys_named};
 use servobench_signals::Signal;
 
-/// Tables whose keys have the names of metrics and requirements, which say more.
+/// Tables whose keys are named like metrics and requirements, whose explanations have more detail.
 const BY_NAME: [&str; 3] = ["limits.", "program.limits.", "requirements."];
 
 /// Rows of an explanation: a heading, and a text.
@@ -29,7 +29,7 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// All that has this name.
+/// Explanations of everything with this name.
 fn explained(name: &str, style: Style) -> Result<String, CliError> {
     let by_name = [exit_code, metric, requirement, signal, block];
     let own = BY_NAME.iter().find_map(|table| name.strip_prefix(table)).unwrap_or(name);
@@ -165,7 +165,7 @@ fn names() -> Vec<String> {
     lists().into_iter().flat_map(|(_, names)| names).chain(last).chain(keys.map(|key| key.path.clone())).collect()
 }
 
-/// What can be explained but keys within tables, each kind with its names.
+/// Everything that can be explained, except keys within tables: each kind with its names.
 fn lists() -> Vec<(&'static str, Vec<String>)> {
     let top = |file| {
         let own = key_references().iter().filter(move |key| key.file == file && !key.path.contains('.'));

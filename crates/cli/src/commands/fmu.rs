@@ -1,4 +1,4 @@
-//! `servobench fmu`: what is in an FMU, and an axis as an FMU.
+//! `servobench fmu`: shows the contents of an FMU, or exports an axis as an FMU.
 use crate::args::{FmuCommand, FmuExportArgs, FmuInfoArgs};
 use crate::console::{print, say, style};
 use crate::error::CliError;
@@ -28,7 +28,7 @@ pub(crate) fn fmu_host() -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// Nothing of the FMU is executed for it.
+/// Prints the description of an FMU without executing any of its code.
 fn info(args: &FmuInfoArgs) -> Result<Exit, CliError> {
     let mut archive = Archive::open(&args.file, &Limits::default()).map_err(CliError::Fmu)?;
     let description = archive.description().map_err(CliError::Fmu)?;

@@ -7,7 +7,7 @@ use crate::outputs::Outputs;
 use crate::ready;
 use std::path::Path;
 
-/// Writes a template, and prints the commands to go on with.
+/// Writes a template and prints the next commands.
 pub(crate) fn init(args: &InitArgs) -> Result<Exit, CliError> {
     let template = ready::named(&format!("templates/{}", args.from))?;
     let text: String = template.written().files.into_iter().take(1).map(|(_, text)| text).collect();

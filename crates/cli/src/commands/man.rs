@@ -1,4 +1,4 @@
-//! `servobench man`: man pages, made of the help.
+//! `servobench man`: man pages, generated from the help.
 use crate::args::{ManArgs, visible};
 use crate::console::{print_bytes, say};
 use crate::error::CliError;
@@ -27,7 +27,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// The pages of `command` and of those below it, and what their files are called.
+/// Renders the pages of `command` and its subcommands, with their file names.
 fn render(command: &Command, names: &mut Vec<String>, pages: &mut Vec<Vec<u8>>) -> Result<(), CliError> {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
     names.push(format!("{name}.1"));

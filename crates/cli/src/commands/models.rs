@@ -41,7 +41,7 @@ fn all() -> Vec<Model> {
     embedded_models().into_iter().filter_map(split).collect()
 }
 
-/// The models by kind: values, and where they come from.
+/// The models by kind, with values and sources.
 fn listed(all: &[Model], style: Style) -> String {
     let mut text = String::new();
     for kind in all.chunk_by(|one, other| one.kind == other.kind) {
@@ -82,7 +82,7 @@ fn named<'a>(all: &'a [Model], name: &str) -> Result<&'a Model, CliError> {
 }
 
 impl Model {
-    /// Where its values come from.
+    /// Source of its values.
     fn source(&self) -> &str {
         self.values.iter().find(|(key, _)| key == "source").map_or("", |(_, text)| text)
     }

@@ -56,7 +56,7 @@ fn as_written(path: &Path, with: &OverrideArgs) -> Result<Dictionary, CliError> 
     }
 }
 
-/// What a data sheet calls itself: its file, if CiA 306 allows that name.
+/// File name stated in a data sheet: that of its file, if CiA 306 allows it.
 fn data_sheet_name(path: Option<&Path>) -> &str {
     let name = path.and_then(Path::file_name).and_then(|name| name.to_str());
     let is_allowed = |name: &&str| name.len() <= 240 && name.bytes().all(|byte| matches!(byte, b' '..=b'~'));

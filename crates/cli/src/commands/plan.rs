@@ -78,7 +78,7 @@ struct OutputArgs {
     to: Option<f64>,
 }
 
-/// What is written today for a profile that was chosen by `--profile`.
+/// Error that states the present form of `--profile NAME`.
 fn former_profile(name: &str) -> Result<Infallible, String> {
     Err(match name {
         "point-to-point" => "leave --profile out: servobench plan --order … --distance …".into(),
@@ -123,7 +123,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     Ok(Exit::Passed)
 }
 
-/// The plan, told in the units in which it was asked for.
+/// The plan, in the units of the request.
 fn planned(args: &PlanArgs) -> Result<PlannedMove, Vec<PlanMistake>> {
     let (request, mut axis) = args.profile.request(args.duration, args.points.counts())?;
     let points = args.points.asked(&mut axis);

@@ -7,14 +7,14 @@ use crate::output::write_time;
 use crate::outputs::Outputs;
 use servobench_structured_text::{Export, Times};
 
-/// Export is all there is.
+/// Runs a PLC subcommand; export is the only one.
 pub(crate) fn plc(command: &PlcCommand) -> Result<Exit, CliError> {
     match command {
         PlcCommand::Export(args) => export(args),
     }
 }
 
-/// Writes the file; how much memory its blocks take is in its head, and said where the file is written beside it.
+/// Writes the file; the memory of its blocks is stated in its head and, for a named file, on standard error.
 fn export(args: &PlcExportArgs) -> Result<Exit, CliError> {
     let &PlcExportArgs { format, dialect, sample_time, settling_time, .. } = args;
     let output = Outputs::default().or_standard("-o", args.output.as_deref())?;

@@ -22,11 +22,11 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use wanted::Wanted;
 
-/// Where results go unless somebody says so; those of the demo go below it, so that they take nobody else's place.
+/// Default folder of results; those of the demo go below it, so that they do not replace others.
 const OUT: &str = "servobench-out";
 const OUT_OF_THE_DEMO: &str = "servobench-out/demo";
 
-/// Runs the scenarios, judges them and writes what came of them; or what is left of a suite that was ended before its time.
+/// Runs the scenarios, judges them and writes the results; or finishes a suite that was interrupted.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     if args.suite.quiet {
         sources::leave_warnings_to_the_report();
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     }
 }
 
-/// The report of a suite that is complete and of today: nothing is run.
+/// Reports a complete suite whose inputs and files are unchanged, without running anything.
 fn reported_again(results: &Results, args: &RunArgs, folder: &Path) -> Result<Exit, CliError> {
     if !args.suite.quiet {
         say("nothing is left to run: scenarios, files, program, recordings and results are as they were\n");
@@ -81,7 +81,7 @@ fn begun(args: &RunArgs) -> Result<Exit, CliError> {
     carried_out(args, &wanted, (&engines, view_program.as_ref()), ledger, removed)
 }
 
-/// The rest of a suite: the same runs, of which those that ended are not run again.
+/// Resumes a suite: the same runs, without those that have ended.
 fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
     let Begun { folder, suite, mut kept, command, here } = begun;
     let Command::Run(began) = command else {
@@ -94,7 +94,7 @@ fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
     if wanted.digest() != suite.suite {
         return Err(other_suite(folder.path(), &suite, &kept, args.suite.with.root.as_deref()));
     }
-    // What a journal says of a run counts for the run that it is of.
+    // A result in a journal counts only for a run with the same inputs.
     kept.hold_inputs(|index| wanted.inputs(index));
     let files = files(&args, folder.path(), &wanted)?;
     if !args.suite.quiet {
@@ -105,7 +105,7 @@ fn resumed(begun: Begun, now: &RunArgs) -> Result<Exit, CliError> {
     carried_out(&args, &wanted, (&engines, view_program.as_ref()), ledger, 0)
 }
 
-/// Runs what has not ended yet, and says what came of all.
+/// Runs what has not ended yet and reports all results.
 fn carried_out(
     args: &RunArgs,
     wanted: &Wanted<'_>,
@@ -122,7 +122,7 @@ fn files(args: &RunArgs, out: &Path, wanted: &Wanted<'_>) -> Result<Files, CliEr
     Files::named(out, args.suite.junit.as_deref(), |id| ids.contains(id), &[])
 }
 
-/// Every file is wrong: the mistakes are what is said, and nothing of earlier runs is touched.
+/// Reports the mistakes when no file can be used; files of earlier runs are left alone.
 fn nothing_to_run(args: &RunArgs, mut wanted: Wanted<'_>) -> Result<Exit, CliError> {
     let mut kept = Kept::new(None, wanted.take_planned());
     wanted.invalid().try_for_each(|one| kept.note(one))?;
@@ -139,7 +139,7 @@ fn nothing_to_run(args: &RunArgs, mut wanted: Wanted<'_>) -> Result<Exit, CliErr
     Ok(Exit::Input)
 }
 
-/// Says what came of `runs`, and where it is.
+/// Reports the results of `runs` and the folder that holds them.
 fn say_what_came(runs: &dyn Runs, args: &RunArgs, out: &Path, removed: usize) -> Result<(), CliError> {
     if args.suite.quiet {
         return print_parts(brief(runs));

@@ -1,4 +1,4 @@
-//! `servobench schema`
+//! `servobench schema`: JSON Schemas.
 use crate::args::{SchemaArgs, SchemaOf};
 use crate::console::print_json;
 use crate::error::CliError;

@@ -1,4 +1,4 @@
-//! `servobench sweep`: a scenario over many values of its keys, as a suite; tables and pictures of what came of it.
+//! `servobench sweep`: a scenario over many values of its keys, as a suite, with tables and pictures of the results.
 mod outcome;
 mod points;
 
@@ -18,7 +18,7 @@ use servobench_report::run_count;
 use servobench_results::{Digest, Folder, OF_A_SWEEP, RESULTS, Runs, Suite, TABLE_CSV, is_table_of_a_sweep};
 use std::path::Path;
 
-/// Runs every point of a sweep, judges it and says what the values cost; or goes on with a sweep that was ended before its time.
+/// Runs every point of a sweep, judges it and reports the cost of the values; or resumes a sweep that was interrupted.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
     match (&args.resume, &args.sweep) {
         (Some(folder), _) => match suite_in(folder, &args.suite)? {
@@ -55,7 +55,7 @@ fn begun(path: &Path, args: &SweepArgs) -> Result<Exit, CliError> {
     carried_out(args, &points, ledger, view_program.as_ref())
 }
 
-/// The rest of a sweep: the same points, of which those that ended are not run again.
+/// Resumes a sweep: the same points, without those that have ended.
 fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
     let Begun { folder, suite, mut kept, command, here } = begun;
     let Command::Sweep(began) = command else {
@@ -77,7 +77,7 @@ fn resumed(begun: Begun, now: &SweepArgs) -> Result<Exit, CliError> {
     carried_out(&args, &points, ledger, view_program.as_ref())
 }
 
-/// Runs what has not ended yet, writes tables and pictures, and says what came of all.
+/// Runs what has not ended yet, writes tables and pictures, and reports all results.
 fn carried_out(
     args: &SweepArgs,
     points: &Points<'_>,

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-/// Opens a recording in the viewer that is installed, or that `cargo xtask viewer` fetched.
+/// Opens a recording in the installed viewer, or in the one that `cargo xtask viewer` fetched.
 pub(crate) fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     let recordings = recordings(&args.recording)?;
     let viewer = viewer().ok_or(CliError::NoViewer)?;
@@ -23,7 +23,7 @@ pub(crate) fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     if status.success() { Ok(Exit::Passed) } else { Err(CliError::ViewerEnded(status)) }
 }
 
-/// The `.rrd` files behind `path`: a recording, or those that the results in a folder name.
+/// The `.rrd` files of `path`: a recording, or those that the results in a folder name.
 fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
     if !path.is_dir() {
         return Ok(vec![as_rrd(path)?]);
@@ -46,14 +46,14 @@ fn recordings(path: &Path) -> Result<Vec<PathBuf>, CliError> {
     names.iter().map(|name| as_rrd(&path.join(name))).collect()
 }
 
-/// Whether the recording in `folder` is that of `run`, as far as its seal tells.
+/// False if the seal of the recording in `folder` differs from that in `run`.
 fn is_own(run: &RunResult, folder: &Path) -> bool {
     let Some((name, seal)) = run.recording.as_ref().zip(run.recording_seal.as_ref()) else { return true };
-    // One that cannot be read is told by whoever reads it.
+    // An unreadable one is reported by its reader.
     seal_of(folder.join(name)).map_or(true, |found| found.as_ref() == Some(seal))
 }
 
-/// What `run` or `compare` wrote into `folder`, whichever came last.
+/// The latest results that `run` or `compare` wrote into `folder`.
 pub(super) fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
     let files = [RESULTS, COMPARISON].map(|name| folder.join(name));
     let written = files.into_iter().filter_map(|file| Some((modified(&file).ok()?, file)));
@@ -61,7 +61,7 @@ pub(super) fn latest_results(folder: &Path) -> Result<PathBuf, CliError> {
     latest.ok_or_else(|| CliError::NoResults { folder: folder.to_owned() })
 }
 
-/// The recording for the viewer: beside a Parquet file the `.rrd` that was made of it, or a new one when that is older.
+/// The recording for the viewer: the `.rrd` made from a Parquet file, or a new one when that is older.
 fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     let written = modified(path).map_err(|error| CliError::Read { path: path.to_owned(), error })?;
     if path.extension() != Some(OsStr::new("parquet")) {
@@ -78,7 +78,7 @@ fn as_rrd(path: &Path) -> Result<PathBuf, CliError> {
     Ok(rrd)
 }
 
-/// What the results beside the recording at `path` say of its run; `None` where there are none, or they are of another run.
+/// Verdict on the run of the recording at `path`, from the results beside it; `None` without results or for another run.
 fn verdict_beside(path: &Path) -> Option<Verdict> {
     let results = Results::from_json(&read_results(&path.with_file_name(RESULTS)).ok()?).ok()?;
     let (name, seal) = (path.file_name()?.to_str()?, seal_of(path).ok()??);
@@ -87,7 +87,7 @@ fn verdict_beside(path: &Path) -> Option<Verdict> {
     Some(output::said_of(run.verdict, run.reasons, run.warnings))
 }
 
-/// When the file was written last.
+/// Time of the last write to the file.
 fn modified(path: &Path) -> io::Result<SystemTime> {
     std::fs::metadata(path)?.modified()
 }
@@ -163,7 +163,7 @@ mod tests {
         let other = folder.path().join("other.parquet");
         own.write_parquet(&other).unwrap();
         assert_eq!(verdict_beside(&other), None, "the results do not name it");
-        // However old it is: the time of a file says nothing of the run that it is of.
+        // At any age: the time of a file does not identify its run.
         recording(12).write_parquet(&path).unwrap();
         assert_eq!(verdict_beside(&path), None, "another run");
         let refusal = recordings(folder.path()).unwrap_err().to_string();

@@ -1,19 +1,19 @@
-//! Where a path leads: what is there is known by device and inode, so that neither links nor `./x` hide it; what is not there yet
+//! Place that a path leads to: an existing one is identified by device and inode, so that neither links nor `./x` hide it, a missing one
 //! by its folder and its name.
 use servobench_files::FileId;
 use std::path::{Component, Path, PathBuf};
 
-/// A name in a folder, both as they are found now.
+/// A name in a folder, as found now.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct Place {
-    /// The nearest folder that is there; `None` where not even the root can be asked.
+    /// The nearest existing folder; `None` where not even the root can be examined.
     folder: Option<FileId>,
-    /// What is below it.
+    /// Path below that folder.
     name: PathBuf,
 }
 
 impl Place {
-    /// Where `path` leads. A name in a folder is that name, whatever it leads to in turn: what is written there takes its place.
+    /// Place of `path`. A link as its last part is not followed: writing replaces it.
     pub(super) fn of(path: &Path) -> Self {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let is_name = matches!(path.components().next_back(), Some(Component::Normal(_)));
@@ -34,14 +34,14 @@ impl Place {
         FileId::of(path).map_or_else(|_| Self::of(path), |folder| Self { folder: Some(folder), name: PathBuf::new() })
     }
 
-    /// The name of this file, when it is one in `folder` itself.
+    /// The name of this file if it is directly in `folder`.
     pub(super) fn name_in(&self, folder: &Self) -> Option<&str> {
         let is_there = self.folder == folder.folder && self.name.parent() == Some(&folder.name);
         self.name.file_name().filter(|_| is_there)?.to_str()
     }
 }
 
-/// The folders `missing`, the innermost first, that somebody has still to make.
+/// Path of the folders `missing`, innermost first, that do not exist yet.
 fn below(missing: &[Component<'_>]) -> PathBuf {
     let mut path = PathBuf::new();
     for part in missing.iter().rev() {
@@ -74,7 +74,7 @@ mod tests {
             assert_eq!(FileId::of(&path(name)).unwrap(), FileId::of(&path("a")).unwrap(), "{name}");
         }
         assert_ne!(FileId::of(&path("b")).unwrap(), FileId::of(&path("a")).unwrap());
-        // What is not there yet.
+        // Missing files.
         assert_eq!(Place::of(&path("new")), Place::of(&path("folder/../new")));
         assert_eq!(Place::of(&path("x/y/../new")), Place::of(&path("x/new")));
         symlink(path("folder"), path("to-folder")).unwrap();

@@ -1,4 +1,4 @@
-//! A file that a command may write: nothing that it reads, and nothing that it writes already.
+//! Target of an output: a file, a stream or standard output, neither an input nor another output.
 use crate::console;
 use crate::error::CliError;
 use servobench_files::Destination;
@@ -7,8 +7,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Where a command writes something. A file gets its name when it is whole; standard output, a pipe or a device gets what is written
-/// as it comes.
+/// Target of an output. A file gets its name when it is whole; standard output, a pipe or a device receives data at once.
 #[derive(Debug, Clone)]
 pub(crate) struct Output {
     to: To,
@@ -17,11 +16,11 @@ pub(crate) struct Output {
 #[derive(Debug, Clone)]
 enum To {
     File(PathBuf),
-    /// The same in a folder that may have to be made.
+    /// A file in a folder that may have to be made.
     FileAnywhere(PathBuf),
-    /// By this name.
+    /// A device, a pipe or a standard stream named by a path.
     Stream(PathBuf, Destination),
-    /// Because nobody named a file, or by `-`.
+    /// Without a named file, or for `-`.
     StandardOutput,
 }
 
@@ -39,7 +38,7 @@ impl Output {
         Self { to }
     }
 
-    /// The same, in a folder that is made when there is none.
+    /// The same file in a folder that is made if missing.
     pub(super) fn anywhere(self) -> Self {
         match self.to {
             To::File(path) => Self { to: To::FileAnywhere(path) },
@@ -47,7 +46,7 @@ impl Output {
         }
     }
 
-    /// Whether it is standard output that nobody gave another name.
+    /// True for standard output, unless a path names it.
     pub(crate) const fn is_standard_output(&self) -> bool {
         matches!(self.to, To::StandardOutput)
     }
@@ -60,12 +59,12 @@ impl Output {
         }
     }
 
-    /// What it is called in messages.
+    /// Name in messages.
     pub(crate) fn shown(&self) -> String {
         self.path().map_or_else(|| "standard output".to_owned(), |path| path.display().to_string())
     }
 
-    /// Writes what people or programs read as text: the whole file or nothing.
+    /// Writes text, made fit for a terminal on standard output: the whole file or nothing.
     pub(crate) fn write_text(&self, text: &str) -> Result<(), CliError> {
         if self.is_standard_output() { console::print(text) } else { self.write(text) }
     }
@@ -80,7 +79,7 @@ impl Output {
         }
     }
 
-    /// Writes what `write` gives out, the whole file or nothing: for what is larger than memory.
+    /// Writes the output of `write`, the whole file or nothing: for more than fits in memory.
     pub(crate) fn stream(
         &self,
         write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
@@ -88,7 +87,7 @@ impl Output {
         self.streamed(write, false)
     }
 
-    /// The same, and makes sure that it is on the disk before it takes the place of what was there.
+    /// Like [`Self::stream`], and syncs the file to disk before it replaces an earlier one.
     pub(crate) fn stream_durably(
         &self,
         write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), CliError>,
@@ -96,7 +95,7 @@ impl Output {
         self.streamed(write, true)
     }
 
-    /// Lets another process write it, which `run` gets the file for: the whole file or nothing.
+    /// Lets another process, started by `run`, write the file: the whole file or nothing.
     pub(crate) fn by_process(&self, run: impl FnOnce(File) -> Result<(), CliError>) -> Result<(), CliError> {
         match &self.to {
             To::File(path) | To::FileAnywhere(path) => {
@@ -144,7 +143,7 @@ impl Output {
         write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), CliError>,
         is_durable: bool,
     ) -> Result<(), CliError> {
-        // What the system says of the file and what `write` says have one way out.
+        // Errors of the file and errors of `write` return by one path.
         let mut said = None;
         let write = |file: &mut BufWriter<&File>| {
             write(file).map_err(|error| {
@@ -159,7 +158,7 @@ impl Output {
         }
     }
 
-    /// That it cannot be written.
+    /// Error of a failed write.
     pub(crate) fn failed(&self, error: io::Error) -> CliError {
         match self.path() {
             Some(path) => CliError::Write { path: path.to_owned(), error },
@@ -168,7 +167,7 @@ impl Output {
     }
 }
 
-/// What somebody reads as it comes, who has what he wanted when he goes away.
+/// A stream whose reader may close it early: a broken pipe is not an error.
 struct Read(File);
 
 impl Write for Read {

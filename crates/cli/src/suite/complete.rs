@@ -1,4 +1,4 @@
-//! `--resume` of a suite that is complete: its report is shown again if it is that of today.
+//! `--resume` of a complete suite: shows its report again if inputs and files are unchanged.
 use super::held::{changed_files, changed_inputs};
 use crate::error::CliError;
 use servobench_results::{RESULTS, Results, Status, read_results};
@@ -7,12 +7,12 @@ use std::path::Path;
 /// Differences that are listed.
 const MOST: usize = 10;
 
-/// Results of a suite in `folder` that has ended, held against scenarios, files, program and recordings of now. Files that scenarios name
-/// may be below `root`.
+/// Results of a complete suite in `folder`, checked against the present scenarios, files, program and recordings. Files that scenarios
+/// name may be below `root`.
 pub(super) fn complete(folder: &Path, root: Option<&Path>) -> Result<Results, CliError> {
     let path = folder.join(RESULTS);
     let nothing = || CliError::NothingToResume(folder.to_owned());
-    // A link leads to results of another folder.
+    // A link would lead to results of another folder.
     let is_there = path.symlink_metadata().is_ok_and(|found| found.is_file());
     let text = is_there.then(|| read_results(&path).ok()).flatten().ok_or_else(nothing)?;
     let unread = |error| CliError::ReadResults { path: path.clone(), error };
@@ -40,7 +40,7 @@ pub(super) fn complete(folder: &Path, root: Option<&Path>) -> Result<Results, Cl
     }
 }
 
-/// As many of `all` as one reads, and how many more there are.
+/// The first [`MOST`] of `all`, and the number of others.
 pub(super) fn listed(mut all: Vec<String>) -> Vec<String> {
     let more = all.len().saturating_sub(MOST);
     if more > 0 {

@@ -1,4 +1,4 @@
-//! Exit code and words of `--deny` and `--strict`.
+//! Exit code and messages of `--deny` and `--strict`.
 use crate::args::DenyArgs;
 use crate::console::{say, style};
 use crate::error::CliError;
@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use servobench_report::{denials, wrapped};
 use servobench_results::Runs;
 
-/// Says what `runs` have that is denied, and where; in `quiet` each kind in one line.
+/// Reports denied findings of `runs` and their places; with `quiet` one line for each kind.
 pub(crate) fn deny(runs: &dyn Runs, args: &DenyArgs, quiet: bool) -> Result<Exit, CliError> {
     let lines = denials(runs, &args.kinds())?;
     for line in &lines {

@@ -1,4 +1,4 @@
-//! Where a suite writes: nothing that it reads, and nothing twice.
+//! Outputs of a suite, which overwrite neither inputs nor each other.
 use crate::error::CliError;
 use crate::output;
 use crate::outputs::{Output, OutputFolder, Outputs};
@@ -8,14 +8,14 @@ use std::path::Path;
 /// The option that names the JUnit report.
 pub(crate) const JUNIT: &str = "--junit";
 
-/// Where a suite writes.
+/// Outputs of a suite.
 pub(crate) struct Files {
     pub(crate) out: OutputFolder,
     pub(crate) junit: Option<Output>,
 }
 
 impl Files {
-    /// Results, journal, what runs leave, and `others` in the folder `out`.
+    /// Results, journal, files of runs, and `others` in the folder `out`.
     pub(crate) fn named(
         out: &Path,
         junit: Option<&Path>,

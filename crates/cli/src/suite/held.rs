@@ -1,4 +1,4 @@
-//! Results against what they are of: the scenarios and files, the program, the files that the runs left.
+//! Checks of results against their scenarios and files, the program, and the files that the runs left.
 use crate::args::OverrideArgs;
 use crate::build_id;
 use crate::output;
@@ -11,8 +11,7 @@ use servobench_suite::{Job, Source};
 use servobench_trace::verified_seal_of;
 use std::path::{Path, PathBuf};
 
-/// Differences between the inputs of `run`, whose result is of before, and those of the same run now. Files that it
-/// names may be below `root`.
+/// Differences between the inputs of the earlier result `run` and those of the same run now. Files that it names may be below `root`.
 pub(crate) fn changed_inputs(run: &RunResult, root: Option<&Path>) -> Vec<String> {
     let name = run.file.as_deref().unwrap_or(&run.name);
     if run.file.as_deref().is_some_and(|file| is_stdin(Path::new(file))) {
@@ -69,7 +68,7 @@ fn again(run: &RunResult, root: Option<&Path>) -> Result<Source, LoadError> {
 pub(crate) fn changed_files(folder: &Path, run: &RunResult) -> Option<String> {
     let RunResult { recording, recording_seal, files, .. } = run;
     for name in recording.iter().chain(files) {
-        // A link leads to what the run did not write.
+        // A link would lead to a file of another origin.
         if !folder.join(name).symlink_metadata().is_ok_and(|found| found.is_file()) {
             return Some(format!("`{}` is gone", printable(name)));
         }

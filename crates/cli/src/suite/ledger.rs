@@ -1,5 +1,5 @@
-//! What came of each run, kept where nothing that has ended is lost: in the journal while the suite runs, in `results.json` and
-//! JUnit at its end, whichever end that is.
+//! Results of the runs, saved so that none is lost: in the journal while the suite runs, in `results.json` and JUnit at its end, however it
+//! ends.
 use super::files::Files;
 use super::held::changed_files;
 use crate::error::CliError;
@@ -15,7 +15,7 @@ use servobench_suite::{RunLimits, map_in_parallel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The results of a suite as they come. One thread after the other notes its runs; the last word is that of whoever closes it.
+/// The results of a suite as they come. Threads note their runs in turn; closing it writes the results once.
 pub(crate) struct Ledger {
     folder: Folder,
     files: Files,
@@ -31,16 +31,16 @@ struct State {
     troubles: Vec<CliError>,
 }
 
-/// What a closed ledger holds.
+/// Content of a closed ledger.
 pub(crate) struct Closed {
     /// The results, as they are in `results.json`.
     pub(crate) kept: Kept,
-    /// What could not be written.
+    /// Errors of writing.
     pub(crate) troubles: Vec<CliError>,
 }
 
 impl Ledger {
-    /// Begins the journal of `suite`, and says in `results.json` that it is under way.
+    /// Begins the journal of `suite`, and marks it as running in `results.json`.
     pub(crate) fn begin(
         folder: Folder,
         files: Files,
@@ -53,7 +53,7 @@ impl Ledger {
         Ok(Self::new(folder, files, kept, suite))
     }
 
-    /// Goes on with what was kept of a suite.
+    /// Resumes a suite with its saved results.
     pub(crate) fn resume(folder: Folder, files: Files, kept: Kept, suite: &Suite) -> Self {
         Self::new(folder, files, kept, suite)
     }
@@ -68,22 +68,22 @@ impl Ledger {
         &self.folder
     }
 
-    /// The same for what runs leave there.
+    /// The folder of the results as an output for the files of runs.
     pub(crate) const fn out(&self) -> &OutputFolder {
         &self.files.out
     }
 
-    /// Whether the run at `index` has ended.
+    /// True if the run at `index` has ended.
     pub(crate) fn has(&self, index: usize) -> bool {
         self.state().kept.as_ref().is_some_and(|kept| kept.has(index))
     }
 
-    /// What the run at `index` is called.
+    /// Name, file and engine of the run at `index`.
     pub(crate) fn planned(&self, index: usize) -> Option<Unfinished> {
         self.state().kept.as_ref().and_then(|kept| kept.planned().get(index).cloned())
     }
 
-    /// A run has ended. What ends because the program is being ended is not noted.
+    /// Notes the end of a run, unless the program is being ended.
     pub(crate) fn note(&self, finished: Finished) {
         let mut state = self.state();
         let State { kept: Some(kept), troubles } = &mut *state else { return };
@@ -91,7 +91,7 @@ impl Ledger {
             return;
         }
         if let Err(error) = kept.note(finished) {
-            // Said once: what follows may find room again.
+            // Reported once: later runs may find room again.
             let is_known = troubles.iter().any(|trouble| matches!(trouble, CliError::Journal(_)));
             if !is_known {
                 troubles.push(CliError::Journal(error));
@@ -99,8 +99,8 @@ impl Ledger {
         }
     }
 
-    /// Writes results and JUnit; the journal goes when every run has a verdict, since nothing is then left for
-    /// `--resume`. Whoever comes second finds it closed.
+    /// Writes results and JUnit; removes the journal when every run has a verdict, since nothing is left for `--resume`. Returns `None` on
+    /// further calls.
     pub(crate) fn close(&self) -> Option<Closed> {
         let mut state = self.state();
         let mut kept = state.kept.take()?;
@@ -116,7 +116,7 @@ impl Ledger {
             troubles.extend(write_junit(&kept, output).err());
         }
         if is_safe && kept.unfinished().next().is_none() && kept.heads().all(|head| head.verdict != Outcome::Error) {
-            // One that stays is of a suite that is complete, which it says.
+            // A journal that cannot be removed belongs to a complete suite and states that.
             std::fs::remove_file(self.folder.journal()).ok();
         } else {
             troubles.extend(self.folder.remove_unnamed(&self.stems, &kept).err().map(CliError::from));
@@ -124,8 +124,8 @@ impl Ledger {
         Some(Closed { kept, troubles })
     }
 
-    /// Takes its verdict from each run whose files are not there as it wrote them: something changed or removed them while the suite ran,
-    /// and results that name them would be of another run.
+    /// Turns the verdict of each run whose files have changed into an error: something changed or removed them while the suite ran, and
+    /// results that name them would be of another run.
     fn hold_files(&self, kept: &mut Kept) -> Result<(), JournalError> {
         let mut left: Vec<(usize, Duration, RunResult)> = Vec::new();
         for head in kept.heads().filter(|head| head.has_recording) {
@@ -155,7 +155,7 @@ impl Ledger {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // Nothing is left half done with it.
+        // A panic never leaves the state half changed.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -170,7 +170,7 @@ pub(crate) fn write_junit(runs: &dyn Runs, output: &Output) -> Result<(), CliErr
     })
 }
 
-/// What the system says of a file of results, with its name.
+/// `error` with the name of the results file if writing failed.
 fn told(output: &Output, error: CliError) -> CliError {
     match error {
         CliError::Results(ResultsError::Write(error)) => output.failed(error),

@@ -1,7 +1,7 @@
-//! `--resume`: the rest of a suite that was ended before its time.
+//! `--resume`: the rest of a suite that was interrupted.
 //!
-//! A journal is a file that may come from anywhere. What is taken from it are the scenarios and how they are run; they have to be where
-//! the command line of now lets scenarios be. It says what may be read, where the JUnit report goes and which FMUs are trusted.
+//! A journal may come from an untrusted source. Only the scenarios and the settings of their runs are taken from it; they must be where
+//! the present command line allows scenarios. That alone sets readable folders, the path of the JUnit report and the trust in FMUs.
 use super::complete::{complete, listed};
 use super::held::{changed_files, changed_inputs};
 use crate::args::{self, Command, SuiteArgs};
@@ -15,15 +15,15 @@ use std::cell::RefCell;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// A suite that can go on.
+/// A suite that can be resumed.
 pub(crate) struct Begun {
     pub(crate) folder: Folder,
     pub(crate) suite: Suite,
-    /// The runs whose results and files are there.
+    /// The runs whose results and files exist.
     pub(crate) kept: Kept,
     /// The command that began it.
     pub(crate) command: Command,
-    /// Folder that relative paths of the command line of now start from.
+    /// Folder of relative paths on the present command line.
     pub(crate) here: PathBuf,
 }
 
@@ -34,7 +34,7 @@ pub(crate) enum Found {
     Complete(Results),
 }
 
-/// The suite in `folder`, as far as it came. From now on relative paths are those of the command that began it.
+/// The suite in `folder`, as far as it came. If it is to be resumed, the current folder becomes that of the command that began it.
 pub(crate) fn suite_in(folder: &Path, now: &SuiteArgs) -> Result<Found, CliError> {
     if !folder.is_dir() {
         return Err(CliError::NothingToResume(folder.to_owned()));
@@ -86,8 +86,8 @@ pub(crate) fn suite_in(folder: &Path, now: &SuiteArgs) -> Result<Found, CliError
     Ok(Found::Begun(Box::new(Begun { folder: there, suite, kept, command, here })))
 }
 
-/// Refuses a journal by which something would be read that the command line of now does not let be read: the folder that paths start
-/// from and all scenarios are within `--root`; without it within the project of the current folder, or beside the folder of the results.
+/// Refuses a journal that would read more than the present command line allows: the starting folder of paths and all scenarios must be
+/// within `--root`; without it within the project of the current folder, or beside the folder of the results.
 fn allowed(results: &Path, here: &Path, now: &SuiteArgs, start: &Path, scenarios: &[PathBuf]) -> Result<(), CliError> {
     let given = now.with.root.as_deref();
     let unread = |error| CliError::Read { path: given.unwrap_or(here).to_owned(), error };
@@ -97,7 +97,7 @@ fn allowed(results: &Path, here: &Path, now: &SuiteArgs, start: &Path, scenarios
     }
     let files = scenarios.iter().filter(|path| !is_stdin(path)).map(|path| start.join(path));
     for path in std::iter::once(start.to_owned()).chain(files) {
-        // What is not there is not read.
+        // A missing path is not read.
         let Ok(real) = path.canonicalize() else { continue };
         if !roots.iter().any(|root| real.starts_with(root)) {
             return Err(CliError::OutsideOfToday { folder: results.to_owned(), path: real, roots });
@@ -106,7 +106,7 @@ fn allowed(results: &Path, here: &Path, now: &SuiteArgs, start: &Path, scenarios
     Ok(())
 }
 
-/// Error of a suite in `folder` that has become another one, with the differences that the runs that ended know of.
+/// Error of a suite in `folder` that has changed, with the differences found in its ended runs.
 pub(crate) fn other_suite(folder: &Path, suite: &Suite, kept: &Kept, root: Option<&Path>) -> CliError {
     let mut found: Vec<String> = Vec::new();
     let program = Digest::of(build_id::program().as_bytes());

@@ -19,9 +19,9 @@ use servobench_sweep::Value;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Start and factor of the hash of Fowler, Noll and Vo, by which a machine has its own seed.
+/// Start and factor of the Fowler–Noll–Vo hash that gives each machine its seed.
 const FNV: (u64, u64) = (0xcbf2_9ce4_8422_2325, 0x0100_0000_01b3);
-/// Time from one word to the next.
+/// Time between progress messages.
 const PERIOD: Duration = Duration::from_secs(10);
 
 /// Makes the runs of an advice.
@@ -40,7 +40,7 @@ pub(super) struct Runs<'a> {
     spring: Option<f64>,
     made: usize,
     told: Instant,
-    /// What could not be carried out: how many runs, and why the first one.
+    /// Number of runs that could not be carried out, and the first error.
     broken: Mutex<Option<(usize, RunError)>>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Runs<'a> {
         self.engine
     }
 
-    /// Ends worker processes, and says what could not be carried out.
+    /// Ends worker processes and reports runs that could not be carried out.
     pub(super) fn finish(&self) {
         workers::dismiss(&self.workers);
         if let Some((count, first)) = &*self.broken.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -87,12 +87,12 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// What makes a run of `point` on the machine of the scenario, as on the command line.
+    /// Overrides, as on the command line, for a run of `point` on the machine of the scenario.
     pub(super) fn settings(&self, point: &SetPoint) -> Vec<String> {
         self.args.with.overrides.iter().map(ToString::to_string).chain(self.set_point(point)).collect()
     }
 
-    /// Refuses a box whose corners are no valid scenarios or have an unstable loop, and a scenario that cannot be run on its engine.
+    /// Refuses tolerances whose corners are invalid scenarios, loops that are all unstable, and a scenario that cannot run on its engine.
     pub(super) fn check(&self) -> Result<(), CliError> {
         let Question { ceiling, distance, .. } = self.question;
         let mut unstable = Vec::new();
@@ -130,7 +130,7 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// A machine in words, for what is wrong with its loop.
+    /// A machine's settings in words, for messages about its loop.
     fn loop_of(&self, machine: &[f64]) -> String {
         let settings = self.machine(machine).into_iter().filter(|one| !one.starts_with("measure."));
         settings.collect::<Vec<_>>().join(", ")
@@ -159,7 +159,7 @@ impl<'a> Runs<'a> {
         settings
     }
 
-    /// A machine as on the command line; the mode that is measured is its own.
+    /// A machine as on the command line, with the measured mode moved to that of the machine.
     fn machine(&self, machine: &[f64]) -> Vec<String> {
         let mut settings = Vec::new();
         for (range, value) in self.question.machines.ranges().iter().zip(machine) {
@@ -168,7 +168,7 @@ impl<'a> Runs<'a> {
             if range.key.ends_with(".frequency") && self.base.scenario.measure.mode.is_some() {
                 settings.push(format!("measure.mode={written}"));
             }
-            // A stiffness that nobody gave is that of the scenario, and moves its mode by the root.
+            // The default stiffness range is relative to the scenario's, and moves its mode by the root.
             if let (Some(mode), Some(own)) = (self.base.scenario.measure.mode, &self.spring)
                 && range.key.ends_with(".stiffness")
             {
@@ -178,7 +178,7 @@ impl<'a> Runs<'a> {
         settings
     }
 
-    /// Random numbers of a machine's own, so that what is promised of draws holds for any noise.
+    /// Overrides with a separate seed for each machine, so that promises about draws hold for any noise.
     fn noise(&self, machine: &[f64]) -> Vec<String> {
         let mixed = machine.iter().fold(FNV.0, |hash, value| (hash ^ value.to_bits()).wrapping_mul(FNV.1));
         let seed = (mixed >> 32) as u32;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// A run of a file of results.
 pub(super) struct Earlier {
-    /// What it is called in table and words.
+    /// Name in tables and text.
     pub(super) label: String,
     pub(super) result: RunResult,
     /// The file.
@@ -22,12 +22,12 @@ pub(super) struct Earlier {
     generator: String,
 }
 
-/// Runs of one file that are taken, and names that a message lists, at most.
+/// Most runs taken from one file, and most names listed in a message.
 const MOST: usize = 20;
 /// Characters of a foreign name that are shown.
 const LONGEST: usize = 40;
 
-/// The runs in the files at `paths` that stand beside `jobs`; their labels are none of `taken`.
+/// The runs in the files at `paths` that are compared with `jobs`; their labels differ from those in `taken`.
 pub(super) fn read(paths: &[PathBuf], jobs: &[&Job], taken: &[&str]) -> Result<Vec<Earlier>, CliError> {
     let mut all: Vec<Earlier> = Vec::new();
     for path in paths {
@@ -48,7 +48,7 @@ pub(super) fn read(paths: &[PathBuf], jobs: &[&Job], taken: &[&str]) -> Result<V
     Ok(all)
 }
 
-/// What the folder of a file is called.
+/// Name of the folder that holds a file.
 fn folder_name(file: &Path) -> String {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     let name = |folder: &Path| folder.file_name().and_then(OsStr::to_str).map(str::to_owned);
@@ -56,7 +56,7 @@ fn folder_name(file: &Path) -> String {
     elided(&printable(&name.unwrap_or_else(|| "earlier".into())), LONGEST)
 }
 
-/// Who wrote the file, and those of its runs that have the name of a scenario of now; its only run when none has.
+/// The program that wrote the file, and those of its runs that have the name of a scenario in `jobs`; a single run is taken with any name.
 fn matching(file: &Path, jobs: &[&Job]) -> Result<(String, Vec<RunResult>), CliError> {
     reads(file, format_args!("the results {}", file.display()));
     let text = read_results(file).map_err(|error| CliError::Read { path: file.to_owned(), error })?;
@@ -98,7 +98,7 @@ fn matching(file: &Path, jobs: &[&Job]) -> Result<(String, Vec<RunResult>), CliE
     Ok((elided(&printable(&results.generator), LONGEST), found))
 }
 
-/// Whether a result is of a linear or of a rotary axis, as the units of its lengths say.
+/// Kind of axis of a result, linear or rotary, from the units of its lengths.
 fn motion_of(result: &RunResult) -> Option<&'static str> {
     let lengths = [Name::FollowingErrorPeakLoad, Name::FollowingErrorPeakMotor, Name::ResidualVibrationPp];
     let (_, unit) = lengths.into_iter().find_map(|name| result.metric(name))?;
@@ -106,7 +106,7 @@ fn motion_of(result: &RunResult) -> Option<&'static str> {
 }
 
 impl Earlier {
-    /// What it is, in lines that fit `width`.
+    /// Description in lines that fit `width`.
     pub(super) fn words(&self, width: usize) -> String {
         let Self { label, result, path, generator } = self;
         let overrides: Vec<String> = result.overrides.iter().map(|one| printable(one)).collect();

@@ -1,4 +1,4 @@
-//! What stands above the table: which runs they are, and what differs in them.
+//! Heading above the table: names of the runs, and the differences between their scenarios.
 use super::earlier::Earlier;
 use super::slowing::Slowing;
 use super::variants::Wanted;
@@ -17,7 +17,7 @@ const LONGEST: usize = 30;
 /// Characters of a name of a run that are shown in a list.
 const LONGEST_NAME: usize = 24;
 
-/// Which runs they are, on which terms, and what differs.
+/// The heading: the runs, the terms of the comparison, and the differences.
 pub(super) fn heading(args: &CompareArgs, wanted: &[Wanted], earlier: &[Earlier], slowing: Option<&Slowing>) -> String {
     let terms = match &args.equal {
         None => "each at its own limits".to_owned(),
@@ -77,7 +77,7 @@ fn of_all(overrides: &[Override]) -> String {
     format!("\n{}", wrapped(&words, style().width.saturating_sub(2)).join("\n  "))
 }
 
-/// The variants and what they are, a line or more for each.
+/// The variants with their settings, one or more lines for each.
 fn named(variants: &[(&str, &str)]) -> String {
     let width = variants.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).min(LONGEST_NAME);
     let lines = variants.iter().map(|(name, words)| {
@@ -88,12 +88,12 @@ fn named(variants: &[(&str, &str)]) -> String {
     lines.collect()
 }
 
-/// Whether a key says what is run, and not on what or what is kept of it.
+/// True for a key that affects the run itself, other than the engine and the recorded channels.
 fn is_of_the_run(key: &str) -> bool {
     key != "engine" && !key.starts_with("record.channels")
 }
 
-/// What differs, a line for each key: `drive.velocity.bandwidth  60 Hz against 90 Hz`.
+/// Differences, one line for each key: `drive.velocity.bandwidth  60 Hz against 90 Hz`.
 fn listed(of: &str, all: &[Difference]) -> String {
     if all.is_empty() {
         return format!("\nthe files say the same{of}");
@@ -107,7 +107,7 @@ fn listed(of: &str, all: &[Difference]) -> String {
     let lines = shown.iter().map(|difference| {
         let values = format!("{} against {}", value(&difference.one), value(&difference.other));
         let line = format!("\n  {:key$}  {values}", difference.key);
-        // Its values stand below a key that leaves them no room.
+        // The values go below a key that leaves them no room.
         if line.chars().count() > style().width + 1 { format!("\n  {}\n      {values}", difference.key) } else { line }
     });
     let more = all.len() - shown.len();

@@ -1,6 +1,6 @@
-//! What runs are called in tables and words.
+//! Names of runs in tables and text.
 
-/// What tells the names apart: `lambrechts-jerk` and `lambrechts-snap` are `jerk` and `snap`.
+/// Names without their common prefix: `lambrechts-jerk` and `lambrechts-snap` become `jerk` and `snap`. Equal ones are numbered.
 pub(super) fn labels(names: &[&str]) -> Vec<String> {
     let parts: Vec<Vec<&str>> = names.iter().map(|name| name.split('-').collect()).collect();
     let shortest = parts.iter().map(Vec::len).min().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The one recording in which the runs lie over each other.
+//! The single recording that overlays all runs.
 use super::variants::Wanted;
 use crate::error::CliError;
 use crate::interrupt;
@@ -11,10 +11,10 @@ use servobench_trace::PassingFile;
 use servobench_view_request::{Request, ViewOptions};
 use std::path::Path;
 
-/// Runs that the name of the recording has in it; of more of them the first and how many others.
+/// Most runs named in the file name of the recording; for more, the first and the number of others.
 const MOST_NAMED: usize = 4;
 
-/// What the recording is called.
+/// File name of the recording.
 pub(super) fn name(wanted: &[Wanted]) -> String {
     let labels: Vec<&str> = wanted.iter().map(|one| one.label.as_str()).collect();
     let name = match labels.as_slice() {
@@ -24,7 +24,7 @@ pub(super) fn name(wanted: &[Wanted]) -> String {
     format!("{}.rrd", file_name(&name))
 }
 
-/// Draws it as the file `name`.
+/// Draws the recording as the file `name`.
 pub(super) fn write(
     program: &ViewProgram,
     out: &OutputFolder,
@@ -49,7 +49,7 @@ pub(super) fn write(
     Ok(())
 }
 
-/// What both are held to: a line over all runs must not be the bound of one of them.
+/// Limits common to both: a line drawn over all runs must not be the bound of one of them.
 fn agreed(mut one: ViewOptions, other: &ViewOptions) -> ViewOptions {
     one.limits.retain(|limit| other.limits.contains(limit));
     one.allowed.retain(|allowed| other.allowed.contains(allowed));

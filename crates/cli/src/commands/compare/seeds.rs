@@ -1,4 +1,4 @@
-//! Runs with random numbers, once more with other seeds: what is chance is not a difference.
+//! Runs with random numbers, repeated with other seeds: a difference within this noise is not one.
 use super::variants::Wanted;
 use crate::args::CompareArgs;
 use crate::sources;
@@ -6,8 +6,8 @@ use servobench_scenario::{Override, Seed};
 use servobench_suite::{Job, Source, reseeded as with_source};
 use std::path::{Path, PathBuf};
 
-/// The scenario of `source`, which has `overrides` beside those of all runs, with each further seed; empty where it has no random numbers. A
-/// seed that an override does not allow leaves it without further ones, and so within noise.
+/// The scenario of `source` with each further seed and with `overrides` beside those of all runs; empty where it has no random numbers, or
+/// where an override does not allow another seed: its differences then count as noise.
 pub(super) fn reseeded(source: &Source, args: &CompareArgs, overrides: &[Override]) -> Vec<Source> {
     let seeds = source.scenario.seeds();
     if seeds.is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn reseeded(source: &Source, args: &CompareArgs, overrides: &[Overrid
     all.collect()
 }
 
-/// The scenario at `path` with the seeds that are `further` on.
+/// The scenario at `path` with each seed increased by `further`.
 fn again(path: &Path, args: &CompareArgs, overrides: &[Override], seeds: &[Seed], further: u32) -> Option<Source> {
     let is_seed = |one: &Override| seeds.iter().any(|seed| key_of(one) == seed.key);
     let mut all: Vec<Override> =
@@ -37,7 +37,7 @@ fn key_of(one: &Override) -> String {
     key.trim().replace('[', ".").replace([']', '"', '\''], "")
 }
 
-/// The jobs of all of them, with the place of the run that each is of.
+/// The jobs with further seeds, each with the index of the run that it repeats.
 pub(super) fn jobs(wanted: &[Wanted]) -> Vec<(usize, Job)> {
     let all = wanted.iter().enumerate().flat_map(|(place, one)| {
         let each = one.reseeded.iter().zip(1..);

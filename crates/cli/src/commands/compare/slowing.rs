@@ -1,4 +1,4 @@
-//! `--equal`: moves that are slowed, and how it is told.
+//! `--equal`: slows moves and describes the result.
 use super::variants::Wanted;
 use crate::args::EqualTerm;
 use crate::console::say;
@@ -14,22 +14,22 @@ use servobench_suite::{
     to_equal_duration,
 };
 
-/// How moves were slowed.
+/// The way in which moves were slowed.
 pub(super) enum Slowing {
     /// Each to the longest of its counterparts.
     Duration,
-    /// To a duration (s); how many times as long the moves last.
+    /// To a duration (s), with the factor on each run's move time.
     To(f64, Vec<f64>),
     /// Until a metric was equal.
     Metric(EqualQuantity, Equalized),
 }
 
-/// Runs between two words about how far it is.
+/// Number of runs between progress messages.
 const SAID_AFTER: usize = 200;
-/// Equal, relative: what is written as equal.
+/// Largest relative difference that is reported as equal.
 const EQUAL: f64 = 2e-6;
 
-/// The value that is asked for (SI), in its unit on this axis.
+/// The requested value (SI), read in its unit on this axis.
 pub(super) fn target(term: &EqualTerm, jobs: &[&Job]) -> Result<Option<f64>, CliError> {
     let (Some(text), Some(job)) = (&term.value, jobs.first()) else { return Ok(None) };
     let name = match term.quantity {
@@ -49,7 +49,7 @@ pub(super) fn target(term: &EqualTerm, jobs: &[&Job]) -> Result<Option<f64>, Cli
     }
 }
 
-/// Slows what needs no run to know by how much.
+/// Slows moves by duration, where no run is needed to find the factor.
 pub(super) fn without_runs(
     term: &EqualTerm,
     target: Option<f64>,
@@ -65,7 +65,7 @@ pub(super) fn without_runs(
     }
 }
 
-/// Slows the moves until what is measured of them is equal.
+/// Slows the moves until a measured quantity is equal.
 pub(super) fn by_runs(
     term: &EqualTerm,
     target: Option<f64>,
@@ -93,7 +93,7 @@ pub(super) fn by_runs(
 }
 
 impl Slowing {
-    /// The metric in which runs are equal, where it is one that is measured.
+    /// The measured metric in which runs are equal; `None` for a duration.
     pub(super) const fn metric(&self) -> Option<Name> {
         match self {
             Self::Metric(_, equalized) => Some(equalized.metric),
@@ -101,7 +101,7 @@ impl Slowing {
         }
     }
 
-    /// On which terms, in a few words.
+    /// Terms of the comparison, in a few words.
     pub(super) fn terms(&self) -> String {
         match self {
             Self::Duration => "slowed to equal duration".into(),
@@ -110,7 +110,7 @@ impl Slowing {
         }
     }
 
-    /// What became of it, in lines that fit `width`.
+    /// Outcome for each run, in lines that fit `width`.
     pub(super) fn words(&self, wanted: &[Wanted], width: usize) -> String {
         match self {
             Self::Duration => String::new(),
@@ -138,12 +138,12 @@ impl Slowing {
     }
 }
 
-/// How long moves last, in words.
+/// Factor on move times, in words.
 fn lasting(factor: f64) -> String {
     if factor > 1.0 { format!("moves last {factor:.6} × as long") } else { "at its own limits".into() }
 }
 
-/// How a value came out.
+/// Deviation of a value from the target, in words.
 fn reached(value: f64, target: f64, unit: &str) -> String {
     let share = value / target - 1.0;
     if share.abs() <= EQUAL {

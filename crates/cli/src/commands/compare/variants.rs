@@ -1,4 +1,4 @@
-//! What is compared: scenario files, each in variants.
+//! Runs of a comparison: scenario files, each in variants.
 use super::labels::labels;
 use super::seeds;
 use crate::args::{CompareArgs, Shapers, Variant};
@@ -16,13 +16,13 @@ use std::path::{Path, PathBuf};
 /// A run that is to be made.
 pub(super) struct Wanted {
     pub(super) job: Job,
-    /// What it is called in table and words.
+    /// Name in tables and text.
     pub(super) label: String,
     /// The variant, by its name and in words; `None` without one.
     pub(super) variant: Option<(String, String)>,
     /// Index of its file among the scenarios.
     pub(super) file: usize,
-    /// The same with other seeds of its random numbers; empty where it has none.
+    /// Its scenario with other seeds of its random numbers; empty where it has none.
     pub(super) reseeded: Vec<Source>,
 }
 
@@ -112,7 +112,7 @@ fn varied(
     })
 }
 
-/// The variants of a scenario: those that are named, then one with each shaper.
+/// The variants of a scenario: the named ones, then one for each shaper.
 fn variants(args: &CompareArgs, scenario: &Scenario) -> Result<Vec<Shaped>, CliError> {
     let named = args.variants.iter().map(|Variant { name, overrides }| {
         let written: Vec<String> = overrides.iter().map(ToString::to_string).collect();
@@ -135,7 +135,7 @@ fn variants(args: &CompareArgs, scenario: &Scenario) -> Result<Vec<Shaped>, CliE
     Ok(all)
 }
 
-/// Frequency (Hz) and damping of the modes that shapers are against.
+/// Frequency (Hz) and damping ratio of the modes that shapers suppress.
 fn modes(args: &CompareArgs, scenario: &Scenario) -> Result<Vec<(f64, f64)>, CliError> {
     let frequencies = match (args.shaper.frequencies.as_slice(), scenario.measure.mode) {
         ([], Some(mode)) => vec![mode],
@@ -162,11 +162,11 @@ fn modes(args: &CompareArgs, scenario: &Scenario) -> Result<Vec<(f64, f64)>, Cli
     Ok(frequencies.into_iter().zip(dampings).collect())
 }
 
-/// The variant with a shaper of this kind, or with none.
+/// The variant with a shaper of this kind, or without a shaper.
 fn shaped(kind: Option<ShaperKind>, modes: &[(f64, f64)], scenario: &Scenario) -> Result<Shaped, CliError> {
     const KEY: &str = "setpoint.shaper";
     let Some(kind) = kind else {
-        // Where there is none, nothing is said of one.
+        // A scenario without a shaper needs no override.
         let has_one = scenario.parameters.iter().any(|parameter| parameter.key.starts_with(KEY));
         let written = has_one.then(|| format!("{KEY}={{ kind = \"none\" }}"));
         let overrides = written.iter().map(|text| parsed(text)).collect::<Result<_, _>>()?;

@@ -8,7 +8,7 @@ const PAGE: &str = include_str!("../../../../../docs/metrics.md");
 pub(super) struct Definition {
     pub(super) unit: String,
     pub(super) text: String,
-    /// Signals that it is computed from.
+    /// Signals from which it is computed.
     pub(super) channels: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What stands between the planner and the drive.
+//! Filters between the planner and the drive.
 use super::mistake::PlanMistake;
 use super::quantity::{frequency, ratio, time};
 use crate::args::choice;
@@ -6,7 +6,7 @@ use clap::Args;
 use servobench_motion::shape::{Shaper, ShaperKind};
 use servobench_planner::{Averages, Filter, Shaping};
 
-/// Heading of what changes a move that is planned.
+/// Heading of options that change a planned move.
 pub(super) const FILTER: &str = "Behind the planner";
 
 /// Shapers and averages; whoever has them has `sample_time`.
@@ -84,7 +84,7 @@ impl FilterArgs {
     }
 }
 
-/// For each of so many shapers, in words `what`, its value: none, the same one, or its own.
+/// One value for each of `count` shapers, named `what` in messages: none, the same one, or separate ones.
 fn for_each(
     option: &'static str,
     values: &[f64],

@@ -1,4 +1,4 @@
-//! What is wrong with a move that was asked for, as far as the parser of the command line cannot know it.
+//! Mistakes in a requested move that the parser of the command line cannot find.
 use servobench_motion::PlanError;
 use servobench_report::{ReportError, Unsent};
 use servobench_scenario::{ArgumentError, PointsError};
@@ -7,13 +7,13 @@ use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A mistake, with the option that it is made in and the way out.
+/// A mistake, with its option and the remedy.
 #[derive(Debug, Error)]
 pub(crate) enum PlanMistake {
-    /// Of a linear axis where that is rotary, or the other way round.
+    /// A linear quantity on a rotary axis, or the other way round.
     #[error("--{option} {error}")]
     OtherAxis { option: String, error: ArgumentError },
-    /// At the start a derivative that the order lets jump.
+    /// A derivative at the start that may jump at this order.
     #[error(
         "--{option} is not used by a move of order {order}, whose {quantity} may jump: leave it out, or choose --order \
          {lowest}"
@@ -55,7 +55,7 @@ pub(crate) enum PlanMistake {
     Unreadable { file: PathBuf, error: io::Error },
     #[error("{}:{error}", .file.display())]
     Points { file: PathBuf, error: PointsError },
-    /// Of the planner.
+    /// Refusal by the planner.
     #[error("{}", ByOptions(.0))]
     Refused(PlanError),
     #[error("--words: {0}")]
@@ -66,7 +66,7 @@ pub(crate) enum PlanMistake {
     NotDrawn(ReportError),
 }
 
-/// What a planner says of its request, with options for its fields.
+/// A planner's error with options in place of the fields of its request.
 struct ByOptions<'a>(&'a PlanError);
 
 impl fmt::Display for ByOptions<'_> {

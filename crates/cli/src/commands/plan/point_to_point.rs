@@ -99,7 +99,7 @@ impl PointToPointArgs {
         Limits { velocity, acceleration, jerk, snap }
     }
 
-    /// How the move is sampled, if it is.
+    /// Sampling of the move, if requested.
     fn grid(&self, method: Method) -> Result<Option<Grid>, PlanMistake> {
         let FromRestArgs { sampling, execution, .. } = self.from_rest;
         if method == Method::Optimal && sampling.is_some() {

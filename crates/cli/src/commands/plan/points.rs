@@ -1,4 +1,4 @@
-//! The move as points: as a table, and in the words in which a drive is sent them.
+//! The move as points: as a table, and as the words sent to a drive.
 use super::mistake::PlanMistake;
 use super::quantity::{Axis, AxisQuantity, COUNTS, Counts, POSITION, positive_time};
 use crate::args::{choice, file};
@@ -33,7 +33,7 @@ pub(crate) struct PointArgs {
     counts: Option<Counts>,
 }
 
-/// Points that are asked for.
+/// Requested points.
 #[derive(Debug)]
 pub(super) struct AskedPoints {
     choice: PointChoice,
@@ -41,21 +41,21 @@ pub(super) struct AskedPoints {
 }
 
 impl PointArgs {
-    /// What the drive counts.
+    /// Counts of the drive.
     pub(super) fn counts(&self) -> Option<servobench_scenario::Counts> {
         self.counts.as_ref().map(Counts::of_axis)
     }
 
-    /// Whether counts are given that nothing uses; a table may.
+    /// True if counts are given but not used; a table may use them.
     pub(super) const fn has_unused_counts(&self, is_table: bool) -> bool {
         self.counts.is_some() && self.words.is_none() && !is_table
     }
 
-    /// What is asked for, if anything is.
+    /// The requested points, if any.
     pub(super) fn asked(&self, axis: &mut Axis) -> Option<AskedPoints> {
         let Self { pvt, point_time, allowed_deviation, words, trajectory_buffer, counts } = self;
         let counts = counts.as_ref().map(|counts| axis.counts(counts));
-        // In a unit of its own: positions stay in theirs.
+        // Read in its own unit, which positions do not take over.
         let choice = match (point_time, allowed_deviation) {
             (Some(time), _) => PointChoice::Every(*time),
             (None, Some(allowed)) => PointChoice::FewestWithin(axis.value(allowed)),

@@ -10,7 +10,7 @@ use servobench_planner::{Filter, Generator, Request};
 use servobench_scenario::Counts;
 use std::path::Path;
 
-/// What is planned.
+/// Profile of a plan.
 #[derive(Debug)]
 pub(crate) enum Profile {
     /// Order 2, 3 or 4; from rest to rest, or from a state of motion.
@@ -80,7 +80,7 @@ impl FromArgMatches for Profile {
 }
 
 impl Profile {
-    /// The move that is asked for, in `duration` (s) if that is given, and its axis; of a table that may be in `counts`.
+    /// The requested move, in `duration` (s) if given, and its axis; a table may be in `counts`.
     pub(super) fn request(
         &self,
         duration: Option<f64>,
@@ -111,7 +111,7 @@ impl Profile {
         }
     }
 
-    /// What velocity and acceleration of a table are held against.
+    /// Limits that velocity and acceleration of a table are checked against.
     fn table_limits(&self, axis: &mut Axis) -> [Sides; 2] {
         match self {
             Self::Named(NamedProfile::Pvt(args)) => args.limits(axis),
@@ -130,12 +130,12 @@ impl Profile {
         }
     }
 
-    /// Whether it goes through a table.
+    /// True for a move through a table.
     pub(super) const fn is_table(&self) -> bool {
         matches!(self, Self::Named(NamedProfile::Pvt(_) | NamedProfile::Position(_)))
     }
 
-    /// The table that it goes through.
+    /// File of the table.
     pub(super) fn table(&self) -> Option<&Path> {
         match self {
             Self::PointToPoint(_) | Self::Named(NamedProfile::Rockwell(_)) => None,
@@ -144,7 +144,7 @@ impl Profile {
         }
     }
 
-    /// Where velocity commands are written.
+    /// File for velocity commands.
     pub(super) fn commands(&self) -> Option<&Path> {
         if let Self::Named(NamedProfile::Position(args)) = self { args.commands.as_deref() } else { None }
     }

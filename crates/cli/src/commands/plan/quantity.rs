@@ -1,5 +1,5 @@
-//! Quantities on the command line of a plan. The parser of the command line reads each by itself; [`Axis`] is what they say together:
-//! whether the axis is linear or rotary, and the units in which a plan is told.
+//! Quantities on the command line of a plan. The parser reads each by itself; [`Axis`] combines them: it holds whether the axis is linear
+//! or rotary, and the units of the plan.
 use super::mistake::PlanMistake;
 use clap::builder::TypedValueParser;
 use clap::{Arg, Command};
@@ -7,7 +7,7 @@ use servobench_base::Coordinate;
 use servobench_scenario::{Derivative, axis_quantity};
 use std::ffi::OsStr;
 
-/// A position or one of its derivatives, and the option that it is the value of.
+/// A position or one of its derivatives, and its option.
 #[derive(Debug, Clone)]
 pub(crate) struct AxisQuantity {
     option: String,
@@ -36,7 +36,7 @@ impl AxisParser {
         Self { derivative, is_magnitude: false }
     }
 
-    /// The same, not below zero.
+    /// The same parser, for values not below zero.
     pub(super) const fn magnitude(self) -> Self {
         Self { is_magnitude: true, ..self }
     }
@@ -59,7 +59,7 @@ impl TypedValueParser for AxisParser {
     }
 }
 
-/// How many counts are how much of the axis.
+/// Counts of the drive and the distance on the axis that they span.
 #[derive(Debug, Clone)]
 pub(crate) struct Counts {
     drive: f64,
@@ -67,7 +67,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// As a table has them.
+    /// Counts as a table uses them.
     pub(super) fn of_axis(&self) -> servobench_scenario::Counts {
         servobench_scenario::Counts { per: self.drive / self.axis.value, motion: self.axis.motion }
     }
@@ -132,16 +132,16 @@ pub(super) fn percent(text: &str) -> Result<f64, String> {
     number.filter(|number: &f64| number.is_finite()).ok_or_else(|| "write a number of percent, as 25".into())
 }
 
-/// The axis of a plan, as its quantities describe it, and what is wrong with them.
+/// The axis of a plan, as its quantities describe it, and their mistakes.
 #[derive(Debug, Default)]
 pub(super) struct Axis {
-    /// As the first quantity says.
+    /// Taken from the first quantity.
     pub(super) motion: Option<Coordinate>,
     pub(super) units: Vec<GivenUnit>,
     pub(super) mistakes: Vec<PlanMistake>,
 }
 
-/// A quantity in whose unit a derivative of position is told.
+/// A quantity whose unit the plan uses for a derivative of position.
 #[derive(Debug)]
 pub(super) struct GivenUnit {
     /// 0 for position.
@@ -153,18 +153,18 @@ pub(super) struct GivenUnit {
 }
 
 impl Axis {
-    /// The value (SI) of `quantity`, in whose unit its derivative is told unless an earlier one has said another.
+    /// The value (SI) of `quantity`; its unit becomes that of its derivative in the plan, unless an earlier one has set it.
     pub(super) fn si(&mut self, quantity: &AxisQuantity) -> f64 {
         self.tell_in(quantity.derivative, &quantity.text, quantity.value);
         self.value(quantity)
     }
 
-    /// The same of one that may be left out.
+    /// The same for an optional quantity.
     pub(super) fn optional(&mut self, quantity: Option<&AxisQuantity>) -> Option<f64> {
         quantity.map(|quantity| self.si(quantity))
     }
 
-    /// The value (SI) of `quantity`, whose unit is its own.
+    /// The value (SI) of `quantity`, without using its unit for the plan.
     pub(super) fn value(&mut self, quantity: &AxisQuantity) -> f64 {
         let motion = *self.motion.get_or_insert(quantity.motion);
         if let Err(error) = axis_quantity(quantity.derivative, Some(motion), &quantity.text) {
@@ -178,7 +178,7 @@ impl Axis {
         counts.drive / self.value(&counts.axis)
     }
 
-    /// Tells quantities of `derivative` in the unit of `text`, whose value is `value` (SI), unless they have one.
+    /// Sets the unit of `derivative` in the plan to that of `text`, whose value is `value` (SI), unless it has one.
     pub(super) fn tell_in(&mut self, derivative: Derivative, text: &str, value: f64) {
         let derivative = match derivative {
             Derivative::Position => 0,

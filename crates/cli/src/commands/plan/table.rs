@@ -117,7 +117,7 @@ impl PvtArgs {
         self.filter.filter()
     }
 
-    /// Where the table is.
+    /// File of the table.
     pub(super) fn file(&self) -> &Path {
         &self.table.points
     }
@@ -135,7 +135,7 @@ impl PositionArgs {
             SentArgs { plateau: Some(share), .. } => Follow::Plateaus { share: self.share(*share, axis)? },
             SentArgs { command_rate: Some(rate), .. } => Follow::Steps { rate: CommandRate::Given(*rate) },
             SentArgs { allowed_error, .. } => {
-                // In a unit of its own: positions stay in theirs.
+                // Read in its own unit, which positions do not take over.
                 let error = allowed_error.as_ref().map_or(0.0, |error| axis.value(error));
                 Follow::Steps { rate: CommandRate::LowestWithin(error) }
             }
@@ -143,7 +143,7 @@ impl PositionArgs {
         Ok(Generator::Table(TableMove { knots: knots(&points), velocities: Velocities::Given, follow }))
     }
 
-    /// Where the table is.
+    /// File of the table.
     pub(super) fn file(&self) -> &Path {
         &self.table.points
     }
@@ -159,7 +159,7 @@ impl PositionArgs {
         }
     }
 
-    /// The cycle of a bus whose units are finer than what matters, at whose first instant the move begins.
+    /// Command cycle of a bus with negligible unit, at whose first instant the move begins.
     pub(super) fn cycle(&self) -> Option<CommandCycle> {
         self.command_cycle.map(|period| CommandCycle { period, first: 0.0, unit: 0.0 })
     }
@@ -182,7 +182,7 @@ fn knots(points: &Points) -> Vec<Knot> {
 }
 
 impl PvtArgs {
-    /// What velocity and acceleration are held against.
+    /// Limits that velocity and acceleration are checked against.
     pub(super) fn limits(&self, axis: &mut Axis) -> [Sides; 2] {
         let mut limit = |given: Option<&AxisQuantity>| Sides::both(axis.optional(given).unwrap_or(f64::INFINITY));
         [limit(self.velocity.as_ref()), limit(self.acceleration.as_ref())]
@@ -190,7 +190,7 @@ impl PvtArgs {
 }
 
 impl TableArgs {
-    /// The table, its units noted.
+    /// Reads the table and takes over its units.
     fn points(&self, counts: Option<Counts>, axis: &mut Axis) -> Result<Points, PlanMistake> {
         let file = || self.points.clone();
         let text = read(&self.points).map_err(|error| PlanMistake::Unreadable { file: file(), error })?;

@@ -1,4 +1,4 @@
-//! What is to be run: runs, and files that cannot be used, in the order of the files.
+//! Entries of a suite: runs, and files that cannot be used, in the order of the files.
 use crate::args::{Keep, RunArgs};
 use crate::error::CliError;
 use crate::output;
@@ -12,15 +12,14 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is to be run. Every file was read, and is read again when its turn has come: how many there are makes next to no difference to
-/// memory.
+/// Entries of a suite. Every file is read once, and again when its turn comes, so that their number hardly affects memory.
 pub(super) struct Wanted<'a> {
     args: &'a RunArgs,
-    /// By their places in the suite.
+    /// In the order of the suite.
     entries: Vec<Entry>,
-    /// What they are called.
+    /// Their names, files and engines.
     planned: Vec<Unfinished>,
-    /// Values that are not those of the files.
+    /// Overrides of values in the files.
     overrides: Vec<String>,
 }
 
@@ -35,11 +34,11 @@ struct PlannedRun {
     id: String,
     origin: Origin,
     engine: EngineName,
-    /// What it is made of.
+    /// Digest of its inputs.
     inputs: Digest,
 }
 
-/// Where a scenario comes from.
+/// Origin of a scenario.
 #[derive(Clone)]
 enum Origin {
     File(Arc<Path>),
@@ -47,7 +46,7 @@ enum Origin {
 }
 
 impl PlannedRun {
-    /// The run, as it was when the suite began.
+    /// The run; an error if its inputs have changed since the suite began.
     fn job(&self, args: &RunArgs) -> Result<Job, NotReady> {
         let source = match &self.origin {
             Origin::File(path) => sources::again(path, &args.suite.with).map_err(|_| NotReady::Changed)?,
@@ -85,13 +84,13 @@ impl Plan for Wanted<'_> {
 }
 
 impl<'a> Wanted<'a> {
-    /// The scenarios that are named, or the demo.
+    /// The named scenarios, or the demo.
     pub(super) fn of(args: &'a RunArgs, engines: &Engines) -> Result<Self, CliError> {
         let overrides = args.suite.with.overrides.iter().map(ToString::to_string).collect();
         let mut wanted = Self { args, entries: Vec::new(), planned: Vec::new(), overrides };
         let mut ids = JobIds::default();
         if args.scenarios.is_empty() {
-            // The demo names engines that this build may lack; an FMU it has none of.
+            // The demo names engines that this build may lack; it has no FMU.
             let there = engines.names();
             for source in sources::demo(&args.suite.with)? {
                 let own = source.scenario.engines.iter().copied().filter(|engine| there.contains(engine)).collect();
@@ -146,18 +145,18 @@ impl<'a> Wanted<'a> {
         entries.filter_map(|entry| if let Entry::Unusable(unusable) = entry { Some(unusable) } else { None }).collect()
     }
 
-    /// What is wrong with them.
+    /// Their mistakes, in words.
     fn mistakes(&self) -> String {
         self.unusable().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     }
 
-    /// The same before the others run, nothing where nothing is wrong.
+    /// The mistakes as a message before the others run; empty without any.
     pub(super) fn shown(&self) -> String {
         let mistakes = self.mistakes();
         if mistakes.is_empty() { mistakes } else { format!("servobench: {}\n\n", mistakes.trim_end()) }
     }
 
-    /// What runs when nobody names a file.
+    /// Message that the demo runs because no file is named.
     pub(super) fn demo(&self, out: &Path) -> String {
         let ids: Vec<&str> = self.ids().collect();
         format!("no file is named: running the demo that is built in ({}) into {}\n", ids.join(", "), out.display())
@@ -167,7 +166,7 @@ impl<'a> Wanted<'a> {
         self.entries.get(index).and_then(|entry| if let Entry::Run(run) = entry { Some(run) } else { None })
     }
 
-    /// Digest of all that the run at `index` is made of; that of nothing for a file that cannot be used.
+    /// Digest of all inputs of the run at `index`; the default one for a file that cannot be used.
     pub(super) fn inputs(&self, index: usize) -> Digest {
         self.run(index).map_or_else(Digest::default, |run| run.inputs)
     }
@@ -178,12 +177,12 @@ impl<'a> Wanted<'a> {
         entries.filter_map(|entry| if let Entry::Run(run) = entry { Some(run.id.as_str()) } else { None })
     }
 
-    /// How many runs and files that cannot be used there are.
+    /// Number of runs and unusable files.
     pub(super) const fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// The runs of the suite, in its order, for those who keep them from now on.
+    /// Takes the list of runs, in the order of the suite, out of `self`.
     pub(super) fn take_planned(&mut self) -> Vec<Unfinished> {
         std::mem::take(&mut self.planned)
     }
@@ -193,7 +192,7 @@ impl<'a> Wanted<'a> {
         self.ids().map(str::to_owned).collect()
     }
 
-    /// Digest of the runs in their order, and of what they are to leave.
+    /// Digest of the runs in their order, and of the files that they are to leave.
     pub(super) fn digest(&self) -> Digest {
         let start = Digester::default().with(format!("{:?} {}", self.args.keep, self.args.suite.rrd));
         let all = self.entries.iter().fold(start, |digester, entry| match entry {
@@ -203,7 +202,7 @@ impl<'a> Wanted<'a> {
         all.finish()
     }
 
-    /// Files that cannot be used have come to their end at once.
+    /// Results of the files that cannot be used, which end at once.
     pub(super) fn invalid(&self) -> impl Iterator<Item = Finished> {
         self.entries.iter().enumerate().filter_map(|(index, entry)| {
             let Entry::Unusable(unusable) = entry else { return None };
@@ -212,7 +211,7 @@ impl<'a> Wanted<'a> {
         })
     }
 
-    /// Notes the same, unless that was done.
+    /// Notes these results, unless that was done.
     pub(super) fn note_unusable(&self, ledger: &Ledger) {
         self.invalid().filter(|one| !ledger.has(one.index)).for_each(|one| ledger.note(one));
     }

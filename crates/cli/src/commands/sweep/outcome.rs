@@ -1,4 +1,4 @@
-//! What came of a sweep: its table as files, its pictures, and in words.
+//! Results of a sweep: its table as files, its pictures, and a report.
 use super::points::Points;
 use crate::args::SweepArgs;
 use crate::console::{print, style};
@@ -11,8 +11,7 @@ use servobench_sweep::{Column, Outcome, Table};
 use servobench_trace::{Cells, Table as File, TableColumn};
 use std::borrow::Cow;
 
-/// Writes tables and pictures into the folder of the results, and says what the values cost. Of a sweep that was ended before its time
-/// there are results only.
+/// Writes tables and pictures into the folder of the results, and reports the cost of the values. An interrupted sweep has results only.
 pub(super) fn say_what_came(
     runs: &dyn Runs,
     args: &SweepArgs,
@@ -33,7 +32,7 @@ pub(super) fn say_what_came(
 
     let engines = points.engines();
     let table = table_of(points, &engines, columns);
-    // What is chosen is compared at the worst of what is given.
+    // Chosen values are compared at the worst of the given ones.
     let chosen = points.sweep().chosen();
     let at_its_worst = chosen.as_ref().map(|chosen| table.at_worst(chosen));
     let compared = at_its_worst.as_ref().unwrap_or(&table);
@@ -75,7 +74,7 @@ pub(super) fn say_what_came(
     print(&[described.join("\n"), sweep_table(compared, style, &options), "\n".into(), count, where_it_is].concat())
 }
 
-/// The runs as the crate of sweeps counts them, with the metrics that were asked for: others are limited, and in the files.
+/// The runs as a table of `servobench-sweep`, with the requested metrics only: limited ones are in the files too.
 fn table_of<'a>(points: &'a Points<'_>, engines: &'a [String], columns: Columns) -> Table<'a> {
     let outcome = |(outcome, is_broken): (Option<Ended>, bool)| match outcome {
         Some(outcome) if is_broken && (outcome.is_good() || outcome == Ended::Failed) => Outcome::Broken,
@@ -89,7 +88,7 @@ fn table_of<'a>(points: &'a Points<'_>, engines: &'a [String], columns: Columns)
     Table { sweep: points.sweep(), engines, columns, outcomes }
 }
 
-/// A row for each run: its number, its engine, what varies, its verdict, what was measured.
+/// Table with a row for each run: number, engine, varied keys, verdict, metrics.
 fn file_of<'a>(points: &'a Points<'_>, columns: &'a Columns) -> File<'a> {
     let count = points.sweep().points();
     let engines = points.engines();
@@ -128,7 +127,7 @@ fn file_of<'a>(points: &'a Points<'_>, columns: &'a Columns) -> File<'a> {
     File { rows: points.len(), columns: all }
 }
 
-/// As `results.json` has it.
+/// Verdict as in `results.json`.
 const fn verdict(outcome: Ended) -> &'static str {
     match outcome {
         Ended::Passed => "passed",

@@ -21,10 +21,10 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Combinations that are all read before anything runs; of more of them each value is read once.
+/// Most combinations for which all are read before the first run; of more, each value is read once.
 const MOST_CHECKED: usize = 1_000;
 
-/// Seeds that tell a difference from chance.
+/// Number of seeds that distinguishes a difference from chance.
 const ENOUGH_SEEDS: usize = 5;
 
 /// The points of a sweep: on the first engine, then on the next one.
@@ -32,18 +32,18 @@ pub(super) struct Points<'a> {
     args: &'a SweepArgs,
     request: SweepRequest,
     engines: Vec<EngineName>,
-    /// The scenario as it is without the sweep.
+    /// The scenario without the sweep.
     base: Source,
     /// The file of that scenario.
     document: Document,
-    /// Names of the runs begin with it.
+    /// Prefix of the names of the runs.
     stem: String,
     /// Digests of the files that scenarios name, as they were when they were first read.
     files: Mutex<HashMap<String, String>>,
 }
 
 impl<'a> Points<'a> {
-    /// Those of the sweep file at `path`.
+    /// The points of the sweep file at `path`.
     pub(super) fn of(path: &Path, args: &'a SweepArgs) -> Result<Self, CliError> {
         reads(path, format_args!("the sweep {}", path.display()));
         let request = load_sweep(path)?;
@@ -68,21 +68,21 @@ impl<'a> Points<'a> {
         &self.request.description
     }
 
-    /// Whether a run can fail by what was measured: the scenario has limits.
+    /// True if a run can fail by its metrics: the scenario has limits.
     pub(super) fn is_judged(&self) -> bool {
         let of_moves = |step: &Step| matches!(step, Step::Move(step) if !step.metric_limits.is_empty());
         let scenario = &self.base.scenario;
         !scenario.limits.is_empty() || scenario.program.iter().any(of_moves)
     }
 
-    /// By how much vibrations differ that are equal (axis unit).
+    /// Largest difference of vibrations that count as equal (axis unit).
     pub(super) fn equal_length(&self) -> f64 {
         let engine = self.engines.first().copied().unwrap_or_default();
         equal_length(&[Job::new(self.stem.clone(), self.base.clone(), engine)])
     }
 
-    /// The seed of random numbers of the scenario that has too few values to tell a difference from chance; `None` where it has none, or where
-    /// one of them has enough.
+    /// Key of a seed of the scenario with too few values to distinguish a difference from chance; `None` where it has no seed, or where one
+    /// has enough.
     pub(super) fn too_few_seeds(&self) -> Option<String> {
         let seeds = self.base.scenario.seeds();
         let has_enough = |seed: &Seed| {
@@ -94,7 +94,7 @@ impl<'a> Points<'a> {
         if seeds.iter().any(has_enough) { None } else { seeds.into_iter().next().map(|seed| seed.key) }
     }
 
-    /// Whether a metric was asked for.
+    /// True if a metric was requested.
     pub(super) fn is_asked(&self, metric: Name) -> bool {
         self.request.metrics.is_empty() || self.request.metrics.contains(&metric)
     }
@@ -103,12 +103,12 @@ impl<'a> Points<'a> {
         self.engines.iter().map(|engine| engine.name().to_owned()).collect()
     }
 
-    /// How many runs there are.
+    /// Number of runs.
     pub(super) fn len(&self) -> usize {
         self.sweep().points() * self.engines.len()
     }
 
-    /// What the runs are called.
+    /// Names, files and engines of the runs.
     pub(super) fn planned(&self) -> Planned {
         let scenario = &self.base.scenario;
         let file = scenario.path.as_ref().map(|path| path.display().to_string());
@@ -127,13 +127,13 @@ impl<'a> Points<'a> {
         (0..self.len()).filter(|_| leaves_any).map(|index| self.id(index).into_owned()).collect()
     }
 
-    /// Whether a run is called `id`.
+    /// True if a run has the name `id`.
     pub(super) fn has_id(&self, id: &str) -> bool {
         let number = || id.strip_prefix(&self.stem)?.strip_prefix('-')?.split_once('.')?.0.parse::<usize>().ok();
         number().is_some_and(|number| (1..=self.sweep().points()).contains(&number))
     }
 
-    /// Digest of the runs in their order, and of what they are to leave.
+    /// Digest of the runs in their order, and of the files that they are to leave.
     pub(super) fn digest(&self) -> Digest {
         let start = Digester::default().with(build_id::program()).with(format!("{:?}", self.args.keep));
         let start = start.with(format!("{}", self.args.suite.rrd)).with(&self.request.text).with(&self.base.text);
@@ -175,8 +175,7 @@ impl<'a> Points<'a> {
         Ok(source)
     }
 
-    /// Reads combinations before anything runs. One that is invalid does not keep the others from being run; that all are is a mistake of
-    /// the sweep.
+    /// Reads combinations before anything runs. An invalid one does not stop the others; if all are invalid, the sweep is.
     fn check(&self) -> Result<(), CliError> {
         let places = self.sweep().cover(MOST_CHECKED);
         let refusals: Vec<(usize, NotReady)> =
@@ -233,7 +232,7 @@ impl Plan for Points<'_> {
     }
 }
 
-/// Where a sweep's results go unless somebody says so: by the name of its file.
+/// Default folder of a sweep's results, named after its file.
 pub(super) fn default_folder(path: &Path) -> PathBuf {
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or("sweep");
     let name = name.strip_suffix(SWEEP).or_else(|| name.strip_suffix(".toml")).unwrap_or(name);
