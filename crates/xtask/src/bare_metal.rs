@@ -1,16 +1,15 @@
-//! Bare metal: set-point generators, function blocks and the link to a drive are linked for a machine that has neither `std` nor
-//! an allocator.
+//! Bare metal: links set-point generators, function blocks and the link to a drive for a machine that has neither `std` nor an allocator.
 //!
-//! The core library for that machine is a part of the Rust toolchain. Where it cannot be had, the step is left out, and it is said.
+//! The core library for that machine is a part of the Rust toolchain. Where it cannot be fetched, the step is left out and reported.
 use crate::failure::Failure;
 use crate::toolchain;
 use crate::workspace::Workspace;
 use std::process::Command;
 
-/// A Cortex-M4 or -M7 with floating point: what drives are made with.
+/// A Cortex-M4 or -M7 with floating point, as in many drives.
 const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Whether it can be built here, and why not.
+/// Result of fetching the core library.
 #[derive(Debug)]
 pub(crate) struct BareMetal(Result<(), Failure>);
 
@@ -20,13 +19,13 @@ impl BareMetal {
         Self(toolchain::ensure("core library", TARGET))
     }
 
-    /// The command that links them, if it can be run.
+    /// The command that links everything, if it can be run.
     pub(crate) fn command(&self, workspace: &Workspace) -> Option<Command> {
         let build = ["build", "--release", "--package", "servobench-bare-metal", "--target", TARGET];
         self.0.is_ok().then(|| workspace.cargo(build))
     }
 
-    /// Says what is left out, if it is.
+    /// Reports the step if it is left out.
     pub(crate) fn report(&self) {
         if let Err(why) = &self.0 {
             println!(

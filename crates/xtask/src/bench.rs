@@ -1,10 +1,10 @@
 //! `cargo xtask bench`: cost of a tick of the closed loop on every engine, beside the bare engine step, and of function blocks,
-//! bus and drive in front of it; what each effect of real hardware costs; and where the time of a whole run goes.
+//! bus and drive in front of it; cost of each effect of real hardware; and shares of the time of a whole run.
 use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
 
-/// Sets up what can be had, and measures; a missing library is only said.
+/// Sets up the MuJoCo library and measures; a missing library is only reported.
 ///
 /// # Errors
 /// [`Failure`] of the build or of the run.

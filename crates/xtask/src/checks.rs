@@ -1,6 +1,6 @@
-//! What no compiler checks: dependency arrows between our crates, licences of all others, left-overs in the text, keys of scenario files in
-//! crates that know nothing of them, concepts that have two types, the number of packages of the program, calls of the operating
-//! system outside of its doors, and counts above their budgets.
+//! Checks that no compiler makes: dependency arrows between the project's crates, licences of all others, left-overs in the text, keys of
+//! scenario files in crates below the reader, concepts with two types, the number of packages of the program, calls of the operating system
+//! outside of their folders, and counts above their budgets.
 
 mod arrows;
 mod budgets;
@@ -26,7 +26,7 @@ const SCHEMA: &str = "docs/scenario.schema.json";
 /// Runs every check.
 ///
 /// # Errors
-/// [`Failure::Findings`] lists everything that is wrong, not only the first.
+/// [`Failure::Findings`] lists all mistakes, not only the first.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let metadata = Metadata::read(workspace)?;
     let mut findings = arrows::findings(&metadata);
@@ -38,7 +38,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let keyless: Vec<_> = keys::below(&metadata).into_iter().map(|package| source_of(package, workspace)).collect();
     let (mut types, mut budgets) = (Vec::new(), Budgets::default());
     for path in &files {
-        // What is not UTF-8 (pictures, recordings) has no text to check; a deleted file has none either.
+        // A file other than UTF-8 (pictures, recordings) has no text to check, nor has a deleted one.
         if let Ok(text) = std::fs::read_to_string(workspace.root.join(path)) {
             findings.extend(text::findings(path, &text));
             findings.extend(doors::findings(path, &text));

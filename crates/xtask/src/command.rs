@@ -1,9 +1,9 @@
-//! Which command the arguments ask for.
+//! Selection of a command by the arguments.
 use crate::failure::Failure;
 use crate::workspace::Workspace;
 use crate::{bench, checks, demo, dist, drill, peers, systems, test, wheel};
 
-/// Every command: arguments and what it does.
+/// Every command: arguments and purpose.
 const COMMANDS: [(&str, &str); 18] = [
     ("setup", "fetch the MuJoCo library, once"),
     ("demo", "build, run the demo, set up, build the rest and compare its two moves"),
@@ -38,7 +38,7 @@ const COMMANDS: [(&str, &str); 18] = [
 /// Runs the command that `arguments` name.
 ///
 /// # Errors
-/// [`Failure::Usage`] when there is no such command, else what the command met.
+/// [`Failure::Usage`] for an unknown command, else the failure of the command.
 pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments.as_slice() {

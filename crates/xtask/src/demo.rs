@@ -1,13 +1,13 @@
-//! `cargo xtask demo`: from nothing to a compared pair of moves.
+//! `cargo xtask demo`: from a fresh clone to two compared moves.
 use crate::failure::Failure;
 use crate::program;
 use crate::workspace::{Workspace, run as run_command};
 
-/// Builds the program alone and runs the demo: its verdicts are there before Rerun is compiled. Then sets up and builds the rest, runs the
-/// demo again if that adds an engine, and compares its two moves.
+/// Builds the program alone and runs the demo: its verdicts are available before Rerun is compiled. Then sets up and builds the rest, runs
+/// the demo again if that adds an engine, and compares its two moves.
 ///
 /// # Errors
-/// [`Failure`] of the build or of a run; a missing library is only said.
+/// [`Failure`] of the build or of a run; a missing library is only reported.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let mut without_viewer = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
     run_command(&mut without_viewer, 0)?;
@@ -23,7 +23,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     demo(workspace, &["compare", "scenarios/demo/jerk.toml", "scenarios/demo/snap.toml"])
 }
 
-/// Runs the program into the folder of the demo.
+/// Runs the program with the folder of the demo as its output.
 fn demo(workspace: &Workspace, arguments: &[&str]) -> Result<(), Failure> {
     let mut servobench = workspace.servobench(arguments);
     servobench.arg("--out").arg(workspace.target.join("demo"));

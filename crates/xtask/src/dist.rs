@@ -19,13 +19,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is packed beside binary and library, as far as git tracks it.
+/// Files tracked by git that are packed beside binary and library.
 const TRACKED: [&str; 7] = ["models", "scenarios", "scenarios-fmu", "docs", "README.md", "LICENSE*", "NOTICE"];
 
 /// Builds, packs, unpacks elsewhere and runs the demo there.
 ///
 /// # Errors
-/// [`Failure`] of the build, or of the unpacked program: then there is no archive.
+/// [`Failure`] of the build, or of the unpacked program, without leaving an archive.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let library = wheel::MUJOCO.ensure(workspace)?;
     let mut build = workspace.cargo(["build", "--release", "--package", "servobench-cli"]);
@@ -70,14 +70,14 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Completions: shell and its file.
+/// Completions: shell and file.
 const COMPLETIONS: [(&str, &str); 3] = [
     ("bash", "share/bash-completion/completions/servobench"),
     ("zsh", "share/zsh/site-functions/_servobench"),
     ("fish", "share/fish/vendor_completions.d/servobench.fish"),
 ];
 
-/// Man pages and completions, by the program in `root` itself.
+/// Writes man pages and completions, by the program in `root` itself.
 fn write_share(workspace: &Workspace, root: &Path) -> Result<(), Failure> {
     let program = |arguments: &[&str]| {
         let mut program = workspace.command(root.join("bin/servobench"), arguments);
@@ -95,8 +95,8 @@ fn write_share(workspace: &Workspace, root: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Unpacks the archive where nothing of the workspace is near and runs the demo there on MuJoCo, drawn for the viewer: only the packed
-/// library and the packed program can serve it.
+/// Unpacks the archive away from the workspace and runs the demo there on MuJoCo, drawn for the viewer: only the packed library and the
+/// packed program can serve it.
 fn try_out(workspace: &Workspace, archive: &Path, name: &str) -> Result<(), Failure> {
     let temporary = std::env::temp_dir();
     let room = tempfile::tempdir().map_err(Failure::file("write into", temporary))?;
@@ -117,7 +117,7 @@ fn licence_texts<'a>(packages: impl Iterator<Item = &'a Package>) -> String {
         let licence = package.license.as_deref().unwrap_or("see below");
         let _ = writeln!(listing, "{} {}: {licence}", package.name, package.version);
         for file in licence_files(package) {
-            // Some crates carry pictures of their licences; what is no text is not copied.
+            // Some crates carry pictures of their licences; only text is copied.
             if let Ok(text) = fs::read_to_string(&file) {
                 texts.entry(text).or_default().push(package.name.clone());
             }

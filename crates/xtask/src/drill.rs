@@ -1,4 +1,4 @@
-//! Drills: the real program against what it must bear.
+//! Drills: stress tests of the real program.
 mod advice;
 mod faults;
 mod inputs;
@@ -23,7 +23,7 @@ use crate::failure::Failure;
 use crate::program;
 use crate::workspace::Workspace;
 
-/// Builds the program; says whether it has the engine `mujoco`.
+/// Builds the program; true if it has the engine `mujoco`.
 fn built(workspace: &Workspace) -> Result<bool, Failure> {
     program::build(workspace, "the drill goes without it")
 }

@@ -1,6 +1,6 @@
-//! Virtual environments of Python for programs that hold the project against what others wrote.
+//! Virtual environments of Python for programs that check the project against foreign software.
 //!
-//! Their packages are pinned by version and hash in requirements files, with all that these require but what is never called. They
+//! Their packages are pinned by version and hash in requirements files, with all dependencies except those that are never called. They
 //! are installed once, under the target folder.
 use crate::failure::Failure;
 use crate::python;
@@ -12,13 +12,13 @@ use std::process::Command;
 /// A virtual environment with exactly the packages of some requirements files.
 #[derive(Debug)]
 pub(crate) struct Environment {
-    /// Whose packages they are, for messages.
+    /// Owner of the packages, for messages.
     pub(crate) owner: &'static str,
     /// Command that fetches them.
     pub(crate) command: &'static str,
-    /// Where it is.
+    /// Folder of the environment.
     pub(crate) folder: PathBuf,
-    /// What is installed there.
+    /// Requirements files of its packages.
     pub(crate) requirements: Vec<PathBuf>,
     /// Packages whose source is fetched, into its folder `sources`, and not installed.
     pub(crate) sources: Option<PathBuf>,
@@ -35,10 +35,10 @@ impl Environment {
         self.folder.join("installed.sha256")
     }
 
-    /// Makes sure that the environment is there and has the packages that are wanted now.
+    /// Makes sure that the environment exists and has the required packages.
     ///
     /// # Errors
-    /// [`Failure::Fetch`] says in one sentence what failed and what to do.
+    /// [`Failure::Fetch`] with the cause and the remedy in one sentence.
     pub(crate) fn ensure(&self) -> Result<(), Failure> {
         let wanted = self.wanted()?;
         if fs::read_to_string(self.stamp()).is_ok_and(|found| found == wanted) && self.starts() {
@@ -53,7 +53,7 @@ impl Environment {
         fs::write(self.stamp(), wanted).map_err(Failure::file("write", self.stamp()))
     }
 
-    /// What the stamp has to be.
+    /// Required content of the stamp.
     fn wanted(&self) -> Result<String, Failure> {
         let sum = |path: &PathBuf| sha256(path).map_err(Failure::file("read", path));
         Ok(self.requirements.iter().chain(&self.sources).map(sum).collect::<Result<Vec<_>, _>>()?.join("\n"))
@@ -62,7 +62,7 @@ impl Environment {
     /// # Errors
     /// The cause in one line.
     fn install(&self) -> Result<(), String> {
-        // Without pip, which not every Python has for its environments: that of `python3` installs from outside.
+        // Without pip, which not every Python offers for its environments: that of `python3` installs from outside.
         let mut create = Command::new("python3");
         create.args(["-m", "venv", "--clear", "--without-pip"]).arg(&self.folder);
         python::run("venv", &mut create)?;
@@ -74,12 +74,12 @@ impl Environment {
         python::run("pip", &mut install)?;
         let Some(sources) = &self.sources else { return Ok(()) };
         let mut fetch = self.pip("download");
-        // It asks the package for its name, with what is installed here.
+        // pip runs the package's build to get its name, with the packages installed here.
         fetch.args(["--no-binary=:all:", "--no-build-isolation", "--dest"]).arg(self.folder.join("sources"));
         python::run("pip", fetch.arg("--requirement").arg(sources))
     }
 
-    /// A command of pip for this environment, in which all that is required is listed.
+    /// A command of pip for this environment, without dependencies beyond the listed ones.
     fn pip(&self, command: &str) -> Command {
         let mut pip = Command::new("python3");
         pip.args(["-m", "pip", "--python"]).arg(self.python());
@@ -95,7 +95,7 @@ impl Environment {
         pip
     }
 
-    /// Whether its Python is still there: it is a link to the one that made it.
+    /// True if its Python still starts: it is a link to the one that made it.
     fn starts(&self) -> bool {
         Command::new(self.python()).args(["-c", ""]).status().is_ok_and(|status| status.success())
     }

@@ -1,13 +1,13 @@
-//! Why a developer command did not succeed.
+//! Failures of developer commands.
 use std::io;
 use std::path::PathBuf;
 use std::process::{ExitCode, ExitStatus};
 use thiserror::Error;
 
-/// Why a developer command did not succeed; each message is complete in itself.
+/// Failure of a developer command; each message is complete in itself.
 #[derive(Debug, Error)]
 pub(crate) enum Failure {
-    /// There is no such command.
+    /// Unknown command.
     #[error("`{given}` is not a command; the commands of `cargo xtask` are\n{commands}")]
     Usage {
         /// The arguments as given.
@@ -15,14 +15,14 @@ pub(crate) enum Failure {
         /// One line per command.
         commands: String,
     },
-    /// A file that the project does not hold itself could not be fetched.
+    /// A file from outside the project could not be fetched.
     #[error("{name} cannot be fetched ({why}); {help}")]
     Fetch {
-        /// What it is and which version.
+        /// Name and version.
         name: String,
         /// The cause, in short.
         why: String,
-        /// What to do.
+        /// The remedy.
         help: String,
     },
     /// A program could not be started.
@@ -33,14 +33,14 @@ pub(crate) enum Failure {
         /// The system's reason.
         source: io::Error,
     },
-    /// A program ended with another code than it should.
+    /// A program ended with an unexpected exit code.
     #[error("`{command}` ended with {status} instead of exit code {expected}")]
     Ended {
         /// The command line.
         command: String,
-        /// How it ended.
+        /// Exit status.
         status: ExitStatus,
-        /// The exit code it should have.
+        /// Expected exit code.
         expected: i32,
     },
     /// A file operation failed.
@@ -53,12 +53,12 @@ pub(crate) enum Failure {
         /// The system's reason.
         source: io::Error,
     },
-    /// What a program printed is not what it should be.
+    /// A program printed unexpected output.
     #[error("`{command}` printed something unexpected: {why}")]
     Output {
         /// The command line.
         command: String,
-        /// What is wrong with it.
+        /// The mistake, in words.
         why: String,
     },
     /// The checks found something.

@@ -1,7 +1,6 @@
-//! Outside clients: programs in `tests/outside/` that hold the project against what others wrote, published for Python.
+//! Outside clients: programs in `tests/outside/` that check the project against foreign software, published for Python.
 //!
-//! Requirements files beside them list their packages. Where an environment cannot be had, its programs are left out, and it is
-//! said.
+//! Requirements files beside them list their packages. Where an environment cannot be set up, its programs are left out and reported.
 use crate::environment::Environment;
 use crate::failure::Failure;
 use crate::workspace::Workspace;
@@ -13,7 +12,7 @@ use std::process::Command;
 struct Group {
     /// Folder of the environment, under the target folder.
     environment: &'static str,
-    /// What is installed there.
+    /// Requirements files of its packages.
     requirements: &'static [&'static str],
     /// Packages whose source is fetched, into its folder `sources`, and not installed.
     sources: Option<&'static str>,
@@ -21,8 +20,8 @@ struct Group {
     clients: &'static [&'static str],
 }
 
-/// All programs. CoFMPy asks for another FMPy than the one that the others hold the project against. Of pyplcopen the C++ is wanted,
-/// which only its source has; what is installed beside it is what pip reads the name and version of a source package with.
+/// All programs. CoFMPy requires another FMPy than the other programs do. Of pyplcopen only the C++ is used, which is in its source alone;
+/// the packages installed beside it are those with which pip reads name and version of a source package.
 const GROUPS: [Group; 4] = [
     Group {
         environment: "python",
@@ -58,15 +57,15 @@ const GROUPS: [Group; 4] = [
     },
 ];
 
-/// The programs that can be run here, and why others cannot.
+/// The programs that can be run here, and the failures of the others.
 #[derive(Debug)]
 pub(crate) struct Outside {
-    /// By group: the Python that runs it, or why there is none.
+    /// By group: the Python that runs it, or the reason for its absence.
     pythons: [Result<PathBuf, Failure>; GROUPS.len()],
 }
 
 impl Outside {
-    /// Installs what the programs need, unless it is there.
+    /// Installs the packages of the programs, unless they are installed.
     pub(crate) fn prepare(workspace: &Workspace) -> Self {
         let python = |group| {
             let environment = environment(group, workspace);
@@ -87,12 +86,12 @@ impl Outside {
         installed.flat_map(commands).collect()
     }
 
-    /// The Python that most of them share, if it could be had.
+    /// The Python that most of them share, if it could be set up.
     pub(crate) fn common(&self) -> Option<PathBuf> {
         self.pythons[0].as_ref().ok().cloned()
     }
 
-    /// Says what is left out, if anything is.
+    /// Reports programs that are left out.
     pub(crate) fn report(&self) {
         for (group, python) in GROUPS.iter().zip(&self.pythons) {
             if let Err(why) = python {
@@ -101,18 +100,18 @@ impl Outside {
         }
     }
 
-    /// Why some are left out: of the first group that is.
+    /// Failure of the first group that is left out.
     pub(crate) fn failure(self) -> Option<Failure> {
         self.pythons.into_iter().find_map(Result::err)
     }
 }
 
-/// The environment that most of them share, for other programs that need what is in it.
+/// The environment that most of them share, for other programs that need its packages.
 pub(crate) fn common(workspace: &Workspace) -> Environment {
     environment(&GROUPS[0], workspace)
 }
 
-/// Where the programs are.
+/// Folder of the programs.
 const FOLDER: &str = "tests/outside";
 
 fn environment(group: &Group, workspace: &Workspace) -> Environment {

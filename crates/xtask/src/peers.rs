@@ -1,14 +1,14 @@
 //! `cargo xtask bench peers`: the same closed loop in servobench and in simulators of electric drives that are published for Python,
 //! side by side in the same run.
 //!
-//! The loop and the program that simulates it with all of them are in `tests/peers/`. It fails where one does not simulate the same
-//! thing as servobench.
+//! The loop and the program that simulates it with all of them are in `tests/peers/`. It fails where one does not simulate the same thing
+//! as servobench.
 use crate::environment::Environment;
 use crate::failure::Failure;
 use crate::program;
 use crate::workspace::{Workspace, run as run_command};
 
-/// Where the loop and the program are.
+/// Folder of the loop and the program.
 const FOLDER: &str = "tests/peers";
 /// The program.
 const PROGRAM: &str = "compare.py";
@@ -16,7 +16,7 @@ const PROGRAM: &str = "compare.py";
 /// Installs the simulators, unless they are there, builds `servobench` and compares.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when the simulators cannot be had, else [`Failure`] of the build or of the comparison.
+/// [`Failure::Fetch`] when the simulators cannot be fetched, else [`Failure`] of the build or of the comparison.
 pub(crate) fn run(workspace: &Workspace, json: bool) -> Result<(), Failure> {
     let environment = environment(workspace);
     environment.ensure()?;

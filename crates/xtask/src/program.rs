@@ -1,10 +1,10 @@
-//! The program `servobench`, as the commands build it that run it.
+//! Release build of the program `servobench`, for the commands that run it.
 use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run};
 
-/// Builds the program, with the engine `mujoco` if its library can be had; says whether it has it. If it has not, `otherwise` says how
-/// the command goes on.
+/// Builds the program, with the engine `mujoco` if its library can be fetched; true if it has it. If not, `otherwise` states how the
+/// command continues.
 ///
 /// # Errors
 /// [`Failure`] of the build.

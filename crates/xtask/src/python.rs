@@ -1,4 +1,4 @@
-//! Programs of Python's own that are run for the developer commands: pip, `venv`, `zipfile`.
+//! Standard tools of Python that the developer commands run: pip, `venv`, `zipfile`.
 use std::process::Command;
 
 /// Runs `command`, a use of `tool`, in silence.

@@ -1,7 +1,7 @@
-//! Other operating systems: the program is checked for Windows and macOS, which takes no linker and no system of that kind.
+//! Other operating systems: the program is checked for Windows and macOS, which needs neither a linker nor such a system.
 //!
-//! The standard library for each is a part of the Rust toolchain. Where that or a crate that only this system needs cannot be had, the step
-//! is left out, and it is said.
+//! The standard library for each is a part of the Rust toolchain. Where that, or a crate that only this system needs, cannot be fetched,
+//! the step is left out and reported.
 use crate::failure::Failure;
 use crate::toolchain;
 use crate::workspace::{Workspace, output, run};
@@ -14,10 +14,10 @@ use std::process::Command;
 /// A system and its target.
 const SYSTEMS: [(&str, &str); 2] = [("Windows", "x86_64-pc-windows-gnu"), ("macOS", "aarch64-apple-darwin")];
 
-/// In place of the C compiler and its archiver: to check Rust nothing of C is read. The last `-o` names the file that they would make.
+/// Stand-in for the C compiler and its archiver: checking Rust reads nothing of C. The last `-o` names the file that they would make.
 const NO_COMPILER: &str = "#!/bin/sh\nfor word; do [ \"$before\" = -o ] && : >\"$word\"; before=$word; done\nexit 0\n";
 
-/// Systems that the program can be checked for here, and why not.
+/// Systems that the program can be checked for here, and the failures of the others.
 #[derive(Debug)]
 pub(crate) struct Systems(Vec<(&'static str, &'static str, Result<(), Failure>)>);
 
@@ -41,7 +41,7 @@ impl Systems {
         Ok(there.map(|(name, target, _)| (*name, command(workspace, target, &no_compiler))).collect())
     }
 
-    /// Says what is left out, if it is.
+    /// Reports systems that are left out.
     pub(crate) fn report(&self) {
         for (name, _, library) in &self.0 {
             if let Err(why) = library {
@@ -54,8 +54,8 @@ impl Systems {
 /// Checks the program for every system.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when a standard library cannot be had, [`Failure::Ended`] when a crate cannot, or when the program does not compile for
-/// one.
+/// [`Failure::Fetch`] when a standard library cannot be fetched, [`Failure::Ended`] when a crate cannot, or when the program does not
+/// compile for a system.
 pub(crate) fn check(workspace: &Workspace) -> Result<(), Failure> {
     let systems = Systems::prepare(workspace);
     for (_, mut command) in systems.commands(workspace)? {
@@ -64,8 +64,8 @@ pub(crate) fn check(workspace: &Workspace) -> Result<(), Failure> {
     systems.0.into_iter().try_for_each(|(_, _, library)| library)
 }
 
-/// Clippy checks as the compiler does, and warnings of our crates count. The same profile as elsewhere: what runs while it compiles is
-/// there already.
+/// Clippy checks as the compiler does, and warnings of the project's crates count. The profile is the usual one, so that programs that run
+/// during compilation are already built.
 fn command(workspace: &Workspace, target: &str, no_compiler: &Path) -> Command {
     let check = ["clippy", "--release", "--package", "servobench-cli", "--target", target, "--", "-D", "warnings"];
     let mut command = workspace.cargo(check);
@@ -75,7 +75,7 @@ fn command(workspace: &Workspace, target: &str, no_compiler: &Path) -> Command {
 }
 
 fn write_program(path: &Path) -> io::Result<()> {
-    // Written once: a new time would build again what it is named to.
+    // Written once: a new modification time would cause rebuilds.
     if path.is_file() {
         return Ok(());
     }

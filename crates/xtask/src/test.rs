@@ -12,17 +12,17 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Which engines are built and tested.
+/// Engines that are built and tested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Engines {
-    /// Those that need a foreign library too.
+    /// All, with those that need a foreign library.
     All,
-    /// Only those that need none.
+    /// Only those without a foreign library.
     Embedded,
 }
 
-/// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a folder of
-/// its own, see [`scenarios`].
+/// Scenarios and suites that the finished binary runs: arguments and expected exit code. Each writes into a separate folder, see
+/// [`scenarios`].
 const SCENARIOS: [(&[&str], i32); 4] = [
     (&["run", "scenarios/", "--quiet"], 0),
     (&["run", WITH_FMUS, "--quiet"], 0),
@@ -30,7 +30,7 @@ const SCENARIOS: [(&[&str], i32); 4] = [
     (&["run", "tests/scenarios/", "--quiet"], 4),
 ];
 
-/// The same for a build without MuJoCo, which some scenarios name: the demo runs on the engines that are there.
+/// The same for a build without MuJoCo, which some scenarios name: the demo runs on the available engines.
 const EMBEDDED_SCENARIOS: [(&[&str], i32); 4] = [
     (&["run", "--quiet"], 0),
     (&["run", WITH_FMUS, "--quiet"], 0),
@@ -38,16 +38,16 @@ const EMBEDDED_SCENARIOS: [(&[&str], i32); 4] = [
     (&["run", "tests/scenarios/", "--quiet"], 4),
 ];
 
-/// Scenarios whose FMUs are made before: each says at its head by which commands of the program.
+/// Scenarios whose FMUs are made before, by the commands of the program in the comment at each head.
 const WITH_FMUS: &str = "scenarios-fmu";
-/// What such a command begins with in a scenario.
+/// Beginning of such a command in a scenario.
 const COMMAND: &str = "#     servobench ";
 
 /// One step.
 struct Step {
     name: &'static str,
     command: Command,
-    /// Exit code that it must have.
+    /// Expected exit code.
     expected: i32,
 }
 
@@ -60,7 +60,7 @@ impl Step {
 /// Sets up, then runs every step.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when the library of an engine cannot be had, [`Failure::Steps`] when a step fails.
+/// [`Failure::Fetch`] when the library of an engine cannot be fetched, [`Failure::Steps`] when a step fails.
 pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure> {
     if engines == Engines::All {
         wheel::MUJOCO.ensure(workspace)?;
@@ -79,7 +79,7 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
     };
     report();
     run_steps(steps)?;
-    // Once more, where it is not scrolled away.
+    // Repeated at the end, where it is not scrolled away.
     report();
     Ok(())
 }
@@ -87,7 +87,7 @@ pub(crate) fn run(workspace: &Workspace, engines: Engines) -> Result<(), Failure
 /// Runs the outside clients alone.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when what they need cannot be had, [`Failure::Steps`] when one fails.
+/// [`Failure::Fetch`] when their packages cannot be fetched, [`Failure::Steps`] when one fails.
 pub(crate) fn run_outside(workspace: &Workspace) -> Result<(), Failure> {
     let outside = Outside::prepare(workspace);
     outside.report();
@@ -99,7 +99,7 @@ fn outside_clients(outside: &Outside, workspace: &Workspace) -> impl Iterator<It
     outside.commands(workspace).into_iter().map(|command| Step::new("outside clients", command))
 }
 
-/// Verdicts on sabotaged twins: the example that runs them, and the pairs. Left out where there is no Python for the outside clients.
+/// Verdicts on sabotaged twins: the example that runs them, and the pairs. Left out without a Python for the outside clients.
 fn twins(outside: &Outside, workspace: &Workspace, engines: Engines) -> Vec<Step> {
     let Some(python) = outside.common() else { return Vec::new() };
     let build = on_all_crates(workspace, engines, &["build", "--example", "twin"]);
@@ -111,7 +111,7 @@ fn twins(outside: &Outside, workspace: &Workspace, engines: Engines) -> Vec<Step
     ]
 }
 
-/// A command of Cargo for the whole workspace. Release for all: the binary, the tests and the documentation share what they compile.
+/// A command of Cargo for the whole workspace. Always in release: the binary, the tests and the documentation share compiled crates.
 fn on_all_crates(workspace: &Workspace, engines: Engines, subcommand: &[&str]) -> Command {
     let mut command = workspace.cargo(subcommand);
     command.args(["--release", "--workspace"]);
@@ -138,8 +138,8 @@ fn steps(workspace: &Workspace, engines: Engines) -> Result<Vec<Step>, Failure> 
         Step::new("format", workspace.cargo(["fmt", "--all", "--check"])),
         Step::new("checks", workspace.command(itself, ["checks"])),
         Step::new("lints", lints),
-        // Builds the program too, which the scenarios run. A build step of its own would choose other features for some
-        // dependencies, without those of the tests, and compile Rerun twice.
+        // Builds the program too, which the scenarios run. A separate build step would choose other features for some dependencies, without
+        // those of the tests, and compile Rerun twice.
         Step::new("tests", cargo(tests)),
         Step::new("documentation tests", cargo(&["test", "--doc"])),
         Step::new("documentation", documentation),
@@ -234,7 +234,7 @@ mod tests {
         assert!(run_steps(ends_with(0)).is_err());
     }
 
-    /// What is typed for each step.
+    /// Command line of each step.
     fn commands(engines: Engines) -> Vec<String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let here = Workspace { root, target: "target".into() };

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Fetches the library of `target`, unless it is there. `library` names it in messages.
 ///
 /// # Errors
-/// [`Failure::Fetch`] with the cause and the way out.
+/// [`Failure::Fetch`] with the cause and the remedy.
 pub(crate) fn ensure(library: &str, target: &str) -> Result<(), Failure> {
     if is_installed(target) {
         return Ok(());

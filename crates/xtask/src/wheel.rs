@@ -1,5 +1,5 @@
-//! Files that are taken out of a Python wheel: the package index is the one place that carries the same native files
-//! for every machine that has pip. Python unpacks them too, so there is no archive code here.
+//! Files taken from a Python wheel: the package index is the one place that carries the same native files for every machine with pip.
+//! Python unpacks them too, so there is no archive code here.
 //!
 //! A file is pinned by its own SHA-256, not by that of the wheel: wheels for other Python versions hold the same file.
 //! It is checked on every call; only a missing or changed file needs the network.
@@ -13,16 +13,16 @@ use std::os::unix::fs::{PermissionsExt as _, symlink};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A wheel and what is taken out of it.
+/// A wheel and the files taken from it.
 #[derive(Debug)]
 pub(crate) struct Wheel {
-    /// What it is and which version, for messages.
+    /// Name and version, for messages.
     name: &'static str,
     /// Requirement as pip wants it.
     requirement: &'static str,
     /// Command that fetches it.
     command: &'static str,
-    /// How to go on without it.
+    /// Advice for continuing without it.
     otherwise: &'static str,
     /// Folder under the target folder.
     folder: &'static str,
@@ -30,7 +30,7 @@ pub(crate) struct Wheel {
     platforms: &'static [Platform],
     /// Licence texts: member of the wheel and its place in the folder.
     licences: &'static [(&'static str, &'static str)],
-    /// Member of the wheel that is wanted.
+    /// Required member of the wheel.
     member: &'static str,
     /// Its place in the folder.
     place: &'static str,
@@ -38,7 +38,7 @@ pub(crate) struct Wheel {
     link: Option<&'static str>,
 }
 
-/// What one platform's wheel holds.
+/// The wheel of one platform.
 #[derive(Debug)]
 struct Platform {
     /// Architecture as [`std::env::consts::ARCH`] names it.
@@ -74,7 +74,7 @@ pub(crate) const MUJOCO: Wheel = Wheel {
     ],
     member: "mujoco/libmujoco.so.3.17.0",
     place: "lib/libmujoco.so.3.17.0",
-    // What the linker looks for; programs ask for the versioned name.
+    // The name that the linker looks for; programs load the versioned name.
     link: Some("lib/libmujoco.so"),
 };
 
@@ -104,10 +104,10 @@ pub(crate) const RERUN: Wheel = Wheel {
 };
 
 impl Wheel {
-    /// Makes sure that the file is there and is the right one; returns where it is.
+    /// Makes sure that the file exists and is the right one; returns its path.
     ///
     /// # Errors
-    /// [`Failure::Fetch`] says in one sentence what failed and what to do.
+    /// [`Failure::Fetch`] with the cause and the remedy in one sentence.
     pub(crate) fn ensure(&self, workspace: &Workspace) -> Result<PathBuf, Failure> {
         let platform = self.platform(std::env::consts::OS, std::env::consts::ARCH)?;
         let folder = workspace.target.join(self.folder);
@@ -119,7 +119,7 @@ impl Wheel {
         Ok(place)
     }
 
-    /// The licence texts that came with it.
+    /// Licence texts of the wheel.
     pub(crate) fn licences(&self, workspace: &Workspace) -> impl Iterator<Item = PathBuf> {
         let folder = workspace.target.join(self.folder);
         self.licences.iter().map(move |&(_, place)| folder.join(place))
@@ -136,8 +136,7 @@ impl Wheel {
         right && beside.into_iter().all(|place| folder.join(place).is_file())
     }
 
-    /// Everything is unpacked into a folder of its own and renamed into place when it is right: an interrupted set-up
-    /// leaves nothing half done.
+    /// Unpacks everything into a separate folder and renames it when it is right: an interrupted set-up leaves nothing half done.
     fn install(&self, folder: &Path, platform: &Platform) -> Result<(), Failure> {
         fs::create_dir_all(folder).map_err(Failure::file("create", folder))?;
         let room = tempfile::tempdir_in(folder).map_err(Failure::file("write into", folder))?;
@@ -168,7 +167,7 @@ impl Wheel {
         let mut pip = Command::new("python3");
         pip.args(["-m", "pip", "download", "--quiet", "--disable-pip-version-check"]);
         pip.args(["--retries", "1", "--no-deps", "--only-binary=:all:"]);
-        // Named, so that every Python, old or new, gets the same wheel.
+        // A fixed Python version, so that every Python, old or new, gets the same wheel.
         pip.args(["--implementation", "cp", "--python-version", "3.11"]);
         for tag in platform.tags {
             pip.args(["--platform", tag]);

@@ -1,4 +1,4 @@
-//! Where the workspace and its target folder are, and how programs are run in it.
+//! Folders of the workspace, and commands that run in it.
 use crate::failure::Failure;
 use serde::Deserialize;
 use std::ffi::OsStr;
@@ -8,16 +8,16 @@ use std::process::{Command, Stdio};
 /// Folders of the workspace; absolute.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct Workspace {
-    /// Where the root `Cargo.toml` is.
+    /// Folder of the root `Cargo.toml`.
     #[serde(rename = "workspace_root")]
     pub(crate) root: PathBuf,
-    /// Where cargo builds; respects `CARGO_TARGET_DIR`.
+    /// Target folder of cargo; respects `CARGO_TARGET_DIR`.
     #[serde(rename = "target_directory")]
     pub(crate) target: PathBuf,
 }
 
 impl Workspace {
-    /// Asks cargo. Nothing is taken from the time xtask was compiled: its target folder may serve several clones.
+    /// Runs `cargo metadata`. Nothing is fixed when xtask is compiled: its target folder may serve several clones.
     pub(crate) fn find() -> Result<Self, Failure> {
         let mut cargo = Command::new(cargo());
         cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
@@ -25,8 +25,8 @@ impl Workspace {
         parse(&cargo, &text)
     }
 
-    /// A cargo command that finds the MuJoCo library. The variable is set even when nothing of MuJoCo is built: one
-    /// that comes and goes would rebuild it.
+    /// A cargo command that finds the MuJoCo library. The variable is set even for builds without MuJoCo: a change of it would cause a
+    /// rebuild.
     pub(crate) fn cargo<I: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = I>) -> Command {
         let mut command = self.command(cargo(), arguments);
         command.env("MUJOCO_DYNAMIC_LINK_DIR", self.native_lib());
@@ -59,7 +59,7 @@ impl Workspace {
         self.target.join("native").join("lib")
     }
 
-    /// Files that git tracks under `paths`, relative to the root; all of them when there is no path.
+    /// Files that git tracks under `paths`, relative to the root; all files if `paths` is empty.
     pub(crate) fn tracked(&self, paths: &[&str]) -> Result<Vec<PathBuf>, Failure> {
         let mut git = self.command("git", ["ls-files", "-z", "--"]);
         git.args(paths);

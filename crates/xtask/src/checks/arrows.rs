@@ -1,7 +1,7 @@
-//! Who may depend on whom among the crates of the workspace. The table is that of `docs/architecture.md`.
+//! Allowed dependencies among the crates of the workspace. The table is that of `docs/architecture.md`.
 use super::metadata::Metadata;
 
-/// What a crate may depend on, without the prefix `servobench-`.
+/// Crates that a crate may depend on, without the prefix `servobench-`.
 #[derive(Debug)]
 enum May {
     /// On these only.
@@ -10,8 +10,8 @@ enum May {
     OnAll,
 }
 
-/// The floor plan, lower floors first; `engine-*` is every engine that has no line of its own. Dev-dependencies are free: the oracle
-/// of a test may come from anywhere.
+/// The layers, lower ones first; `engine-*` is every engine without a separate line. Dev-dependencies are free: the oracle of a test may
+/// come from anywhere.
 const PLAN: [(&str, May); 41] = [
     ("features", May::On(&[])),
     ("state-derive", May::On(&[])),
@@ -133,7 +133,7 @@ const PLAN: [(&str, May); 41] = [
     ("xtask", May::On(&["fuzz", "testkit"])),
 ];
 
-/// One line per arrow that the plan does not have.
+/// One line per dependency that the plan does not allow.
 pub(super) fn findings(metadata: &Metadata) -> Vec<String> {
     let mut findings = Vec::new();
     for from in metadata.members() {
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(found, ["crate `servobench-utils` is not in the plan of crates"]);
     }
 
-    /// A new engine needs no line in the plan; one that needs more than the others has its own.
+    /// A new engine needs no line in the plan; one with more dependencies than the others has a separate line.
     #[test]
     fn every_engine_has_the_arrows_of_its_family() {
         let arrow = |to| [("servobench-engine-new", to, None)];

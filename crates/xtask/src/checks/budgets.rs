@@ -1,5 +1,5 @@
-//! What each crate may have at most: lines, doc comments that begin with a relative clause, words that the project does without. The table is
-//! `docs/budgets.md`; rows may fall, and rise with a reason only.
+//! Upper bounds for each crate: lines, doc comments that begin with a relative clause, words that the project avoids. The table is
+//! `docs/budgets.md`; rows may fall, and rise only with a reason.
 use super::words::{self, Words};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use std::path::Path;
 pub(super) const TABLE: &str = "docs/budgets.md";
 /// Its columns.
 const COLUMNS: &str = "| crate | source | tests | clauses | words in comments | words in strings | reason of a raise |";
-/// Variable that makes `cargo xtask checks` write the table anew.
+/// Variable that makes `cargo xtask checks` rewrite the table.
 const WRITE: &str = "SERVOBENCH_WRITE_DOCS";
 
 /// Counts of a crate.
@@ -83,12 +83,12 @@ impl Budgets {
         findings
     }
 
-    /// Whether the table is to be written anew.
+    /// True if the table is to be rewritten.
     pub(super) fn are_written() -> bool {
         std::env::var_os(WRITE).is_some()
     }
 
-    /// `table` with the present counts, and the reasons that it had.
+    /// `table` with the present counts and its former reasons.
     pub(super) fn written(&self, table: &str) -> String {
         let head = table.find(COLUMNS).map_or("", |at| &table[..at]);
         let reasons = reasons(table);

@@ -1,9 +1,9 @@
-//! The doors to the operating system: calls of it by other names than those of `std` stand in a few folders, and nowhere else.
+//! Doors to the operating system: the few folders that may call it by other names than those of `std`.
 //!
-//! Tests may call it: they make FIFOs and send signals. So may the commands of this crate, which run on a developer's machine.
+//! Tests may call it, too: they make FIFOs and send signals. So may the commands of this crate, which run on a developer's machine.
 use std::path::Path;
 
-/// Where calls of the operating system stand.
+/// Folders that may call the operating system.
 const DOORS: [&str; 4] = [
     "crates/files/src/sys/",
     "crates/isolation/src/sys/",
@@ -13,21 +13,21 @@ const DOORS: [&str; 4] = [
 /// Packages that may depend on crates of the operating system: those with a door, and the one that only chooses features.
 const WITH_CRATES: [&str; 5] =
     ["crates/files/", "crates/isolation/", "crates/fmi/", "crates/engine-mujoco/", "crates/features/"];
-/// Packages that are not the program: this one, and one for a machine without operating system.
+/// Packages that are not part of the program: this one, and one for a machine without operating system.
 const APART: [&str; 2] = ["crates/xtask/", "crates/bare-metal/"];
 /// Folders of tests, and files of them.
 const TESTS: [&str; 4] = ["tests/", "benches/", "examples/", "tests.rs"];
 
-/// Crates whose names are calls of an operating system.
+/// Crates that call an operating system.
 const CRATES: [&str; 8] = ["libc", "libloading", "memmap2", "nix", "rustix", "signal_hook", "winapi", "windows_sys"];
-/// Other names that only one kind of operating system has.
+/// Other names that exist on only one kind of operating system.
 const NAMES: [&str; 5] = ["std::os::", "os::unix", "os::fd", "pre_exec", "CommandExt"];
 /// Words of a condition on the operating system.
 const CONDITIONS: [&str; 5] = ["unix", "windows", "target_os", "target_family", "target_env"];
-/// Folders that only one kind of operating system has, in a text.
+/// Folders, as quoted in source, that exist on only one kind of operating system.
 const FOLDERS: [&str; 3] = ["\"/proc", "\"/dev", "\"/sys"];
 
-/// One line per call of the operating system in `text`, of the tracked file `file`, that stands outside of the doors.
+/// One line per call of the operating system in `text`, of the tracked file `file`, outside of the doors.
 pub(super) fn findings(file: &Path, text: &str) -> Vec<String> {
     let name = file.to_string_lossy();
     let is_among = |folders: &[&str]| folders.iter().any(|folder| name.starts_with(folder));
@@ -46,7 +46,7 @@ pub(super) fn findings(file: &Path, text: &str) -> Vec<String> {
     found.into_iter().map(finding).collect()
 }
 
-/// Calls in the Rust source, each with its line: the first of every line; comments and the tests at its end aside.
+/// Calls in the Rust source, each with its line: the first of every line, without comments and the tests at its end.
 fn in_source(text: &str) -> Vec<(usize, &'static str)> {
     let lines = text.lines().enumerate().take_while(|(_, line)| *line != "mod tests {");
     let code = lines.filter(|(_, line)| !line.trim_start().starts_with("//") && !line.contains("cfg(all(test,"));
@@ -61,7 +61,7 @@ fn call(line: &str) -> Option<&'static str> {
     of_crate.or_else(condition).or_else(name)
 }
 
-/// Everything behind `word` in `line`, for each time that it stands there as a word.
+/// The rest of `line` behind each occurrence of `word` as a whole word.
 fn words<'a>(line: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     line.match_indices(word).filter_map(move |(at, _)| {

@@ -1,5 +1,4 @@
-//! Keys of scenario files in crates that know nothing of scenario files: `scenario` and what depends on it alone say where in a file
-//! a thing is set.
+//! Keys of scenario files in crates that must not name them: only `scenario` and its dependants state where in a file a thing is set.
 use super::metadata::{Metadata, Package};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -7,10 +6,10 @@ use std::path::Path;
 /// The crate that reads scenario files.
 const READER: &str = "servobench-scenario";
 
-/// Names of signals are `setpoint.velocity` and the like, some of which are keys, too.
+/// Crates with names of signals, such as `setpoint.velocity`, some of which are keys, too.
 const NAMES_OF_SIGNALS: [&str; 2] = ["servobench-signals", "servobench-trace"];
 
-/// Where the packages are that may not know a key: all that `scenario` needs.
+/// Packages that must not name a key: all that `scenario` needs.
 pub(super) fn below(metadata: &Metadata) -> Vec<&Package> {
     let reader = metadata.members().filter(|package| package.name == READER);
     let below = metadata.closure(reader).into_iter();
@@ -20,7 +19,7 @@ pub(super) fn below(metadata: &Metadata) -> Vec<&Package> {
         .collect()
 }
 
-/// The paths of the keys of a scenario file, of two parts and more, by its JSON Schema.
+/// Paths of the keys of a scenario file, with two parts and more, from its JSON Schema.
 pub(super) fn paths(schema: &serde_json::Value) -> BTreeSet<String> {
     let mut paths = BTreeSet::new();
     collect(schema, "", &mut paths);
@@ -45,7 +44,7 @@ fn collect(schema: &serde_json::Value, path: &str, paths: &mut BTreeSet<String>)
     }
 }
 
-/// One line for each key in a text of the Rust source `file`, documentation aside.
+/// One line for each key in a string of the Rust source `file`, without documentation.
 pub(super) fn findings(file: &Path, source: &str, paths: &BTreeSet<String>) -> Vec<String> {
     let mut findings = Vec::new();
     for (number, line) in source.lines().enumerate() {

@@ -1,4 +1,4 @@
-//! What `cargo metadata` says of packages and of who depends on whom.
+//! Packages and their dependencies from `cargo metadata`.
 use crate::failure::Failure;
 use crate::workspace::{Workspace, output, parse};
 use serde::Deserialize;
@@ -52,7 +52,7 @@ struct Kind {
 }
 
 impl Metadata {
-    /// Asks cargo, with all features, for the platform of this machine.
+    /// Runs `cargo metadata` with all features for the platform of this machine.
     pub(crate) fn read(workspace: &Workspace) -> Result<Self, Failure> {
         let mut rustc = workspace.command("rustc", ["--print", "host-tuple"]);
         let host = output(&mut rustc)?;
@@ -67,17 +67,17 @@ impl Metadata {
         self.packages.iter().filter(|package| self.is_member(package))
     }
 
-    /// How many packages there are, ours and others'.
+    /// Number of packages, those of the workspace and others.
     pub(crate) fn count(&self) -> usize {
         self.packages.len()
     }
 
-    /// Whether `package` is of the workspace.
+    /// True if `package` belongs to the workspace.
     pub(crate) fn is_member(&self, package: &Package) -> bool {
         self.workspace_members.contains(&package.id)
     }
 
-    /// What `package` needs to be built and run: its normal and build dependencies, not those of its tests.
+    /// Normal and build dependencies of `package`, without those of its tests.
     pub(crate) fn needs(&self, package: &Package) -> Vec<&Package> {
         let node = self.resolve.nodes.iter().find(|node| node.id == package.id);
         let arrows = node.map_or(&[][..], |node| &node.deps);

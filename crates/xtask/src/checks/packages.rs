@@ -1,14 +1,14 @@
-//! Size of the program: packages that it is built of.
+//! Size of the program: number of packages that it is built from.
 use crate::failure::Failure;
 use crate::workspace::{Workspace, output};
 use std::collections::BTreeSet;
 
-/// Packages of the program at most, ours among them: it is built within minutes.
+/// Most packages of the program, with those of the workspace: it is built within minutes.
 const MOST: usize = 290;
-/// Start of the names of Rerun's packages, which the program beside has alone.
+/// Prefix of Rerun's packages, which only `servobench-view` has.
 const RERUN: &str = "re_";
 
-/// Packages that the program `servobench` is built of on this machine, with the features that a plain build has.
+/// Packages of the program `servobench` on this machine, with the features of a plain build.
 #[derive(Debug)]
 pub(super) struct Packages(BTreeSet<String>);
 
@@ -18,7 +18,7 @@ impl Packages {
         output(&mut workspace.cargo(tree)).map(|text| Self::of(&text))
     }
 
-    /// From lines with name, version, and words in parentheses.
+    /// Parses lines with name, version, and words in parentheses.
     fn of(tree: &str) -> Self {
         let package = |line: &str| Some(line.split(" (").next()?.trim().to_owned()).filter(|name| !name.is_empty());
         Self(tree.lines().filter_map(package).collect())

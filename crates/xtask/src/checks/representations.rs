@@ -1,21 +1,21 @@
-//! One concept, one type: types of different crates that have the same variants or the same fields are one concept twice, and code
-//! that copies one into the other is needed. A pair that has to be is listed with its reason.
+//! One concept, one type: types of different crates with the same variants or fields are one concept twice, and need code that copies one
+//! into the other. A necessary pair is listed with its reason.
 //!
-//! The source is read as `cargo fmt` lays it out; types that a macro declares in the same layout count, too.
+//! The source is read as `cargo fmt` lays it out; types declared by a macro in the same layout count, too.
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// So many variants are common to two enumerations that are one concept.
+/// Fewest common variants of two enumerations that are one concept.
 const FEWEST_VARIANTS: usize = 3;
-/// So many fields are common to two structures that are one concept.
+/// Fewest common fields of two structures that are one concept.
 const FEWEST_FIELDS: usize = 4;
-/// The common ones are at least this share of all.
+/// Smallest share of common ones among all.
 const SHARE: f64 = 2.0 / 3.0;
 
-/// Where keys of scenario files are declared, which have the names of what they become.
+/// Folder that declares keys of scenario files, which have the names of the types they become.
 const KEYS: &str = "crates/scenario/src/file";
 
-/// Pairs that have to be, and why.
+/// Necessary pairs, with reasons.
 const APART: &[([&str; 2], &str)] = &[
     (
         ["base::Setpoint", "motion::State4"],
@@ -96,7 +96,7 @@ fn head(line: &str) -> Option<(Kind, &str, &str)> {
     (!name.is_empty()).then_some((kind, name, indent))
 }
 
-/// The variant, or the field with its type, that `line` begins, a level below its type.
+/// The variant, or the field with its type, at the beginning of `line`, one level below its type.
 fn part(kind: Kind, line: &str) -> Option<String> {
     let line = line.strip_prefix("pub").map_or(line, |rest| rest.split_once(' ').map_or(rest, |(_, rest)| rest));
     let name = line.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
@@ -109,7 +109,7 @@ fn part(kind: Kind, line: &str) -> Option<String> {
     }
 }
 
-/// One line for each pair of types that are one concept, and for each listed pair that is none.
+/// One line for each pair of types that are one concept, and for each listed pair that is not.
 pub(super) fn findings(types: &[Declared]) -> Vec<String> {
     let mut pairs = Vec::new();
     for (index, one) in types.iter().enumerate() {
@@ -138,7 +138,7 @@ pub(super) fn findings(types: &[Declared]) -> Vec<String> {
     new.chain(old).collect()
 }
 
-/// Whether they have most variants in common, most fields with their types, or all fields but for their types.
+/// True if most variants, most fields with their types, or all names of fields are common.
 fn are_same(one: &Declared, other: &Declared) -> bool {
     let fewest = match (one.kind, other.kind) {
         (Kind::Enum, Kind::Enum) => FEWEST_VARIANTS,
@@ -161,7 +161,7 @@ mod tests {
     const ENDING: &str = "/// How.\npub enum Ending {\n    /// One.\n    AtRest,\n    Moving(f64),\n    Lost {\n        at: f64,\n    },\n}\n";
     const POINT: &str = "pub(crate) struct Point<T> {\n    pub x: f64,\n    pub(crate) v: T,\n    a: f64,\n    /// Jerk.\n    j: f64,\n}\n";
 
-    /// The findings that are not about the list.
+    /// The findings other than those about the list.
     fn new(types: &[Declared]) -> Vec<String> {
         findings(types).into_iter().filter(|finding| !finding.contains("no pair any more")).collect()
     }

@@ -1,7 +1,7 @@
-//! Left-overs in tracked text: paths of somebody's machine, notes to oneself, silenced lints.
+//! Left-overs in tracked text: paths of a private machine, notes to oneself, silenced lints.
 use std::path::Path;
 
-/// Folders that exist on the machine of the one who wrote the path, if at all.
+/// Folders that exist only on the author's machine, if at all.
 const HOMES: [&str; 4] = ["home", "root", "work", "Users"];
 
 /// Notes to oneself; halves, so that this file does not find itself.
@@ -29,7 +29,7 @@ pub(super) fn findings(file: &Path, text: &str) -> Vec<String> {
     findings
 }
 
-/// Whether `line` has the folder at the root of the file system, and something in it.
+/// True if `line` holds a path below `folder` at the root of the file system.
 fn has_absolute(line: &str, folder: &str) -> bool {
     let path = format!("/{folder}/");
     line.match_indices(&path).any(|(at, _)| {
@@ -38,7 +38,7 @@ fn has_absolute(line: &str, folder: &str) -> bool {
     })
 }
 
-/// Whether `line` has `word`, not as a part of another.
+/// True if `line` has `word` as a whole word.
 fn has_word(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(at, _)| {
         let before = line[..at].chars().next_back();

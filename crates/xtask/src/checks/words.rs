@@ -1,4 +1,4 @@
-//! Words that the project does without, and doc comments that begin with a relative clause.
+//! Words that the project avoids, and doc comments that begin with a relative clause.
 use std::ops::AddAssign;
 
 /// Counts of a text.
@@ -21,7 +21,7 @@ impl AddAssign for Words {
 /// Beginnings of a relative clause.
 const CLAUSES: [&str; 11] = ["What", "Whether", "How", "It", "That", "Of", "Who", "Where", "Which", "When", "Somebody"];
 
-/// Words and phrases that a reader stumbles over; each as it is between other words, in lower case.
+/// Avoided words and phrases, each as it stands between other words, in lower case.
 const WORDS: [&str; 17] = [
     "told",
     "said",

@@ -1,4 +1,4 @@
-//! `cargo xtask drill advise`: an advice against a grid of set-points, each of which is run, and against machines that it has not seen.
+//! `cargo xtask drill advise`: an advice against a grid of set-points, each of which is run, and against new machines.
 use super::built;
 use crate::failure::Failure;
 use crate::workspace::Workspace;
@@ -6,18 +6,18 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// The box of machines.
+/// Tolerances of the machines.
 const BOX: [(&str, &str, [&str; 2]); 2] =
     [("axis.load.frequency", "Hz", ["15.75", "19.25"]), ("axis.load.damping_ratio", "", ["0.002", "0.008"])];
-/// By how much a set-point of the grid may be better.
+/// Largest ratio of a grid set-point's time to the advised one that counts as better.
 const BETTER: f64 = 0.995;
-/// Draws that nobody has seen.
+/// Number of new draws.
 const FRESH: u32 = 1_000;
 
 /// Runs the drill: 20 480 set-points of third and fourth order, or `SERVOBENCH_SWEEP` times fewer levels of each limit.
 ///
 /// # Errors
-/// [`Failure::Findings`] when the grid holds something better, or fresh draws do not keep the promise.
+/// [`Failure::Findings`] when the grid holds a better set-point, or new draws do not keep the promise.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     built(workspace)?;
     let room = tempfile::tempdir().map_err(Failure::file("make a folder in", std::env::temp_dir()))?;
@@ -35,7 +35,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     println!("\nadvice: {:.1} ms, at least {:.1} % of the machines\n", 1e3 * time, 100.0 * share);
     let mut findings = Vec::new();
 
-    // On the machine that limits the advice most a better set-point has to do, too.
+    // A better set-point must also succeed on the machine that limits the advice most.
     let worst = &advice["usage"].as_array().and_then(|all| {
         all.iter().max_by(|one, other| {
             let used = |one: &Value| one["used"].as_f64().unwrap_or(0.0);
@@ -44,7 +44,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     });
     let killer = worst.map(|worst| worst["machine"].clone()).unwrap_or_default();
     let level = |top: f64, ratio: f64, count: i32| (0..count).map(move |k| top * ratio.powi(-k)).collect::<Vec<f64>>();
-    // Every so manyth level of each.
+    // Every n-th level of each.
     let every = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|every| every.parse::<i32>().ok()).unwrap_or(1).max(1);
     let count = |of: i32| (of / every).max(1);
     let axes = [
@@ -179,7 +179,7 @@ fn rows(workspace: &Workspace, room: &Path, scenario: &Path, sweep: &str, set: &
     Ok(lines.map(row).collect())
 }
 
-/// Runs the program; runs that fail are no failure of the drill.
+/// Runs the program; failed runs are not a failure of the drill.
 fn servobench(workspace: &Workspace, arguments: &[&str], folder: &Path) -> Result<(), Failure> {
     let mut command = workspace.servobench(arguments.iter().copied());
     command.current_dir(folder).env("LD_LIBRARY_PATH", workspace.native_lib());

@@ -3,13 +3,13 @@ use crate::failure::Failure;
 use crate::wheel;
 use crate::workspace::{Workspace, run as run_command};
 
-/// Suites that something happens to, and pairs of suites in one folder.
+/// Number of suites with a fault, and of pairs of suites in one folder.
 const SUITES: &str = "200";
 
-/// What happens to suites: faults, and two of them in one folder.
+/// Runs suites with faults, and pairs of suites in one folder.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when the library of an engine cannot be had, [`Failure::Ended`] when something was lost.
+/// [`Failure::Fetch`] when the library of an engine cannot be fetched, [`Failure::Ended`] when something was lost.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     wheel::MUJOCO.ensure(workspace)?;
     let mut drill = workspace.cargo(["test", "--release", "--workspace", "--test", "drill"]);

@@ -1,7 +1,7 @@
 //! `cargo xtask drill inputs`: mutated files of every kind that the program reads, through the program itself.
 //!
-//! Whatever is in a file, the program ends with one of its own exit codes, and says no within a second of a processor and 200 MB of
-//! memory. Time by the clock says nothing on a machine that others use too.
+//! For any content of a file, the program ends with one of its own exit codes, and rejects within 1 s of processor time and 200 MB of
+//! memory. Wall-clock time means nothing on a shared machine.
 use super::built;
 use super::measured::{Measured, PATIENCE, measured};
 use super::mutants::{Digest, Mutator};
@@ -13,21 +13,21 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-/// Files of each kind, unless `SERVOBENCH_SWEEP` says how many.
+/// Files of each kind; `SERVOBENCH_SWEEP` overrides it.
 const FILES: u64 = 40;
-/// What a rejection may take: time of processors (s), memory (MB).
+/// Limits of a rejection: processor time (s), memory (MB).
 const MOST_SECONDS: f64 = 1.0;
 const MOST_MEGABYTES: f64 = 200.0;
 /// Exit codes of the program: passed, invalid input, error, failed.
 const CODES: [i32; 4] = [0, 2, 3, 4];
-/// Those of a file that was not taken.
+/// Exit codes of a rejected file.
 const REJECTED: [i32; 2] = [2, 3];
 
 /// One kind of file, and the command that reads it.
 struct Kind {
     name: &'static str,
     mutator: Mutator,
-    /// Where the file is in the folder of the kind.
+    /// Path of the file in the folder of the kind.
     file: &'static str,
     /// Folder whose content is removed before each command.
     cleared: Option<&'static str>,
@@ -35,11 +35,11 @@ struct Kind {
     folder: PathBuf,
 }
 
-/// What came of all files of a kind.
+/// Results for all files of a kind.
 #[derive(Default)]
 struct Outcome {
     codes: BTreeMap<String, u64>,
-    /// Of the files that were not taken.
+    /// Largest value for a rejected file.
     seconds: f64,
     megabytes: f64,
     offenders: Vec<String>,
@@ -48,7 +48,7 @@ struct Outcome {
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Findings`] with each file that the program did not bear; they are kept.
+/// [`Failure::Findings`] with each file that the program mishandled; they are kept.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let files = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok()).unwrap_or(FILES);
     built(workspace)?;
@@ -72,7 +72,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     if offenders.is_empty() { Ok(()) } else { Err(Failure::Findings { findings: offenders }) }
 }
 
-/// Gives every file of a kind to the program. What it does not bear is kept in a folder.
+/// Gives every file of a kind to the program. Mishandled ones are kept in a folder.
 fn held_against(kind: &Kind, files: u64, workspace: &Workspace, kept: &Path) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     for number in 0..files {
@@ -106,7 +106,7 @@ fn held_against(kind: &Kind, files: u64, workspace: &Workspace, kept: &Path) -> 
     Ok(outcome)
 }
 
-/// What the program must not do.
+/// Description of a forbidden behaviour of the program, if any.
 fn offence(ended: Measured) -> Option<String> {
     let Measured { code, seconds, megabytes } = ended;
     let Some(code) = code else { return Some("ended by a signal".into()) };
@@ -272,7 +272,7 @@ struct Seeds {
     recording: Vec<u8>,
     results: String,
     journal: String,
-    /// Where it ran.
+    /// Folder of the run.
     folder: String,
 }
 
@@ -290,7 +290,7 @@ impl Seeds {
             .map_err(|error| Failure::Output { command: "servobench run".into(), why: error.to_string() })?;
         let suite = json!({ "suite": { "version": 1, "suite": values["suite"], "command": arguments, "folder": folder, "stems": ["tiny.exact"] } });
         let finished = json!({ "finished": { "index": 0, "seconds": 0.1, "result": values["scenarios"][0] } });
-        // Digests of the lines are those of other lines: every second file has its own.
+        // Zeros in place of digests: every second file gets matching ones.
         let journal = format!("{:016x} {suite}\n{:016x} {finished}\n", 0, 0);
         let folder = folder.display().to_string();
         Ok(Self { recording: read("tiny.exact.parquet")?, results, journal, folder })

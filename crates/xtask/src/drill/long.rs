@@ -1,4 +1,4 @@
-//! `cargo xtask drill long`: runs that are long, and the memory that they take.
+//! `cargo xtask drill long`: long runs and their memory.
 use super::built;
 use super::measured::measured;
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::time::Duration;
 
-/// A long run that takes longer by the clock hangs.
+/// Wall-clock time after which a long run counts as hung.
 const PATIENCE: Duration = Duration::from_mins(10);
 /// Channels that are recorded.
 const CHANNELS: [&str; 26] = [
@@ -42,12 +42,12 @@ const CHANNELS: [&str; 26] = [
 /// A run of the demo's axis at 16 kHz, back and forth.
 struct Long {
     name: &'static str,
-    /// How long it is (s).
+    /// Duration (s).
     duration: u32,
     /// Moves, each with a rest (s) behind it.
     moves: u32,
     rest: u32,
-    /// Rows that are kept (Hz).
+    /// Rate of recorded rows (Hz).
     rate: u32,
     /// Memory that it may take (MB).
     megabytes: f64,
@@ -82,7 +82,7 @@ impl Long {
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Findings`] when a run does not end as it should, or takes more memory than it may.
+/// [`Failure::Findings`] when a run does not end as expected, or exceeds its memory.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     built(workspace)?;
     let mut findings = Vec::new();

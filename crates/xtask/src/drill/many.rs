@@ -1,19 +1,18 @@
-//! `cargo xtask drill many`: suites of more and more runs that are next to nothing by themselves, so that what is seen is what a run
-//! costs beside its simulation.
+//! `cargo xtask drill many`: suites of more and more tiny runs, which show the cost of a run beside its simulation.
 use super::built;
 use super::measured::{Measured, PATIENCE, measured};
 use crate::failure::Failure;
 use crate::workspace::Workspace;
 use std::fs;
 
-/// Runs of the suites, unless `SERVOBENCH_SWEEP` says how many the largest has.
+/// Runs of the suites; `SERVOBENCH_SWEEP` sets the number of the largest.
 const RUNS: [u64; 3] = [300, 2_000, 20_000];
-/// Suites on an engine in a worker process have no more runs than that.
+/// Most runs of a suite on an engine in a worker process.
 const MOST_IN_WORKERS: u64 = 2_000;
-/// What a run may add to the memory of a suite (bytes): its names and digests, but not its result.
+/// Most memory that a run may add to a suite (bytes): its names and digests, but not its result.
 const MOST_BYTES: f64 = 1_500.0;
 
-/// Ten ticks of a slide that nobody moves.
+/// Ten ticks of a slide at rest.
 fn scenario(engine: &str) -> String {
     format!(
         "engine = [\"{engine}\"]\n[run]\nbase_rate = \"1 kHz\"\nduration = \"0.01 s\"\n[axis]\nmotion = \"linear\"\n\
@@ -32,16 +31,16 @@ fn demo() -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Runs of the demo's axis, and how long each of them is (s).
+/// Runs of the demo's axis, and the duration of each (s).
 const DEMOS: u64 = 200;
 const LENGTH: f64 = 1.5;
-/// Suites of them, of which the fastest counts.
+/// Number of such suites; the fastest counts.
 const ROUNDS: usize = 5;
 
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Findings`] when a suite does not end as it should, or its memory grows with its results.
+/// [`Failure::Findings`] when a suite does not end as expected, or its memory grows with its results.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     let has_mujoco = built(workspace)?;
     let largest = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok());
@@ -67,7 +66,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
             let each = (seconds - start.seconds) / more * 1e3;
             let grown = (megabytes - start.megabytes) * f64::from(1 << 20) / more;
             println!("{engine:7} {runs:>8} {seconds:>8.3} s {megabytes:>7.1} MB {each:>10.3} ms {grown:>10.0} B");
-            // Of a few runs the rest of the program is the larger part.
+            // With few runs the memory of the rest of the program dominates.
             if runs >= 20_000 && grown > MOST_BYTES {
                 findings.push(format!(
                     "{runs} runs on {engine}: each adds {grown:.0} B to memory, at most {MOST_BYTES} are its names"
@@ -79,7 +78,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
         "\n{DEMOS} runs of {LENGTH} s of the demo's axis on exact, in simulated seconds per second of one processor:"
     );
     for (keep, what) in [("all", "with recordings"), ("none", "without")] {
-        // Whatever else the machine does only adds to it.
+        // Other load on the machine only adds to the time.
         let mut least = f64::INFINITY;
         for _ in 0..ROUNDS {
             least = least.min(suite(workspace, (&demo(), DEMOS), keep, &mut findings)?.seconds);
@@ -89,7 +88,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     if findings.is_empty() { Ok(()) } else { Err(Failure::Findings { findings }) }
 }
 
-/// Runs a suite of as many scenarios with this text; one that does not end well is a finding.
+/// Runs a suite of `runs` scenarios with this text; one that does not end well is a finding.
 fn suite(
     workspace: &Workspace,
     (text, runs): (&str, u64),

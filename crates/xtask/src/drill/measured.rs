@@ -1,17 +1,17 @@
-//! A program that is run and measured: how it ended, the time of its processors, its memory.
+//! Measured run of a program: exit code, processor time, memory.
 use std::io;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A program that takes longer by the clock hangs, unless it is known to be long.
+/// Wall-clock time after which a program counts as hung, unless it is known to be long.
 pub(super) const PATIENCE: Duration = Duration::from_mins(1);
 
-/// How a program ended, and what it took, with all that it has started and waited for.
+/// Exit code and resources of a program, with all processes that it started and waited for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Measured {
     /// Its exit code; `None` when a signal ended it.
     pub(super) code: Option<i32>,
-    /// Time of processors, of the user and of the system (s).
+    /// Processor time, user and system (s).
     pub(super) seconds: f64,
     /// Largest resident memory of one process (MB).
     pub(super) megabytes: f64,
@@ -40,7 +40,7 @@ fn ended(id: libc::pid_t) -> io::Result<Option<Measured>> {
     let mut status = 0;
     // SAFETY: the structure is plain numbers, for which zeros are values.
     let mut usage: libc::rusage = unsafe { std::mem::zeroed() };
-    // SAFETY: both pointers are to variables that live as long as the call; nobody else waits for this child.
+    // SAFETY: both pointers are to variables that live as long as the call; this is the only wait for this child.
     match unsafe { libc::wait4(id, &raw mut status, libc::WNOHANG, &raw mut usage) } {
         0 => Ok(None),
         -1 => Err(io::Error::last_os_error()),

@@ -1,4 +1,4 @@
-//! Files that are almost right: real ones, spliced, and where a digest would tell that, with a digest that fits.
+//! Files that are almost right: real ones, spliced, and with a matching digest where one would reveal that.
 use crate::failure::Failure;
 use servobench_fuzz::{Splice, SplicedText, seeded};
 use std::io::{Cursor, Write};
@@ -57,18 +57,18 @@ const BYTES: &[&[u8]] = &[
     b"\x15\x80\x80\x80\x80\x10",
 ];
 
-/// How a mutated file is given a digest again.
+/// Digest that is renewed in a mutated file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Digest {
-    /// It has none.
+    /// No digest.
     None,
-    /// That of a recording: every second file is sealed again.
+    /// Seal of a recording: renewed in every second file.
     Seal,
-    /// That of each line of a journal: of every second file.
+    /// Digest of each line of a journal: renewed in every second file.
     Lines,
 }
 
-/// What makes files.
+/// Source of mutated files.
 #[derive(Debug)]
 pub(super) enum Mutator {
     Text(Box<SplicedText>, Digest),
@@ -88,7 +88,7 @@ impl Mutator {
         Self::Bytes(Box::new(Splice::bytes(&files, BYTES)), digest)
     }
 
-    /// Of the model descriptions of FMUs.
+    /// Mutates the model descriptions of FMUs.
     pub(super) fn of_descriptions(descriptions: &[String]) -> Result<Self, Failure> {
         let archives = descriptions.iter().map(|text| archive(text)).collect::<Result<Vec<_>, _>>()?;
         let texts: Vec<&str> = descriptions.iter().map(String::as_str).collect();
@@ -96,7 +96,7 @@ impl Mutator {
         Ok(Self::Archives(Box::new(Splice::text(&texts, WORDS)), Box::new(Splice::bytes(&archives, BYTES))))
     }
 
-    /// The file number `number`, the same each time.
+    /// The file with this number, the same each time.
     pub(super) fn file(&self, number: u64) -> Result<Vec<u8>, Failure> {
         let is_second = number % 2 == 1;
         let (mut bytes, digest) = match self {
@@ -114,7 +114,7 @@ impl Mutator {
     }
 }
 
-/// An archive with this model description and a library that is none.
+/// An archive with this model description and a file that is not a library in its place.
 fn archive(description: &str) -> Result<Vec<u8>, Failure> {
     let failed = |why: &dyn std::fmt::Display| Failure::Output { command: "zip".into(), why: why.to_string() };
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
@@ -128,11 +128,11 @@ fn archive(description: &str) -> Result<Vec<u8>, Failure> {
     Ok(zip.finish().map_err(|error| failed(&error))?.into_inner())
 }
 
-/// The key of the seal of a recording, and how a value of 16 bytes begins behind it.
+/// The key of the seal of a recording, and the bytes that introduce a value of 16 bytes behind it.
 const SEAL: &[u8] = b"servobench.seal\x18\x10";
 const DIGITS: usize = 16;
 
-/// Seals a recording that was edited, where it still has a place for that.
+/// Seals an edited recording, where it still has a place for the seal.
 fn seal(file: &mut [u8]) {
     let Some(at) = file.windows(SEAL.len()).rposition(|window| window == SEAL).map(|at| at + SEAL.len()) else {
         return;
@@ -143,7 +143,7 @@ fn seal(file: &mut [u8]) {
     file[at..at + DIGITS].copy_from_slice(digits.as_bytes());
 }
 
-/// A journal that was edited, each line with the digest of what it says now.
+/// An edited journal with a matching digest on each line.
 fn with_digests(journal: &[u8]) -> Vec<u8> {
     let line = |line: &[u8]| {
         let json = line.get(DIGITS + 1..).unwrap_or_default();

@@ -1,8 +1,8 @@
-//! `cargo xtask drill several`: comparisons and sweeps of real runs of which one is dead, unstable or over its limit; and one machine with
+//! `cargo xtask drill several`: comparisons and sweeps of real runs, one of which is dead, unstable or over its limit; and one machine with
 //! two seeds.
 //!
-//! The axis and the spoiled run are drawn from a seed. Which run is bad is known from how it was spoiled, and a conclusion is read as its
-//! words.
+//! The axis and the spoiled run are drawn from a seed. The bad run is known from the way it was spoiled; conclusions are read from the
+//! printed text.
 use super::built;
 use crate::failure::Failure;
 use crate::workspace::Workspace;
@@ -10,7 +10,7 @@ use servobench_testkit::Random;
 use std::fs;
 use std::path::Path;
 
-/// Cases, unless `SERVOBENCH_SWEEP` says how many.
+/// Number of cases; `SERVOBENCH_SWEEP` overrides it.
 const CASES: u64 = 60;
 
 /// A bad conclusion of one case, if there is one.
@@ -22,8 +22,8 @@ type Spoiled = (&'static str, String);
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Findings`] names the seed of every case in which a bad run wins, stands on a front or is not named, or in which one of two seeds
-/// wins.
+/// [`Failure::Findings`] names the seed of every case in which a bad run wins, lies on a front or is not named, or in which one of two
+/// seeds wins.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     built(workspace)?;
     let cases = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|count| count.parse().ok()).unwrap_or(CASES);
@@ -100,7 +100,7 @@ fn comparison(workspace: &Workspace, room: &Path, random: &mut Random) -> Result
 fn sweep(workspace: &Workspace, room: &Path, random: &mut Random) -> Result<Finding, Failure> {
     let (mut how, mut key) = spoiled(random);
     while key.starts_with("motor.") {
-        // A motor is not chosen.
+        // A sweep does not choose a motor.
         (how, key) = spoiled(random);
     }
     let (key, value) = key.split_once('=').unwrap_or((&key, ""));
@@ -126,7 +126,7 @@ fn sweep(workspace: &Workspace, room: &Path, random: &mut Random) -> Result<Find
     Ok((is_on_front || failed < 2).then(|| format!("{how} ({key}={value}), {failed} failed:\n{printed}")))
 }
 
-/// One machine with noise, twice, with seeds of its own.
+/// One machine with noise, twice, with different seeds.
 fn seeds(workspace: &Workspace, room: &Path, random: &mut Random) -> Result<Finding, Failure> {
     let noise = random.between(0.02, 2.0);
     let text = axis(random, noise);

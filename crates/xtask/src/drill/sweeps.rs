@@ -1,4 +1,4 @@
-//! `cargo xtask drill sweep`: how many runs of 0.5 s a sweep makes per second, and what memory more of them take.
+//! `cargo xtask drill sweep`: rate of runs of 0.5 s in a sweep (1/s), and memory as their number grows.
 use super::built;
 use super::measured::{PATIENCE, measured};
 use crate::failure::Failure;
@@ -6,9 +6,9 @@ use crate::workspace::Workspace;
 use std::fs;
 use std::time::Instant;
 
-/// Runs of the sweeps, unless `SERVOBENCH_SWEEP` says how many the largest has.
+/// Runs of the sweeps; `SERVOBENCH_SWEEP` sets the number of the largest.
 const RUNS: [u64; 2] = [1_000, 20_000];
-/// Sweeps of which the fastest counts.
+/// Number of equal sweeps; the fastest counts.
 const ROUNDS: usize = 3;
 /// Memory that the largest sweep may take beyond the smallest (bytes for each run): its verdict, its place and its metrics.
 const MOST_BYTES: f64 = 400.0;
@@ -37,7 +37,7 @@ fn sweep(runs: u64) -> String {
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Findings`] when a sweep does not end as it should, or its memory grows with its results.
+/// [`Failure::Findings`] when a sweep does not end as expected, or its memory grows with its results.
 pub(crate) fn run(workspace: &Workspace) -> Result<(), Failure> {
     built(workspace)?;
     let largest = std::env::var("SERVOBENCH_SWEEP").ok().and_then(|size| size.parse().ok());

@@ -1,7 +1,7 @@
 //! `cargo xtask drill verdicts`: healthy machines and their sabotaged twins, judged by the program and by an oracle outside it.
 //!
 //! The example `twin` of the tests runs machines that no scenario can describe; `tests/twin/verdicts.py` draws them and judges the
-//! verdicts. `docs/testing.md` says what counts as bad and as good.
+//! verdicts. `docs/testing.md` defines bad and good.
 use crate::failure::Failure;
 use crate::outside;
 use crate::wheel;
@@ -9,20 +9,20 @@ use crate::workspace::{Workspace, run as run_command};
 use std::path::Path;
 use std::process::Command;
 
-/// Pairs by hand, unless `SERVOBENCH_SWEEP` says how many.
+/// Pairs when run by hand; `SERVOBENCH_SWEEP` overrides this and the next three.
 const PAIRS: &str = "20000";
-/// Healthy axes, unless it does.
+/// Healthy axes.
 const HEALTHY: &str = "2000";
-/// Pairs among which each rule is needed, unless it does.
+/// Pairs among which each rule is needed.
 const PROOF: &str = "2000";
 
-/// Wrong cables and commutations, unless it does.
+/// Wrong cables and commutations.
 const CABLES: &str = "200";
 
-/// Pairs in the tests: always the same, which take some ten seconds.
+/// Arguments for the tests: always the same pairs and cables, which take some ten seconds.
 const TESTED: [[&str; 4]; 2] = [["--pairs", "400", "--seed", "1"], ["--cables", "100", "--seed", "1"]];
 
-/// Which drill.
+/// Kind of drill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Drill {
     /// Pairs of twins.
@@ -38,7 +38,7 @@ pub(crate) enum Drill {
 /// Runs the drill.
 ///
 /// # Errors
-/// [`Failure::Fetch`] when Python's packages cannot be had, else [`Failure`] of the build or of the drill.
+/// [`Failure::Fetch`] when Python's packages cannot be fetched, else [`Failure`] of the build or of the drill.
 pub(crate) fn run(workspace: &Workspace, drill: Drill) -> Result<(), Failure> {
     let environment = outside::common(workspace);
     environment.ensure()?;
