@@ -9,7 +9,7 @@ use servobench_sim::{self as sim, External, Failure, Stepper};
 
 /// A scenario tick by tick, with efforts, a set-point or a controller from outside.
 ///
-/// Between two ticks it shows the axis at the present instant; a tick holds what acts on it and moves it to the next instant.
+/// Between two ticks it shows the axis at the present instant; a tick holds its inputs and moves the axis to the next instant.
 pub struct Bench {
     scenario: servobench_scenario::Scenario,
     stepper: Stepper,
@@ -26,7 +26,7 @@ impl Bench {
         Self::on(scenario, scenario.engine()?)
     }
 
-    /// The same on an engine of the caller's.
+    /// The same on an engine supplied by the caller.
     ///
     /// # Errors
     /// [`Error::Build`].
@@ -45,7 +45,7 @@ impl Bench {
     /// One tick, through which `external` is held.
     ///
     /// # Errors
-    /// [`Error::Failed`] where the axis cannot go on; [`finish`](Self::finish) gives the run up to there.
+    /// [`Error::Failed`] where the simulation cannot continue; [`finish`](Self::finish) returns the run up to there.
     pub fn step(&mut self, external: &External) -> Result<(), Error> {
         self.is_controlled_from_outside |= external.controller.is_some();
         self.stepper.step(external).map_err(|failure| {

@@ -12,25 +12,25 @@ use servobench_scenario::{AxisMechanics, Scenario, parameter_key, switch_key};
 use servobench_sim::{Bench, BuildError, ConnectionDelay, FmuDoubt, FmuOpener, UnusableFmu};
 use std::fmt;
 
-/// Something that keeps a scenario from being built.
+/// A reason why a scenario cannot be built.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Objection {
     /// Key of the scenario that is to blame: `axis.mjcf.file`, `program.0`.
     pub key: String,
     /// Line, from 1, of the MJCF file that is to blame; without one it is the key itself.
     pub line: Option<u32>,
-    /// What is wrong.
+    /// The mistake, in words.
     pub message: String,
-    /// What to do about it; empty when the message says so.
+    /// Remedy; empty when the message contains it.
     pub help: String,
 }
 
-/// What axis and FMUs exchange.
+/// Signal exchange between axis and FMUs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exchange {
-    /// How late each connection is.
+    /// Delay of each connection.
     pub delays: Vec<ConnectionDelay>,
-    /// What is doubtful.
+    /// Doubtful settings of the exchange.
     pub doubts: Vec<Doubt>,
 }
 
@@ -53,10 +53,10 @@ pub fn exchange(scenario: &Scenario, engine: EngineName, engines: &Engines) -> R
     })?
 }
 
-/// Everything that keeps `scenario` from being built on `engine`, as far as it can be told at once; nothing when it can be built.
+/// All reasons why `scenario` cannot be built on `engine`, as far as they can be found in one pass; empty when it can be built.
 ///
 /// # Errors
-/// [`Error`] when no one can tell: a library does not load, an FMU crashes.
+/// [`Error`] when no answer is possible: a library does not load, an FMU crashes.
 pub fn objections(
     scenario: &Scenario,
     engine: &dyn Engine,
@@ -72,13 +72,13 @@ pub fn objections(
     Ok(all)
 }
 
-/// Limits of `scenario` that no run can keep: of a scenario that can be built.
+/// Limits of `scenario` that no run can keep; the scenario must be one that can be built.
 #[must_use]
 pub fn unmeasurable(scenario: &Scenario) -> Vec<Objection> {
     basis::objections(scenario)
 }
 
-/// What `error` objects to, each thing at its place.
+/// Objections behind `error`, each at its key.
 fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
     let key = match error {
         BuildError::Mechanics(MechanicsError::Refused { engine, refusals, help, .. }) => {
@@ -100,7 +100,7 @@ fn of(error: &BuildError, scenario: &Scenario) -> Vec<Objection> {
             let message = format!("engine `{engine}` does not support {what}");
             return vec![Objection { help: help.clone(), ..Objection::new(model_key(scenario), message) }];
         }
-        // The place says which object it is.
+        // The key names the object.
         BuildError::Object { key, error } => return vec![Objection::new(key, error.to_string())],
         BuildError::Drive(error) => parameter_key(error.name).to_owned(),
         BuildError::Switches(error) => switch_key(error.name).to_owned(),
@@ -136,19 +136,19 @@ impl fmt::Display for Objection {
 }
 
 impl Objection {
-    /// That `key` is to blame.
+    /// An objection to `key`.
     #[must_use]
     pub fn new(key: &str, message: String) -> Self {
         Self { key: key.to_owned(), line: None, message, help: String::new() }
     }
 
-    /// What `engine` refuses in the MJCF file of `scenario`.
+    /// Objection for a refusal by `engine` of the MJCF file of `scenario`.
     fn to(refusal: &Refusal, engine: EngineName, help: &str, scenario: &Scenario) -> Self {
         let (key, line) = match &refusal.place {
             RefusedAt::Line(line) => (model_key(scenario), Some(*line)),
             RefusedAt::Name(name) => (name_key(name, scenario).unwrap_or(model_key(scenario)), None),
             RefusedAt::File => (model_key(scenario), None),
-            // Every engine says the same.
+            // The same for every engine.
             RefusedAt::Joint { is_motor, .. } => {
                 let key = if *is_motor { "axis.mjcf.motor_joint" } else { "axis.mjcf.load_joint" };
                 return Self::new(key, refusal.message.clone());
@@ -158,7 +158,7 @@ impl Objection {
         Self { key: key.to_owned(), line, message, help: help.to_owned() }
     }
 
-    /// What does not fit the file of the FMU that `table` describes.
+    /// Objection for a mismatch with the file of the FMU that `table` describes.
     fn to_fmu(mistake: &FmuMistake, table: &str) -> Self {
         let key = match &mistake.at {
             FmuEntry::File | FmuEntry::Conduct => format!("{table}.file"),

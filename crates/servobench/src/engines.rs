@@ -9,7 +9,7 @@ use thiserror::Error;
 pub struct Engines {
     /// Each at most once.
     pub installed: &'static [&'static dyn Engine],
-    /// Who opens the FMUs beside an axis.
+    /// Opener of the FMUs beside an axis.
     pub fmu_opener: &'static dyn FmuOpener,
 }
 

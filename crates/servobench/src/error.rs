@@ -1,4 +1,4 @@
-//! Why a scenario was not loaded, changed, built or run.
+//! Reasons why a scenario was not loaded, changed, built or run.
 use crate::check::Objection;
 use crate::engines::EngineMissing;
 use crate::panicked::Panicked;
@@ -8,7 +8,7 @@ use servobench_sim::{BuildError, Failure};
 use std::io;
 use thiserror::Error;
 
-/// Why a scenario was not loaded, changed, built or run.
+/// Reasons why a scenario was not loaded, changed, built or run.
 #[derive(Debug, Error)]
 pub enum Error {
     /// The scenario cannot be read, or has mistakes: all of them, each at its place.
@@ -37,7 +37,7 @@ pub enum Error {
     NotKept(#[source] io::Error),
 }
 
-/// True where an attempt has failed, and not the scenario.
+/// True where the attempt failed, and the scenario is not at fault.
 pub(crate) const fn is_of_the_run(error: &BuildError) -> bool {
     matches!(
         error,
@@ -48,7 +48,7 @@ pub(crate) const fn is_of_the_run(error: &BuildError) -> bool {
 }
 
 impl Error {
-    /// True where the scenario is at fault: it asks for what cannot be built.
+    /// True where the scenario is at fault: it requests something that cannot be built.
     #[must_use]
     pub const fn is_input(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! What bounds the signals of an axis.
+//! Bounds on the signals of an axis.
 use servobench_plant::inverter;
 use servobench_scenario::{Actuator, Scenario};
 use servobench_signals::Signal;

@@ -27,7 +27,7 @@ impl Linear {
         }
     }
 
-    /// Why the loop is unstable; `None` where it is stable, or not known.
+    /// Reason why the loop is unstable; `None` where it is stable, or not known.
     #[must_use]
     pub fn instability(&self) -> Option<String> {
         let Analysis::Done { report, master, .. } = &self.analysis else { return None };

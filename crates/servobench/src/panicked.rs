@@ -1,20 +1,20 @@
-//! A panic as an error: it costs what panicked, and nothing else.
+//! A panic as an error, confined to the work that panicked.
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
-/// What was tried panicked.
+/// The work panicked.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the run panicked (a defect of servobench): {words}")]
 pub struct Panicked {
-    /// What the panic said.
+    /// Message of the panic.
     pub words: String,
 }
 
-/// Does `work`; a panic loses its values and nothing else.
+/// Does `work`; a panic loses only its values.
 ///
 /// # Errors
-/// [`Panicked`] with the words of the panic.
+/// [`Panicked`] with the message of the panic.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Panicked { words: words(panic.as_ref()) })
 }

@@ -1,12 +1,12 @@
-//! What can be said of a scenario without running it: durations, effort and voltage against what there is, modes and what each
-//! engine makes of them, bandwidths, delays, memory and time; and what is doubtful, at its key.
+//! A scenario's properties that need no run: durations, effort and voltage against the available ones, modes and their distortion by each
+//! engine, bandwidths, delays, memory and time; and doubtful settings, each at its key.
 //!
 //! ```text
 //! Scenario → program of moves → set-point → effort → current, voltage     the axis follows exactly and is rigid
 //! Scenario → chain → modes → steps per period on each engine
 //! ```
-//! An axis that follows exactly is what the set-point asks for. What vibration, an integrator or an encoder add on top only a run
-//! can tell.
+//! An axis that follows exactly needs the effort of its set-point. Additions by vibration, an integrator or an encoder appear only in a
+//! run.
 
 mod cost;
 mod coupling;
@@ -37,32 +37,32 @@ use servobench_scenario::{AxisMechanics, Scenario};
 use servobench_sim::{BuildError, MechanicsAtRest, Program};
 use servobench_stability::Depth;
 
-/// What can be said of a scenario without running it.
+/// Properties of a scenario that need no run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
     /// Name of the scenario.
     pub name: String,
-    /// Tables of the file that stand on a model, and the file of that.
+    /// Tables of the file that are based on a model, each with the file of the model.
     pub models: Vec<(&'static str, String)>,
     /// The moves.
     pub program: PlannedProgram,
-    /// What they ask of motor and inverter.
+    /// Demand of the moves on motor and inverter.
     pub demand: Demand,
-    /// Inertia on both sides of the first spring; `None` where a file of the user's or an FMU knows it.
+    /// Inertia on both sides of the first spring; `None` where only a user's file or an FMU defines it.
     pub inertias: Option<Inertias>,
-    /// How the axis rings; `None` where a file of the user's or an FMU knows it.
+    /// Modes of the axis; `None` where only a user's file or an FMU defines them.
     pub modes: Option<Modes>,
-    /// What each engine makes of the fastest mode.
+    /// Integration of the fastest mode by each engine.
     pub engines: Vec<EngineSteps>,
     /// The loops of the drive, the fastest first.
     pub loops: Vec<LoopBandwidth>,
-    /// Whether these are stable, and how far from their boundaries.
+    /// Stability of these loops, and their distance from their boundaries.
     pub stability: LoopStability,
-    /// What comes late, and how late.
+    /// Delays from the set-point to the voltage.
     pub delays: Vec<Delay>,
-    /// What a run takes.
+    /// Memory and time of a run.
     pub cost: Cost,
-    /// What is doubtful.
+    /// Doubtful settings.
     pub doubts: Vec<Doubt>,
 }
 
@@ -78,8 +78,8 @@ pub fn preview(
     previewed(scenario, engines, Depth::Boundaries, model)
 }
 
-/// Warnings about `scenario` on `engine`, each behind its place: about its files, then, where it can be built, of its preview. An unstable
-/// loop with an MJCF file is found by the run itself.
+/// Warnings about `scenario` on `engine`, each behind its place: about its files, then, where it can be built, from its preview. An
+/// unstable loop with an MJCF file is found by the run itself.
 #[must_use]
 pub fn warnings(scenario: &Scenario, engine: EngineName) -> Vec<String> {
     let found = caught(|| previewed(scenario, &[engine], Depth::Verdict, None));
@@ -138,7 +138,7 @@ fn previewed(
     })
 }
 
-/// Which tables of the file stand on a model, and where that is; folders may have any name.
+/// Tables of the file that are based on a model, each with the model's path; folders may have any name.
 fn models(scenario: &Scenario) -> Vec<(&'static str, String)> {
     let shown = |path: &str| path.replace(char::is_control, "\u{fffd}");
     scenario.made_of.iter().filter_map(|file| Some((file.role.modelled()?, shown(&file.path)))).collect()

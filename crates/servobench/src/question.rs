@@ -1,4 +1,4 @@
-//! From a scenario to what its measurement needs to know beside the recording.
+//! Data of a scenario that its measurement needs beside the recording.
 use crate::requirements::increment;
 use servobench_metrics::Question;
 use servobench_plant::Chain;

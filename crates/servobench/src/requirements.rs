@@ -1,4 +1,4 @@
-//! From a scenario to what its run is held to beside its limits.
+//! Requirements on the run of a scenario beside its limits.
 mod axle;
 
 use servobench_metrics::{Disturbance, Driven, EarlyEnd, LinearLoop, Oscillation, Poles, Readings, Rules};
@@ -9,7 +9,7 @@ use servobench_sim::{Analysis, MasterLoop, MechanicsAtRest, NotAnalysed, Speeds,
 use servobench_stability::{Depth, Slowest, StabilityError};
 use servobench_trace::Recording;
 
-/// What the run of `scenario` that `recording` is of, and which ended early if it says so, is held to; `model` is an MJCF file around its rest.
+/// Requirements on `recording`, a run of `scenario` that may have ended early; `model` is an MJCF file around its rest.
 pub(crate) fn rules<'a>(
     scenario: &'a Scenario,
     recording: &Recording,
@@ -52,8 +52,8 @@ fn winding_limit(actuator: &Actuator) -> Option<f64> {
     effects.temperature?.network.map(|network| network.winding_limit)
 }
 
-/// What the analysis of the linear loop of `scenario` says, its poles, and what is not in it. Where it is stable, its boundaries are
-/// nobody's concern.
+/// Verdict of the analysis of the linear loop of `scenario`, its poles, and the parts not analysed. Where the loop is stable, its
+/// boundaries are not used.
 fn linear_loop(
     scenario: &Scenario,
     recording: &Recording,
@@ -64,7 +64,7 @@ fn linear_loop(
     analysed(scenario, speeds.as_ref(), model)
 }
 
-/// Why the linear loop of `scenario` is unstable, whatever it is moved by; `None` where it is stable, or no analysis tells. `model` is an MJCF
+/// Reason why the linear loop of `scenario` is unstable, whatever its moves; `None` where it is stable, or not analysed. `model` is an MJCF
 /// file around its rest.
 #[must_use]
 pub fn instability(scenario: &Scenario, model: Option<&MechanicsAtRest>) -> Option<String> {
@@ -88,7 +88,7 @@ fn analysed(
                 None => (LinearLoop::Stable, slowest.map(poles), listed(&without)),
             }
         }
-        // What grows beyond all numbers within a period is not stable, though its poles cannot be computed.
+        // A response that overflows within a period is unstable, though its poles cannot be computed.
         Ok(Analysis::NotPossible(NotAnalysed::Failed(error @ StabilityError::Overflow { .. }))) => {
             (LinearLoop::Unstable(error.to_string()), None, None)
         }
@@ -99,7 +99,7 @@ fn analysed(
     }
 }
 
-/// What is not analysed, in one line; `None` where all is.
+/// Parts that are not analysed, in one line; `None` where all are.
 fn listed(without: &[NotAnalysed]) -> Option<String> {
     let words: Vec<String> = without.iter().map(ToString::to_string).collect();
     (!words.is_empty()).then(|| words.join("; "))
@@ -143,7 +143,7 @@ fn of_encoder(scenario: &Scenario, length: impl Fn(&Encoder) -> f64) -> f64 {
     }
 }
 
-/// What the scenario orders to disturb the axis, as efforts of the motor.
+/// Disturbances that the scenario orders, as efforts of the motor.
 fn disturbances(scenario: &Scenario) -> Vec<Disturbance> {
     let all = scenario.disturbances.iter().map(|one| Disturbance {
         start: one.start,
@@ -157,7 +157,7 @@ fn disturbances(scenario: &Scenario) -> Vec<Disturbance> {
     all.collect()
 }
 
-/// Channels in which FMUs excite the axis, and what makes each an effort of the motor.
+/// Channels in which FMUs excite the axis, each with its factor to an effort of the motor.
 fn excited(scenario: &Scenario) -> Vec<(Signal, f64)> {
     let exciting = scenario.fmus.iter().filter(|fmu| fmu.excites).flat_map(servobench_scenario::Fmu::efforts);
     let scaled = exciting.map(|effort| {

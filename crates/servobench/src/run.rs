@@ -11,7 +11,7 @@ use servobench_trace::Recording;
 use std::collections::HashSet;
 use std::io;
 
-/// A run that came to its end.
+/// A completed run.
 #[derive(Debug)]
 pub struct Run {
     /// The signals that the scenario records, at `record.rate`, with events and moves.
@@ -22,16 +22,16 @@ pub struct Run {
     pub verdict: Verdict,
 }
 
-/// What a recording is judged by beside its scenario.
+/// Inputs beside the scenario that judge a recording.
 #[derive(Debug, Default)]
 pub struct Judging<'a> {
-    /// Why it ended early, if it did.
+    /// The early end, if there was one.
     pub ended: Option<EarlyEnd>,
     /// The MJCF file of the axis around its rest, where it has one.
     pub model: Option<&'a MechanicsAtRest>,
     /// Metrics that are measured; `None`: all.
     pub wanted: Option<&'a HashSet<Name>>,
-    /// True where the drive of the scenario did not control it: its linear loop is then not that of the run.
+    /// True where the drive of the scenario did not control the run: the scenario's linear loop is then not that of the run.
     pub is_controlled_from_outside: bool,
 }
 
@@ -52,7 +52,7 @@ impl Run {
         let recording = selected(recording, &scenario.record.channels);
         let is_wanted = |name| wanted.is_none_or(|wanted| wanted.contains(&name));
         let mut metrics = measure_only(&recording, &question(scenario), &is_wanted);
-        // What is measured does not depend on how much of it is kept.
+        // Measured values do not depend on how much of the recording is kept.
         let recording = thinned(recording, scenario.record.rate)?;
         let of_moves: Vec<&[Limit]> = limits_of_moves(scenario).collect();
         let limits = metrics.judge(&scenario.limits).and(metrics.judge_moves(&of_moves));
@@ -91,7 +91,7 @@ pub fn limits_of_moves(scenario: &Scenario) -> impl Iterator<Item = &[Limit]> {
     })
 }
 
-/// The early end by which a run is judged that has failed: its mechanics diverged, or its program gave up.
+/// The early end of a failed run that can be judged: its mechanics diverged, or its program gave up.
 ///
 /// # Errors
 /// The failure itself, where it leaves nothing to judge.
@@ -105,10 +105,10 @@ pub fn early_end(failure: Failure) -> Result<EarlyEnd, Failure> {
     }
 }
 
-/// Judges `recording`, a run that ended early if `failure` says so, by the requirements of `scenario`, and notes its incidents as events.
+/// Judges `recording`, a run that ended early if `failure` is given, by the requirements of `scenario`, and notes its incidents as events.
 ///
-/// That is the scenario by which an axis was designed and its tolerances follow. The machine that ran may be another one, as in the
-/// drill of healthy and sabotaged twins. Limits are not judged, and the loop of an MJCF file is not analysed.
+/// The scenario is the one by which an axis was designed, and sets its tolerances. The machine that ran may be another one, as in the drill
+/// of healthy and sabotaged twins. Limits are not judged, and the loop of an MJCF file is not analysed.
 ///
 /// # Errors
 /// A failure that leaves nothing to judge.

@@ -103,10 +103,10 @@ impl Scenario {
     }
 
     /// Checks that it can be built and that its limits can be measured, without running it. Returns warnings, each behind its place: moves
-    /// beyond what motor or inverter have, modes too fast for the engine, loops that are unstable.
+    /// beyond the capability of motor or inverter, modes too fast for the engine, unstable loops.
     ///
     /// # Errors
-    /// [`Error::Refused`] with everything that keeps it from being built; [`Error::EngineMissing`].
+    /// [`Error::Refused`] with every reason why it cannot be built; [`Error::EngineMissing`].
     pub fn check(&self) -> Result<Vec<String>, Error> {
         let engine = self.engine()?;
         let mut found = objections(&self.resolved, engine, &NoFmus)?;
@@ -116,7 +116,7 @@ impl Scenario {
         if found.is_empty() { Ok(warnings(&self.resolved, engine.name())) } else { Err(Error::Refused(found)) }
     }
 
-    /// What is known of it without a run: duration, torque and voltage against what there is, modes, margins of the loops, memory.
+    /// Properties known without a run: duration, torque and voltage against the available ones, modes, margins of the loops, memory.
     ///
     /// # Errors
     /// [`Error::Build`] of moves or bodies that cannot be planned.
@@ -128,14 +128,14 @@ impl Scenario {
     /// Runs it on its first engine, measures and judges it.
     ///
     /// # Errors
-    /// [`Error::Build`], [`Error::EngineMissing`], [`Error::Failed`] where nothing is left to judge. A run whose mechanics diverge, or whose
-    /// program gives up, is a run that did not pass.
+    /// [`Error::Build`], [`Error::EngineMissing`], [`Error::Failed`] where nothing is left to judge. A run whose mechanics diverge, or
+    /// whose program gives up, is returned as not passed.
     pub fn run(&self) -> Result<Run, Error> {
         self.run_on(self.engine()?)
     }
 
-    /// The same on an engine of the caller's. `mujoco` ends the process when its library meets an error: the program `servobench` runs it in a
-    /// process of its own.
+    /// The same on an engine supplied by the caller. `mujoco` ends the process when its library meets an error: the program `servobench`
+    /// runs it in a separate process.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -147,7 +147,7 @@ impl Scenario {
         Run::judged(&self.resolved, outcome.recording, judging).map_err(Error::NotKept)
     }
 
-    /// The linear loop of the drive around standstill: its poles, and how far its gains are from instability.
+    /// The linear loop of the drive around standstill: its poles, and the distance of its gains from instability.
     ///
     /// # Errors
     /// [`Error::Build`] where it cannot be built.

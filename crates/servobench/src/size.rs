@@ -1,4 +1,4 @@
-//! How much memory the recording of a run takes.
+//! Memory of the recording of a run.
 use servobench_scenario::Scenario;
 use servobench_sim::{Program, RECORDING_LIMIT, most_channels, run_length};
 use servobench_trace::IN_MEMORY;
@@ -22,7 +22,7 @@ pub fn memory(scenario: &Scenario) -> u64 {
     };
     let channels = channels(scenario);
     let rows = |hertz: u32| duration * f64::from(hertz) + 1.0;
-    // What is more is in a file.
+    // Rows beyond these are in a file.
     let bytes = |hertz: u32| rows(hertz).min(IN_MEMORY as f64) * channels as f64 * VALUE;
     let (every, kept) = (bytes(base_rate.hertz()), bytes(record.rate.hertz()));
     let bytes = if is_too_much(rows(base_rate.hertz()), channels) {
@@ -30,7 +30,7 @@ pub fn memory(scenario: &Scenario) -> u64 {
     } else if record.rate == *base_rate {
         every
     } else {
-        // Every tick until it is measured, beside what is kept of it.
+        // Every tick until it is measured, beside the kept rows.
         every + kept
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: more than there is")]
@@ -43,13 +43,13 @@ fn length(scenario: &Scenario) -> Option<f64> {
     scenario.duration.or_else(|| Some(run_length(scenario, &Program::new(scenario).ok()?)))
 }
 
-/// Channels that it records, at most.
+/// Largest number of channels that it records.
 fn channels(scenario: &Scenario) -> usize {
     let named = scenario.record.channels.len();
     if named == 0 { most_channels(scenario) } else { named }
 }
 
-/// True where so many rows of `channels` are not kept.
+/// True where that many rows of `channels` are not kept.
 fn is_too_much(rows: f64, channels: usize) -> bool {
     rows * channels as f64 * VALUE > RECORDING_LIMIT * 1e9
 }

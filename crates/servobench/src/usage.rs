@@ -1,4 +1,4 @@
-//! How much of its limits a run used, and the mode in which its load swings: what an advice is made of.
+//! Share of its limits that a run used, and the mode in which its load swings: the basis of an advice.
 use crate::run::Run;
 use servobench_metrics::{Limit, Name};
 use servobench_motion::Limits;
@@ -7,25 +7,25 @@ use servobench_plant::Link;
 use servobench_scenario::{AxisMechanics, Scenario, Step};
 use std::f64::consts::TAU;
 
-/// How much of its limits a run used.
+/// Share of its limits that a run used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Usage {
     /// Longest move with settling (s), without a settling window longest move; not a number where the load does not settle.
     pub time: f64,
-    /// Of each largest allowed value the share that is used; not a number where it could not be measured.
+    /// Used share of each largest allowed value; not a number where it could not be measured.
     pub shares: Vec<f64>,
-    /// Whether nothing else failed: every requirement is met, every smallest value reached.
+    /// True if nothing else failed: every requirement is met, every smallest value reached.
     pub is_sound: bool,
 }
 
 impl Run {
-    /// How much this run used of `limits`, which it was judged by; `has_window`: settling counts.
+    /// Share that this run used of `limits`, which it was judged by; with `has_window`, settling counts.
     #[must_use]
     pub fn usage(&self, limits: &[Limit], has_window: bool) -> Usage {
         let value = |name| self.metrics.run.value(name).unwrap_or(f64::NAN);
         let share = |limit: &Limit| {
             let size = value(limit.metric).abs();
-            // Nothing of nothing is all that is allowed.
+            // A zero value of a zero limit uses no share.
             limit.max.map(|max| if size == 0.0 { 0.0 } else { size / max })
         };
         let is_of_a_share = |limit: &Limit, in_move: Option<usize>| in_move.is_none() && limit.max.is_some();
@@ -38,13 +38,13 @@ impl Run {
     }
 }
 
-/// The mode in which the load of an axis swings on the spring that is nearest to it, what drives it held.
+/// The mode in which the load of an axis swings on the nearest spring, with the drive side held.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadMode {
     /// The table of the scenario that has the spring: `axis.load`, or `axis.table` where the load is bolted to the table.
     pub table: &'static str,
-    /// Whether the body of that table swings alone. Where another one is bolted to it, `frequency` and `damping_ratio` of the table, which are
-    /// those of its own mass, are not those of the mode.
+    /// True if the body of that table swings alone. Otherwise another body is bolted to it, and `frequency` and `damping_ratio` of the
+    /// table, which hold for its own mass, are not those of the mode.
     pub is_alone: bool,
     /// The spring (N/m or N·m/rad) and its damping (N·s/m or N·m·s/rad).
     pub link: Link,
@@ -63,7 +63,7 @@ pub fn load_mode(scenario: &Scenario) -> Option<LoadMode> {
         let keys = ["stiffness", "frequency"].map(|key| format!("{table}.{key}"));
         scenario.parameters.iter().any(|one| keys.contains(&one.key))
     };
-    // From the load inwards: what is bolted on has no spring.
+    // From the load inwards: a bolted body has no spring.
     let (table, name) = [("axis.load", "load"), ("axis.table", "table")].into_iter().find(|one| has_spring(one.0))?;
     let frequency = (link.stiffness / body.inertia).sqrt() / TAU;
     let damping_ratio = 0.5 * link.damping / (link.stiffness * body.inertia).sqrt();

@@ -10,7 +10,7 @@ use servobench_trace::Move;
 /// Milliseconds that are rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Limits of `scenario` that no run of it can keep, because what they are on cannot be measured.
+/// Limits of `scenario` that no run of it can keep, because their metrics cannot be measured.
 pub(super) fn objections(scenario: &Scenario) -> Vec<Objection> {
     let Ok(planned) = Program::new(scenario) else { return Vec::new() };
     let question = question(scenario);
@@ -38,7 +38,7 @@ struct Planned<'a> {
 }
 
 impl Planned<'_> {
-    /// What `limit` asks of the last rest, or of that which `measure.from` begins.
+    /// Objection where the last rest, or the one that `measure.from` begins, is too short for `limit`.
     fn too_short(&self, limit: &Limit) -> Option<Objection> {
         let name = limit.metric;
         let from = self.question.from.filter(|_| name.scope() == Scope::AfterMove);
@@ -53,7 +53,7 @@ impl Planned<'_> {
         Some(self.objection(key, limit, next.unwrap_or(self.length) - begins, help))
     }
 
-    /// What `limit` of the move with the number `made`, step `index` of the program, asks of the rest after it.
+    /// Objection where the rest after move number `made`, step `index` of the program, is too short for its `limit`.
     fn too_short_after(&self, made: usize, index: usize, limit: &Limit) -> Option<Objection> {
         let (end, next) = (self.moves[made].end, self.moves.get(made + 1).map(|next| next.start));
         let rest = next.unwrap_or(self.length) - end;
@@ -65,7 +65,7 @@ impl Planned<'_> {
         Some(self.objection(format!("program.{index}.limits.{}", limit.metric), limit, rest, help))
     }
 
-    /// How long a rest must be for `limit` (s), where `rest` (s) is shorter.
+    /// Duration of rest that `limit` needs (s); `None` where `rest` (s) is long enough.
     fn lacking(&self, limit: &Limit, rest: f64) -> Option<f64> {
         let rate = self.scenario.base_rate;
         let needed = self.question.basis(rate);
@@ -86,7 +86,7 @@ impl Planned<'_> {
     }
 }
 
-/// Limits on what is made of rows that are too far apart.
+/// Limits on metrics whose rows are too far apart.
 fn too_few_rows(scenario: &Scenario, question: &Question) -> Vec<Objection> {
     let (rate, needed) = (scenario.record.rate.hertz(), question.coarsest_rate());
     if !is_thinned(scenario) || f64::from(rate) >= needed {

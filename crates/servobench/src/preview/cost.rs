@@ -1,16 +1,16 @@
-//! What a run takes: memory and time.
+//! Memory and time of a run.
 use crate::size::memory;
 use servobench_plant::EngineName;
 use servobench_scenario::{AxisMechanics, Scenario};
 
-/// What a run takes.
+/// Memory and time of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cost {
     /// Base ticks.
     pub ticks: f64,
-    /// Memory that the recording takes, at most (bytes).
+    /// Largest memory of the recording (bytes).
     pub memory: f64,
-    /// About how long it takes on each engine (s); nothing of one with FMUs, which take what they take.
+    /// Approximate duration on each engine (s); none with FMUs, whose cost is unknown.
     pub seconds: Vec<(EngineName, f64)>,
 }
 

@@ -1,11 +1,11 @@
-//! Error of the coupling with FMUs as the slowest mode of the axis lets it be expected.
+//! Expected error of the coupling with FMUs, from the slowest mode of the axis.
 use super::{Doubt, Modes};
 use servobench_metrics::{COUPLING_ERROR_WARNED, Quantity};
 use servobench_scenario::{Fmu, InputSource, Scenario};
 use std::f64::consts::TAU;
 
-/// A doubt where an FMU pushes an axis that it follows, and the exchange is too coarse for the slowest mode with the motor held. Modes of the
-/// FMU itself, and how much of a faster mode there is, only a run can tell: it has the metric `coupling_error`.
+/// A doubt where an FMU pushes an axis that it follows, and the exchange is too coarse for the slowest mode with the motor held. Modes of
+/// the FMU itself, and the share of a faster mode, appear only in a run, in the metric `coupling_error`.
 pub(super) fn doubt(scenario: &Scenario, modes: Option<&Modes>) -> Option<Doubt> {
     let omega = modes?.held.first()?.omega;
     let coupled = scenario.fmus.iter().filter(|fmu| fmu.efforts().next().is_some() && follows_the_axis(fmu));
@@ -21,7 +21,7 @@ pub(super) fn doubt(scenario: &Scenario, modes: Option<&Modes>) -> Option<Doubt>
     })
 }
 
-/// True where it takes how the axis moves.
+/// True where an input of the FMU is the motion of the axis.
 fn follows_the_axis(fmu: &Fmu) -> bool {
     fmu.inputs.iter().any(|(_, source)| !matches!(source, InputSource::Time | InputSource::Fmu { .. }))
 }

@@ -1,12 +1,12 @@
-//! What the set-point asks of motor and inverter, and what there is.
+//! Demand of the set-point on motor and inverter, and the available effort and voltage.
 //!
 //! ```text
 //! i_q = τ/(1.5·p·(ψ + (L_d − L_q)·i_d))        i_d = `drive.current.d_reference`, or as the drive's strategy has it
 //! u_d = R·i_d − ω_e·L_q·i_q                    u_q = R·i_q + ω_e·(L_d·i_d + ψ)
 //! |u| ≤ U_dc/√3                                at constant current: L·di/dt is left out
 //! ```
-//! Source: Pillay, Krishnan, *IEEE Trans. Industry Applications* 25(2), 1989. The set-point is sampled at the base rate, of a long
-//! program in [`MOST_SAMPLES`] places.
+//! Source: Pillay, Krishnan, *IEEE Trans. Industry Applications* 25(2), 1989. The set-point is sampled at the base rate, a long program at
+//! [`MOST_SAMPLES`] instants.
 use super::resistance::Resistance;
 use super::{Doubt, Units};
 use servobench_drive::Params;
@@ -17,18 +17,18 @@ use servobench_plant::{Chain, inverter, pmsm};
 use servobench_scenario::{Actuator, Scenario, Step};
 use servobench_sim::{BuildError, Program};
 
-/// Places in which a program is sampled at most.
+/// Instants at which a program is sampled at most.
 const MOST_SAMPLES: f64 = 1e6;
-/// Electrical angle per period of the current loop (rad) above which its dead time and its decoupling no longer hold: what it
-/// computes for one angle goes out a period and a half later, three quarters of a radian at this one.
+/// Electrical angle per period of the current loop (rad) above which its dead time and its decoupling no longer hold: the voltage computed
+/// for one angle is applied a period and a half later, at this bound three quarters of a radian on.
 const MOST_ANGLE: f64 = std::f64::consts::PI / 6.0;
-/// A demand that is what there is may exceed it by rounding.
+/// A demand equal to the available value may exceed it by rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What the set-point asks for.
+/// Demand of the set-point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Demand {
-    /// Torque or force of the motor; `None` without a drive, or where nobody here knows what the axis sets against it.
+    /// Torque or force of the motor; `None` without a drive, or where the resistance of the axis is unknown here.
     pub effort: Option<EffortDemand>,
     /// Voltage of the inverter; `None` without one.
     pub voltage: Option<VoltageDemand>,
@@ -45,32 +45,32 @@ pub struct Demand {
 pub struct EffortDemand {
     /// Largest.
     pub peak: f64,
-    /// When (s).
+    /// Time of the peak (s).
     pub at: f64,
     /// Root mean square over the run.
     pub rms: f64,
-    /// What drive and motor give at most.
+    /// Largest effort of drive and motor.
     pub available: f64,
-    /// Whether it is reckoned with what the drive believes of the axis, since nobody here knows the axis itself.
+    /// True if computed from the drive's estimate of the axis, because the axis itself is unknown here.
     pub is_believed: bool,
 }
 
-/// Voltage of the inverter (V, peak) and what goes with speed.
+/// Voltage of the inverter (V, peak) and the other quantities that grow with speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoltageDemand {
     /// Largest |u|.
     pub peak: f64,
-    /// When (s).
+    /// Time of the peak (s).
     pub at: f64,
     /// Back-EMF at the largest speed.
     pub back_emf: f64,
-    /// Largest that the DC link gives.
+    /// Largest voltage of the DC link.
     pub available: f64,
     /// Largest electrical angle per period of the current loop (rad).
     pub angle_per_period: f64,
 }
 
-/// The largest of what comes by, and when.
+/// The largest value of a sequence, and its time.
 #[derive(Debug, Clone, Copy, Default)]
 struct Largest {
     value: f64,
@@ -86,13 +86,13 @@ impl Largest {
 }
 
 impl Demand {
-    /// Of a run of `length` (s).
+    /// Demand in a run of `length` (s).
     ///
     /// # Errors
     /// [`BuildError`] of a program that cannot be planned.
     pub(super) fn of(scenario: &Scenario, chain: Option<&Chain>, length: f64) -> Result<Self, BuildError> {
         let units = Units::of(scenario);
-        // What function blocks make of their program only a run can tell.
+        // The motion that function blocks make of their program is known only in a run.
         let is_planned = scenario.plc.is_none();
         let resistance = resistance(scenario, chain).filter(|_| is_planned);
         let motor = match &scenario.actuator {
@@ -100,7 +100,7 @@ impl Demand {
             _ => None,
         };
         let (mut effort, mut voltage, mut speed, mut squares) = (Largest::default(), Largest::default(), 0.0_f64, 0.0);
-        // What is interpolated comes later and is less smooth; what was planned is what was asked for.
+        // An interpolated set-point comes later and is less smooth; the demand is that of the planned one.
         let planned = Scenario { interpolation: None, ..scenario.clone() };
         let mut program = Program::new(&planned)?;
         let base_rate = f64::from(scenario.base_rate.hertz());
@@ -186,10 +186,10 @@ impl Demand {
     }
 }
 
-/// What the axis sets against its motion; `None` where nobody here knows.
+/// Resistance of the axis to its motion; `None` where it is unknown here.
 fn resistance(scenario: &Scenario, chain: Option<&Chain>) -> Option<Resistance> {
     let drive = scenario.actuator.drive()?;
-    // An FMU pushes as it likes.
+    // The efforts of an FMU are unknown.
     if !scenario.fmus.is_empty() {
         return None;
     }
@@ -199,7 +199,7 @@ fn resistance(scenario: &Scenario, chain: Option<&Chain>) -> Option<Resistance> 
     }
 }
 
-/// The d-axis current that the drive asks for (A, peak).
+/// The d-axis current that the drive requests (A, peak).
 fn d_current(drive: &Params) -> f64 {
     drive.current_loop().map_or(0.0, |(current, _)| current.d_reference)
 }
@@ -209,7 +209,7 @@ fn current_rate(drive: &Params) -> f64 {
     drive.current_loop().map_or(f64::INFINITY, |(_, rate)| rate.hertz().into())
 }
 
-/// What drive and motor give at most.
+/// Largest effort of drive and motor.
 fn available(actuator: &Actuator) -> f64 {
     let motor = match actuator {
         Actuator::Prescribed | Actuator::Off(_) => f64::INFINITY,
@@ -230,8 +230,7 @@ const fn with_the_motor(motor: &pmsm::Params, current: &current::Params) -> curr
     current::Params { motor: MotorEstimate { electrical_ratio, resistance, inductance, flux_linkage }, ..*current }
 }
 
-/// |u| for `torque` at `speed`, both in the motor's coordinate, with the currents that `drive` chooses. What is beyond its envelope
-/// is asked for all the same.
+/// |u| for `torque` at `speed`, both in the motor's coordinate, with the currents that `drive` chooses, even beyond its envelope.
 fn voltage_for(motor: &pmsm::Params, drive: &Params, torque: f64, speed: f64) -> f64 {
     let omega_e = motor.electrical_ratio * speed;
     let mut i_d = d_current(drive);
@@ -246,7 +245,7 @@ fn voltage_for(motor: &pmsm::Params, drive: &Params, torque: f64, speed: f64) ->
     u_d.hypot(u_q)
 }
 
-/// Key of the step that runs at `t` (s), or of what sets limits for all of them.
+/// Key of the step that runs at `t` (s), or of the limits that all steps share.
 fn key_at(scenario: &Scenario, t: f64) -> String {
     let Ok(program) = Program::new(scenario) else { return "setpoint".into() };
     let moves = scenario.program.iter().enumerate().filter(|(_, step)| matches!(step, Step::Move(_)));

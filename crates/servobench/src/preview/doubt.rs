@@ -1,15 +1,15 @@
-//! Something doubtful in a scenario that runs nevertheless.
+//! A doubtful setting of a scenario that runs nevertheless.
 
-/// Something doubtful, and what to do about it.
+/// A doubtful setting, and its remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Doubt {
     /// Key of the scenario that is to blame: `limits.move_time`, `program.0`.
     pub key: String,
     /// Line, from 1, of the MJCF file that is to blame; without one it is the key itself.
     pub line: Option<u32>,
-    /// What is doubtful.
+    /// The doubt, in words.
     pub message: String,
-    /// What to do about it.
+    /// Remedy.
     pub help: String,
 }
 

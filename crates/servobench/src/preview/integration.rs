@@ -5,31 +5,31 @@ use servobench_plant::{Distortion, EngineName, Integrator, Mode};
 use servobench_scenario::Scenario;
 use std::f64::consts::TAU;
 
-/// Frequency may be wrong by this share.
+/// Largest permitted relative error of the frequency.
 const MOST_SHIFT: f64 = 0.01;
-/// A mode may be ahead, or behind, by this share of a period at the end of its ringing.
+/// Largest permitted lead or lag of a mode at the end of its ringing, as a share of a period.
 const MOST_PHASE: f64 = 0.01;
-/// A mode rings until this share of its amplitude is left; after that nobody sees its phase. Every move begins it anew.
+/// A mode rings until this share of its amplitude is left; after that its phase is not visible. Every move excites it anew.
 const RUNG_OUT: f64 = 0.01;
 /// The engine's own damping may be this share of that of the mode …
 const MOST_OF_DAMPING: f64 = 0.1;
-/// … or take this share of the amplitude over the run, which nobody sees.
+/// … or take this share of the amplitude over the run, which is not visible.
 const MOST_LOST: f64 = 0.01;
 
-/// How an engine integrates the fastest mode of a chain.
+/// Integration of the fastest mode of a chain by an engine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EngineSteps {
     /// The engine.
     pub engine: EngineName,
     /// The mode.
     pub mode: Mode,
-    /// How the engine goes from tick to tick.
+    /// Integrator of the engine.
     pub integrator: Integrator,
-    /// Base ticks per period of it.
+    /// Base ticks per period of the mode.
     pub steps: f64,
-    /// What becomes of it; `None` when the engine does not keep it within bounds, which [`check`](crate::check) says.
+    /// Distortion of the mode; `None` when the engine does not keep it within bounds, which [`check`](crate::check) reports.
     pub distortion: Option<Distortion>,
-    /// The mode whose phase goes wrong furthest before it has rung out.
+    /// The mode whose phase error is largest before it has rung out.
     lag: Option<Phase>,
 }
 
@@ -38,7 +38,7 @@ pub struct EngineSteps {
 struct Phase {
     /// Frequency of the mode (rad/s).
     omega: f64,
-    /// Base ticks to a period.
+    /// Base ticks per period.
     steps: f64,
     /// Share by which it rings too fast.
     shift: f64,
@@ -47,7 +47,7 @@ struct Phase {
 }
 
 impl Phase {
-    /// Of `mode` in ticks of `h` (s), in a run of `length` (s); `None` where the engine does not keep it within bounds.
+    /// The phase of `mode` in ticks of `h` (s), in a run of `length` (s); `None` where the engine does not keep it within bounds.
     fn of(mode: Mode, integrator: Integrator, h: f64, length: f64) -> Option<Self> {
         let Mode { omega, damping } = mode;
         let Distortion { damping: added, shift } = integrator.distortion(omega, h)?;
@@ -62,8 +62,8 @@ impl Phase {
 }
 
 impl EngineSteps {
-    /// Of those `engines` that integrate it, in a run of `length` (s); none on a rigid axis, and where a file of the user's or an FMU knows
-    /// the modes.
+    /// Steps of those `engines` that integrate the modes, in a run of `length` (s); none on a rigid axis, and where only a user's file or
+    /// an FMU defines the modes.
     pub(super) fn of(scenario: &Scenario, modes: Option<&Modes>, engines: &[EngineName], length: f64) -> Vec<Self> {
         let h = scenario.base_rate.period();
         let Some((modes, mode)) = modes.and_then(|modes| Some((modes, modes.fastest()?))) else { return Vec::new() };
@@ -78,7 +78,7 @@ impl EngineSteps {
         engines.iter().filter_map(of).collect()
     }
 
-    /// What is wrong with it in a run of `length` (s).
+    /// Doubt about the distortion in a run of `length` (s).
     pub(super) fn doubt(&self, length: f64) -> Option<Doubt> {
         let (Mode { omega, damping }, Distortion { damping: added, shift }) = (self.mode, self.distortion?);
         let lost = 1.0 - (-added * omega * length).exp();

@@ -1,4 +1,4 @@
-//! What a user's own MJCF file asks of an engine that does it in a way nobody expects.
+//! Features of a user's own MJCF file that an engine treats unexpectedly.
 use super::Doubt;
 use servobench_plant::EngineName;
 use servobench_scenario::{AxisMechanics, Scenario};
@@ -6,7 +6,7 @@ use servobench_scenario::{AxisMechanics, Scenario};
 /// Dry friction of a joint.
 const FRICTION: &str = "frictionloss";
 
-/// Of the file of `scenario` on `engines`.
+/// Doubts about the file of `scenario` on `engines`.
 pub(super) fn doubts(scenario: &Scenario, engines: &[EngineName]) -> Vec<Doubt> {
     let AxisMechanics::Mjcf(mjcf) = &scenario.axis.mechanics else { return Vec::new() };
     let creeping = engines.iter().filter(|engine| engine.capabilities().creeps);
@@ -25,7 +25,7 @@ fn creeps(engine: EngineName, xml: &str) -> impl Iterator<Item = Doubt> {
     })
 }
 
-/// Lines, from 1, on which an attribute has a value above zero, comments apart.
+/// Lines, from 1, on which an attribute has a value above zero, without comments.
 fn lines_with<'a>(xml: &'a str, attribute: &'a str) -> impl Iterator<Item = u32> + 'a {
     let is_there = move |line: &str| {
         line.match_indices(attribute).any(|(at, _)| {

@@ -1,4 +1,4 @@
-//! How fast the loops are, and what comes late.
+//! Bandwidths of the loops, and delays.
 use servobench_base::Dq;
 use servobench_drive::current::Tuning;
 use servobench_scenario::{BusMode, Scenario};
@@ -9,18 +9,18 @@ use servobench_sim::replaces_the_drive;
 pub struct LoopBandwidth {
     /// `current`, `velocity`, `position`, or `master's position`.
     pub name: &'static str,
-    /// Bandwidth that its gain makes of what the drive believes (rad/s); `None` where it believes nothing.
+    /// Bandwidth from its gain and the drive's estimates (rad/s); `None` without an estimate.
     pub bandwidth: Option<f64>,
     /// Rate of its task (Hz).
     pub rate: f64,
 }
 
-/// Something that comes late.
+/// A delay between set-point and voltage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Delay {
-    /// What.
+    /// Name of its cause.
     pub name: &'static str,
-    /// By how much (s).
+    /// Length (s).
     pub length: f64,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn loops(scenario: &Scenario) -> Vec<LoopBandwidth> {
     loops
 }
 
-/// What comes late in `scenario`, from the set-point to the voltage.
+/// Delays in `scenario`, from the set-point to the voltage.
 pub(super) fn delays(scenario: &Scenario) -> Vec<Delay> {
     let mut delays = Vec::new();
     let mut note = |name, length: f64| {
@@ -67,12 +67,12 @@ pub(super) fn delays(scenario: &Scenario) -> Vec<Delay> {
     }
     let drive = scenario.actuator.drive().filter(|_| !replaces_the_drive(scenario));
     let Some(drive) = drive.map(|drive| &drive.params) else { return delays };
-    // Half a period on average until a task takes up what is new.
+    // Half a period on average until a task reads a new value.
     note("position task", drive.position_rate().period() / 2.0);
     note("velocity task", drive.velocity_rate().period() / 2.0);
     note("velocity filter", drive.velocity_filter_time);
     if let Some((_, rate)) = drive.current_loop() {
-        // A period for the computation, half of one until the middle of the voltage.
+        // A period for the computation, half a period until the middle of the voltage pulse.
         note("current loop", 1.5 * rate.period());
     }
     delays

@@ -6,9 +6,9 @@ use servobench_sim::Program;
 use servobench_sim::run_length;
 use servobench_trace::Move;
 
-/// Durations that are no shorter than the planned one.
+/// Metrics that are at least the planned duration.
 const NO_SHORTER: [Name; 2] = [Name::MoveTime, Name::MoveAndSettlingTime];
-/// A limit that is the planned duration may differ from it by rounding.
+/// A limit equal to the planned duration may differ from it by rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The moves as they are planned.
@@ -16,19 +16,19 @@ const ROUNDING: f64 = 1e-9;
 pub struct PlannedProgram {
     /// Moves, each with its peaks.
     pub moves: Vec<Move>,
-    /// What the position of any move that is sent as velocity commands or as points will differ at most (axis unit); `None` without one.
+    /// Largest position error of the moves that are sent as velocity commands or as points (axis unit); `None` without such a move.
     pub position_error: Option<f64>,
-    /// Whether these are points.
+    /// True if such moves are sent as points.
     pub by_points: bool,
     /// End of the last step (s).
     pub end: f64,
     /// Length of the run (s).
     pub run: f64,
-    /// Whether function blocks command the axis: what they make of it only a run can tell.
+    /// True if function blocks command the axis: the motion they make is known only in a run.
     pub by_blocks: bool,
     /// Unit of the axis.
     pub axis_unit: &'static str,
-    /// Units in which it is told.
+    /// Units for display.
     pub units: DisplayUnits,
 }
 
@@ -115,7 +115,7 @@ impl PlannedProgram {
 }
 
 impl PlannedProgram {
-    /// A profile that the drive does not make, since it is told targets and has its own ramps.
+    /// A profile that the drive does not follow, because it receives targets and has its own ramps.
     fn profile_doubt(&self, scenario: &Scenario) -> Option<Doubt> {
         let is_told = scenario.bus.as_ref().is_some_and(|bus| bus.mode == BusMode::ProfilePosition);
         (is_told && self.moves.iter().any(|made| made.peaks[2].is_finite())).then(|| {
@@ -128,7 +128,7 @@ impl PlannedProgram {
         })
     }
 
-    /// A window in which the load of the smallest move is before it moves.
+    /// A window that already contains the load before the smallest move begins.
     fn window_doubt(&self, scenario: &Scenario) -> Option<Doubt> {
         let window = scenario.measure.window?;
         let distance = |made: &Move| (made.to - made.from).abs();
@@ -156,7 +156,7 @@ fn length(made: &Move) -> f64 {
     made.end - made.start
 }
 
-/// What of `limit` a move that lasts `planned` (s) cannot keep.
+/// Doubt where a move that lasts `planned` (s) cannot keep `limit`.
 fn missed(limit: &Limit, planned: f64, it: &str, key: impl Fn(&str) -> String) -> Option<Doubt> {
     let name = limit.metric;
     let show = |seconds: f64, beside: f64| {
@@ -205,7 +205,7 @@ mod tests {
         found.into_iter().map(|Doubt { key, message, .. }| (key, message)).collect()
     }
 
-    /// A drive that is told targets makes trapezoids of velocity, whatever the jerk of the program.
+    /// A drive that receives targets makes trapezoids of velocity, whatever the jerk of the program.
     #[test]
     fn the_profile_of_a_program_in_profile_position_is_not_the_drives() {
         let text = |mode: &str, order: &str| {

@@ -1,12 +1,12 @@
-//! What the axis sets against a motion that it follows exactly.
+//! Resistance of the axis to a motion that it follows exactly.
 //!
 //! ```text
 //! τ = r·Σ (m_i·a + b_i·v)/r_i² + r·Σ (f_i(v) + f0_i)/r_i − τ_d − r·f_d       rigid, r = r_0
 //!   + r·(m1·m2/c·s + (m1·k2 + m2·k1)/c·j + k1·k2/c·a)                       where the drive makes the load follow
 //! ```
-//! τ is in the motor's coordinate, τ_d and f_d disturb motor and load. The second line is what a spring between two bodies adds
-//! (Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005), m1 and k1 in the axis coordinate. An axis at rest
-//! is held by its friction as far as that goes.
+//! τ is in the motor's coordinate, τ_d and f_d disturb motor and load. The second line is the contribution of a spring between two bodies
+//! (Lambrechts, Boerlage, Steinbuch, *Control Engineering Practice* 13, 2005), m1 and k1 in the axis coordinate. An axis at rest is held by
+//! its friction up to the friction's limit.
 use servobench_base::Setpoint;
 use servobench_drive::Estimate;
 use servobench_drive::feedforward::Model;
@@ -14,7 +14,7 @@ use servobench_plant::{Body, Chain, Friction};
 use servobench_scenario::{Actuator, Disturbance, DisturbedBody, Scenario};
 use std::f64::consts::TAU;
 
-/// What the axis sets against its motion.
+/// Resistance of the axis to its motion.
 #[derive(Debug, Clone)]
 pub(super) struct Resistance {
     /// Motor effort per acceleration, velocity, and per jerk and snap, of the axis.
@@ -24,7 +24,7 @@ pub(super) struct Resistance {
     snap: f64,
     /// Constant effort.
     bias: f64,
-    /// Friction of each body, its own coordinate per axis coordinate, and motor effort per effort of its own.
+    /// Friction of each body, body coordinate per axis coordinate, and motor effort per effort of the body.
     friction: Vec<(Friction, f64, f64)>,
     disturbances: Vec<Disturbance>,
     /// Axis coordinate per motor coordinate.
@@ -32,7 +32,7 @@ pub(super) struct Resistance {
 }
 
 impl Resistance {
-    /// Of the bodies as they are.
+    /// Resistance of the actual bodies.
     pub(super) fn of_chain(scenario: &Scenario, chain: &Chain) -> Self {
         let r = chain.bodies()[0].transmission;
         let sum = |value: fn(&Body) -> f64| chain.bodies().iter().map(value).sum::<f64>();
@@ -61,7 +61,7 @@ impl Resistance {
         all
     }
 
-    /// Of what the drive believes, where nobody here knows the bodies; `None` when it knows no inertia.
+    /// Resistance by the drive's estimate, where the bodies are unknown here; `None` without an estimated inertia.
     pub(super) fn believed(scenario: &Scenario, estimate: &Estimate) -> Option<Self> {
         let (r, inertia) = (scenario.axis.transmission, estimate.motor_inertia + estimate.load_inertia);
         (inertia > 0.0).then(|| Self {
@@ -76,7 +76,7 @@ impl Resistance {
         })
     }
 
-    /// Motor effort (N·m or N) that the axis needs at `t` (s) to move as `now` says.
+    /// Motor effort (N·m or N) that the axis needs at `t` (s) for the motion `now`.
     pub(super) fn effort(&self, t: f64, now: Setpoint) -> f64 {
         let disturbed: f64 = self.disturbances.iter().map(|one| self.disturbing(one, t)).sum();
         let moving = self.inertia * now.a + self.viscous * now.v + self.jerk * now.j + self.snap * now.s;

@@ -43,7 +43,7 @@ impl Preview {
         screen.text
     }
 
-    /// The most important of it in a line.
+    /// The most important values in one line.
     #[must_use]
     pub fn line(&self) -> String {
         let mut parts = vec![self.program_words()];
@@ -180,7 +180,7 @@ impl Screen {
     }
 }
 
-/// How much of `available` is left, in words.
+/// Share of `available` that is left, in words.
 fn left(peak: f64, available: f64) -> String {
     let percent = 100.0 * (1.0 - peak / available);
     if percent < 0.0 { format!("{:.0} % above it", -percent) } else { format!("{percent:.0} % left") }

@@ -1,4 +1,4 @@
-//! What the axis is: inertia on both sides of its first spring, and its modes.
+//! Inertia of the axis on both sides of its first spring, and its modes.
 use servobench_plant::{Chain, Mode};
 use servobench_scenario::{Actuator, Scenario};
 
@@ -7,9 +7,9 @@ use servobench_scenario::{Actuator, Scenario};
 pub struct Inertias {
     /// The motor with all that is rigid with it.
     pub motor: f64,
-    /// What is behind its first spring; 0 on a rigid axis.
+    /// Inertia behind the first spring; 0 on a rigid axis.
     pub load: f64,
-    /// Whether the motor turns.
+    /// True if the motor is rotary.
     pub turns: bool,
 }
 

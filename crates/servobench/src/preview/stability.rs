@@ -1,4 +1,4 @@
-//! Whether the loops are stable, and how far from their boundaries.
+//! Stability of the loops, and their distance from their boundaries.
 use super::Doubt;
 use servobench_drive::{self as drive, current, velocity};
 use servobench_metrics::Quantity;
@@ -6,7 +6,7 @@ use servobench_scenario::{Scenario, parameter_key};
 use servobench_sim::{Analysis, BuildError, MasterLoop, MechanicsAtRest, Speeds, analyse_stability};
 use servobench_stability::{Boundaries, Depth, GainName, Instability, LEFT_OUT, LoopReport};
 
-/// What the analysis of the linear loop says of a scenario.
+/// Result of the analysis of the linear loop of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopStability {
     analysis: Analysis,
@@ -21,7 +21,7 @@ impl LoopStability {
         Ok(Self { analysis: analyse_stability(scenario, depth, speeds.as_ref(), model)?, is_scheduled })
     }
 
-    /// How far each loop is from a boundary; or why that is not known.
+    /// Distance of each loop from its boundaries, or the reason why it is unknown.
     pub(super) fn words(&self) -> Vec<String> {
         let (report, master, without) = match &self.analysis {
             Analysis::Done { report, master, without } => (report, master, without),
@@ -73,7 +73,7 @@ fn key_of_gain(gain: GainName) -> &'static str {
     }
 }
 
-/// The gain of the position loop in the master, and how far it is from its bound.
+/// The gain of the position loop in the master, and its distance from its bound.
 fn of_master(master: &MasterLoop) -> Option<String> {
     let largest = master.largest?;
     let factor = Quantity::new(largest / master.gain, "");
@@ -81,7 +81,7 @@ fn of_master(master: &MasterLoop) -> Option<String> {
     Some(format!("master's position gain {gain} to {factor} × ({largest})"))
 }
 
-/// By how much the gain of a loop may change until the verdict on the whole loop does.
+/// Change of a loop's gain that changes the verdict on the whole loop.
 fn margins(one: &LoopReport) -> Option<String> {
     let Boundaries { below, above, .. } = one.boundaries?;
     let times = |factor: f64| format!("{} ×", Quantity::new(factor, ""));

@@ -65,7 +65,7 @@ fn step(block: BlockName, inputs: &Inputs) -> Option<Step> {
     Some(step)
 }
 
-/// The largest step of the acceleration where velocities go in straight lines from pair to pair.
+/// The largest step of the acceleration where velocities are linear from pair to pair.
 fn step_of_velocities(pairs: impl Iterator<Item = Pair>) -> f64 {
     let (mut velocity, mut slope, mut largest) = (0.0, 0.0_f64, 0.0_f64);
     for Pair { delta_time: length, value } in pairs {
@@ -79,7 +79,7 @@ fn step_of_velocities(pairs: impl Iterator<Item = Pair>) -> f64 {
     largest.max(slope.abs())
 }
 
-/// The same where accelerations do; behind the last pair the acceleration is zero.
+/// The same where accelerations are piecewise linear; behind the last pair the acceleration is zero.
 fn step_of_accelerations(pairs: impl Iterator<Item = Pair>) -> f64 {
     let (mut acceleration, mut largest) = (0.0_f64, 0.0_f64);
     for Pair { delta_time: length, value } in pairs {

@@ -1,4 +1,4 @@
-//! The axis of a scenario as its requirements know it: the linear rigid loop, and where efforts displace it to.
+//! The axis of a scenario as its requirements use it: the linear rigid loop, and its displacement by efforts.
 use servobench_base::HeldMode;
 use servobench_drive::feedforward::Model;
 use servobench_drive::{Params, Stage};
@@ -6,17 +6,17 @@ use servobench_metrics::{Deflection, Servo};
 use servobench_plant::{Chain, pmsm};
 use servobench_scenario::{Actuator, AxisMechanics, Bus, BusMode, Feedback, LoopSignal, Scenario};
 
-/// Effort that no model has in it, as a share of the largest one of the drive.
+/// Effort missing from every model, as a share of the drive's largest effort.
 const NOT_MODELLED: f64 = 0.05;
 
-/// The linear rigid loop; `None` where there is none, where it is an FMU's, and where nobody knows the inertia.
+/// The linear rigid loop; `None` where there is none, where an FMU replaces it, and where the inertia is unknown.
 pub(super) fn servo(scenario: &Scenario) -> Option<Servo> {
     let is_foreign = scenario.fmus.iter().flat_map(|fmu| &fmu.outputs).any(|(_, signal)| replaces_the_drive(*signal));
     let drive = scenario.actuator.drive().filter(|_| !is_foreign)?;
     let params = &drive.params;
     let [inertia, viscous] = inertia_and_viscous(scenario)?;
     let at_the_motor = params.transmission.powi(2) * inertia;
-    // Of a gain schedule the lowest: whoever is nearer to the request than the response follows, too.
+    // The lowest gains of a schedule: a faster response lies nearer to the set-point and meets the requirement, too.
     let lowest = params.blocks.schedule.map_or((1.0, 1.0), |gains| (gains.position.min(1.0), gains.velocity.min(1.0)));
     let bandwidth = lowest.1 * effort_ratio(&scenario.actuator, params) * params.velocity.k_p / at_the_motor;
     if !(bandwidth > 0.0 && bandwidth.is_finite()) {
@@ -51,7 +51,7 @@ pub(super) fn held_modes(scenario: &Scenario) -> Vec<HeldMode> {
     chain(scenario).map(Chain::held_modes).unwrap_or_default()
 }
 
-/// Where efforts displace the axis to.
+/// Displacement of the axis by efforts.
 pub(super) fn deflection(scenario: &Scenario) -> Deflection {
     let chain = chain(scenario);
     let r = scenario.axis.transmission.abs();
@@ -88,7 +88,7 @@ pub(super) fn deflection(scenario: &Scenario) -> Deflection {
     all
 }
 
-/// What springs give way to what is behind them.
+/// Deflection of springs under the bodies behind them.
 fn springs(chain: &Chain) -> Deflection {
     let mut all = Deflection::default();
     for (k, link) in chain.links().iter().enumerate() {
@@ -110,7 +110,7 @@ const fn chain(scenario: &Scenario) -> Option<&Chain> {
     }
 }
 
-/// Inertia and viscous friction in the axis coordinate: of the bodies, or as the drive believes them.
+/// Inertia and viscous friction in the axis coordinate: of the bodies, or by the drive's estimate.
 fn inertia_and_viscous(scenario: &Scenario) -> Option<[f64; 2]> {
     if let Some(chain) = chain(scenario) {
         let sum = |value: fn(&servobench_plant::Body) -> f64| {
@@ -138,7 +138,7 @@ fn velocity_offset(bus: Option<&Bus>) -> f64 {
     if bus.is_some_and(|bus| bus.velocity_offset) { 1.0 } else { 0.0 }
 }
 
-/// Effort that the source gives per effort that the drive asks for.
+/// Effort of the source per effort that the drive requests.
 fn effort_ratio(actuator: &Actuator, params: &Params) -> f64 {
     match (actuator, &params.stage) {
         (Actuator::IdealSource { source, .. }, Stage::Direct { gain }) => source.gain / gain,
