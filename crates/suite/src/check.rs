@@ -1,4 +1,4 @@
-//! Objections to a job, which a worker process is asked for where its engine is isolated.
+//! Objections to a job, found in a worker process where its engine is isolated.
 use crate::error::RunError;
 use crate::job::Job;
 use crate::worker::{WorkerError, Workers};
@@ -8,12 +8,11 @@ use servobench::panicked::caught;
 use servobench_plant::EngineName;
 use servobench_scenario::AxisMechanics;
 
-/// Everything that keeps `job` from being built, as far as it can be told at once; nothing when it can be. An isolated
-/// engine is asked in a worker process.
+/// All reasons why `job` cannot be built, as far as they can be found in one pass; empty when it can be. An isolated engine checks it in a
+/// worker process.
 ///
 /// # Errors
-/// [`RunError`] when nobody can tell: the build lacks the engine, a library does not load, the worker cannot be
-/// spoken to.
+/// [`RunError`] when no answer is possible: the build lacks the engine, a library does not load, communication with the worker fails.
 pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Objection>, RunError> {
     let engine = engines.get(job.engine)?;
     if !job.runs_in_worker() {
@@ -21,7 +20,7 @@ pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Obje
         return Ok(if found.is_empty() { unmeasurable(&job.scenario) } else { found });
     }
     match workers.ask(job) {
-        // What a library cannot bear in a user's own file is the file's fault, as far as anybody can tell.
+        // A crash of the library on a user's own file is attributed to the file.
         Err(error @ (WorkerError::Ended { .. } | WorkerError::Stalled { .. }))
             if matches!(job.scenario.axis.mechanics, AxisMechanics::Mjcf(_)) =>
         {
@@ -37,8 +36,8 @@ pub fn check(job: &Job, engines: &Engines, workers: &Workers) -> Result<Vec<Obje
     }
 }
 
-/// What keeps the FMUs beside the axis of `job` from being used. A worker that checks reads their descriptions only; whether they are
-/// loaded is for this process to say, and `exact` is the engine that is asked about nothing else. A file of the user's it cannot simulate.
+/// Reasons why the FMUs beside the axis of `job` cannot be used. A checking worker reads their descriptions only; this process loads them,
+/// with `exact`, and keeps the objections to FMUs. `exact` cannot simulate a user's own file.
 fn beside(job: &Job, engines: &Engines) -> Result<Vec<Objection>, RunError> {
     let has_bodies = matches!(job.scenario.axis.mechanics, AxisMechanics::Bodies(_));
     let Ok(exact) = engines.get(EngineName::Exact) else { return Ok(Vec::new()) };
@@ -55,7 +54,7 @@ fn beside(job: &Job, engines: &Engines) -> Result<Vec<Objection>, RunError> {
 /// # Errors
 /// [`RunError`] when it cannot be built after all.
 pub fn exchange(job: &Job, engines: &Engines) -> Result<Exchange, RunError> {
-    // What is exchanged when does not depend on the engine: one that needs a process of its own is not asked.
+    // The exchange does not depend on the engine: one that needs a separate process is not started.
     if job.runs_in_worker() {
         return Ok(Exchange::default());
     }

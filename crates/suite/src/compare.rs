@@ -1,4 +1,4 @@
-//! Runs side by side: each at its own limits, at equal ones, or slowed until they are equal in what is measured of them.
+//! Runs side by side: each at its own limits, at equal ones, or slowed until a measured quantity is equal.
 mod duration;
 mod equal;
 mod error;
@@ -17,10 +17,10 @@ use servobench::increment;
 use servobench_config::Choice as _;
 use servobench_scenario::Step;
 
-/// Whether what is measured of the jobs can stand side by side: their axes are all linear or all rotary.
+/// Checks that measurements of the jobs can stand side by side: their axes are all linear or all rotary.
 ///
 /// # Errors
-/// [`CompareError::Axes`] of the first job that is of another kind than the first of all.
+/// [`CompareError::Axes`] for the first job whose kind of axis differs from that of the first one.
 pub fn comparable(jobs: &[Job]) -> Result<(), CompareError> {
     let Some((one, others)) = jobs.split_first() else { return Ok(()) };
     let kind = |job: &Job| job.scenario.axis.motion.name();
@@ -30,11 +30,11 @@ pub fn comparable(jobs: &[Job]) -> Result<(), CompareError> {
     Err(CompareError::Axes { one, motion, other, other_motion })
 }
 
-/// A part of the settling window within which lengths are equal: of no concern to whoever chose the window.
+/// Share of the settling window within which lengths are equal: negligible at the user's choice of window.
 const OF_A_WINDOW: f64 = 0.01;
 
-/// By how much lengths on these axes differ that are equal (axis unit): 1 % of the smallest settling window, or one increment of the encoder
-/// that closes the position loop, the coarsest of all.
+/// Largest difference of equal lengths on these axes (axis unit): 1 % of the smallest settling window, or one increment of the encoder that
+/// closes the position loop, the coarsest of all.
 #[must_use]
 pub fn equal_length(jobs: &[Job]) -> f64 {
     let windows = jobs.iter().filter_map(|job| job.scenario.measure.window);
@@ -53,7 +53,7 @@ pub fn reseeded(job: &Job, source: Source, id: String) -> Job {
     other
 }
 
-/// Slows the moves of `job` to `durations` (s). Its limits were made for another set-point: it loses them.
+/// Slows the moves of `job` to `durations` (s). It loses its limits, which were made for another set-point.
 fn slow(job: &mut Job, durations: Vec<f64>) {
     job.slow_to(durations);
     job.scenario.limits.clear();

@@ -1,4 +1,4 @@
-//! Why a run has no verdict.
+//! Reasons why a run has no verdict.
 use crate::worker::WorkerError;
 use servobench::panicked::Panicked;
 use servobench::{EngineMissing, Error};
@@ -6,13 +6,13 @@ use servobench_isolation::in_words;
 use servobench_sim::{BuildError, Failure};
 use std::time::Duration;
 
-/// Why a run has no verdict.
+/// Reasons why a run has no verdict.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The closed loop cannot be built, or its run ended early.
     #[error(transparent)]
     Loop(Error),
-    /// It took longer than it may.
+    /// It reached its time limit.
     #[error(
         "its {which} of time, {} s, was reached at {reached:.3} s of {length:.3} s simulated; allow it longer with `run.time_limit` and \
          `--time-limit`, or shorten the run",
@@ -21,32 +21,32 @@ pub enum RunError {
     TimeLimit {
         /// `limit` or `default limit`.
         which: &'static str,
-        /// How long it may take, by the clock.
+        /// The limit, by the clock.
         limit: Duration,
-        /// How far it came (s).
+        /// Simulated time reached (s).
         reached: f64,
-        /// How far it would have gone (s).
+        /// Simulated length of the whole run (s).
         length: f64,
     },
-    /// Its recording alone takes more memory than there may be.
+    /// Its recording alone exceeds the memory limit.
     #[error(
         "its recording takes {} of memory, and the limit is {}: name fewer `record.channels`, shorten the run, or raise \
          `--memory-limit`",
         in_words(*need), in_words(*limit)
     )]
     Memory {
-        /// What it takes (B).
+        /// Memory needed (B).
         need: u64,
-        /// What there may be (B).
+        /// Memory limit (B).
         limit: u64,
     },
-    /// The worker process says why, or could not.
+    /// The worker process reported an error, or failed to.
     #[error(transparent)]
     Worker(#[from] WorkerError),
 }
 
 impl RunError {
-    /// True where the scenario is at fault: it asks for what cannot be built.
+    /// True where the scenario is at fault: it requests something that cannot be built.
     #[must_use]
     pub const fn is_input(&self) -> bool {
         match self {

@@ -18,21 +18,21 @@ use std::time::Duration;
 /// A run without a verdict.
 #[derive(Debug)]
 pub struct Broken {
-    /// Why there is none.
+    /// The reason.
     pub error: RunError,
-    /// What was recorded and measured until then.
+    /// Recording and metrics up to then.
     pub until_then: Option<(Recording, Metrics)>,
 }
 
-/// A recording, and why it ended early if it did.
+/// A recording, and the reason of its early end, if any.
 pub(crate) type Recorded = (Recording, Option<Interruption>);
 
-/// Why a run ended early.
+/// Reasons why a run ended early.
 #[derive(Debug)]
 pub(crate) enum Interruption {
-    /// By itself: it is judged as far as it came, and has failed.
+    /// By itself: it is judged up to its end, and has failed.
     Early(EarlyEnd),
-    /// By something that keeps it from being judged.
+    /// By an error that prevents a verdict.
     Broken(RunError),
 }
 
@@ -42,14 +42,12 @@ impl From<Failure> for Interruption {
     }
 }
 
-/// Runs `job` and judges it; `progress` is told the share that is done, from 0 to 1, the same one again where nothing has changed for a
-/// while.
+/// Runs `job` and judges it; `progress` receives the completed share, from 0 to 1, repeatedly the same one while nothing changes.
 ///
-/// A panic of the engine or of the measures goes through: [`map_in_parallel`](crate::map_in_parallel) keeps it from
-/// the other jobs.
+/// A panic of the engine or of the measurement propagates: [`map_in_parallel`](crate::map_in_parallel) confines it to this job.
 ///
 /// # Errors
-/// [`Broken`], with the recording as far as it came.
+/// [`Broken`], with the recording up to then.
 pub fn execute(
     job: &Job,
     engines: &Engines,
@@ -97,12 +95,12 @@ fn recorded(
     Ok((recording, interruption))
 }
 
-/// Who builds a closed loop.
+/// Builder of a closed loop.
 #[derive(Clone, Copy)]
 pub(crate) struct Loop<'a> {
     pub(crate) engine: &'a dyn Engine,
     pub(crate) fmu_opener: &'a dyn FmuOpener,
-    /// Whether all signals are recorded that the scenario asks for.
+    /// True if all signals are recorded that the scenario requests.
     pub(crate) records_all: bool,
 }
 

@@ -13,17 +13,17 @@ pub struct Job {
     pub id: String,
     /// The scenario.
     pub scenario: Scenario,
-    /// Text of its file: what a worker process is given.
+    /// Text of its file, which a worker process receives.
     pub text: String,
     /// The engine.
     pub engine: EngineName,
-    /// What it is called beside other runs; `None`: as its scenario.
+    /// Its name beside other runs; `None`: that of its scenario.
     label: Option<String>,
-    /// What [`Job::slow_to`] was told. A worker process is told it beside the text.
+    /// Durations from [`Job::slow_to`]. A worker process receives them beside the text.
     durations: Vec<f64>,
-    /// Whether somebody wants the recording, and not only what is measured of it.
+    /// True if the recording is needed, and not only its metrics.
     keeps_recording: bool,
-    /// Metrics that somebody wants; `None`: all.
+    /// Metrics that are needed; `None`: all.
     wanted: Option<Vec<Name>>,
 }
 
@@ -35,18 +35,18 @@ impl Job {
         Self { id, scenario, text, engine, label: None, durations: Vec::new(), keeps_recording: true, wanted: None }
     }
 
-    /// The same of another scenario, called `id`; it is not slowed yet.
+    /// The same job for another scenario, called `id`; it is not slowed yet.
     pub(crate) fn of_source(&self, source: Source, id: String) -> Self {
         let Source { scenario, text } = source;
         Self { id, scenario, text, durations: Vec::new(), ..self.clone() }
     }
 
-    /// From now on messages call it `label`: variants of one scenario have one name.
+    /// Sets its name in messages to `label`: variants of one scenario share a name.
     pub fn call(&mut self, label: String) {
         self.label = Some(label);
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     #[must_use]
     pub fn label(&self) -> &str {
         self.label.as_deref().unwrap_or(&self.scenario.name)
@@ -58,34 +58,34 @@ impl Job {
         self.durations = durations;
     }
 
-    /// From now on nobody wants the recording: what it has, unless the scenario names channels, are the signals that metrics are made
-    /// of. Metrics and verdict are the same.
+    /// Leaves the recording out: unless the scenario names channels, it then has only the signals that metrics are computed from. Metrics
+    /// and verdict are the same.
     pub const fn leave_recording_out(&mut self) {
         self.keeps_recording = false;
     }
 
-    /// From now on nobody wants metrics but these, and those that the scenario limits. Others are not measured.
+    /// Restricts measurement to these metrics, and those that the scenario limits.
     pub fn measure_only(&mut self, metrics: &[Name]) {
         self.wanted = Some(metrics.to_vec());
     }
 
-    /// Metrics that are wanted or limited; `None`: all.
+    /// Metrics that are needed or limited; `None`: all.
     pub(crate) fn metrics(&self) -> Option<HashSet<Name>> {
         let limits = limits_of_moves(&self.scenario).flatten().chain(&self.scenario.limits);
         Some(self.wanted.as_ref()?.iter().copied().chain(limits.map(|limit| limit.metric)).collect())
     }
 
-    /// Whether all signals are recorded that the scenario asks for.
+    /// True if all signals are recorded that the scenario requests.
     pub(crate) fn records_all(&self) -> bool {
         self.keeps_recording || !self.scenario.record.channels.is_empty()
     }
 
-    /// Durations that the moves are slowed to (s), one for each move; empty: as the scenario says.
+    /// Durations that the moves are slowed to (s), one for each move; empty: those of the scenario.
     pub(crate) fn durations(&self) -> &[f64] {
         &self.durations
     }
 
-    /// Whether it runs in a worker process: its engine can end the process that it runs in.
+    /// True if it runs in a worker process: its engine can end the process that it runs in.
     pub(crate) fn runs_in_worker(&self) -> bool {
         let kind = match self.scenario.axis.mechanics {
             _ if self.engine.simulates(ModelKind::Fmu) => ModelKind::Fmu,
@@ -97,8 +97,9 @@ impl Job {
     }
 }
 
-/// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move alone. What comes after the program stays: a run
-/// of given length is longer by as much, and residual vibration that is measured from a time after the program on, later by as much.
+/// Slows the moves of `scenario` to `durations` (s); a duration of zero leaves its move unchanged. The time after the program keeps its
+/// length: a run of given length becomes longer by as much, and the start of a residual vibration measured after the program moves by as
+/// much.
 pub(crate) fn slow_to(scenario: &mut Scenario, durations: &[f64]) {
     let end = |scenario: &Scenario| Program::new(scenario).ok().map(|program| program.end());
     let has_times = scenario.duration.is_some() || scenario.measure.from.is_some();
@@ -149,7 +150,7 @@ pub fn jobs(sources: Vec<Source>, engines: &[EngineName]) -> Vec<Job> {
     jobs
 }
 
-/// Hands out names of runs, as [`Job::id`] has them: no two are the same.
+/// Issues unique names of runs for [`Job::id`].
 #[derive(Debug, Default)]
 pub struct JobIds {
     taken: HashMap<String, u32>,
@@ -165,16 +166,16 @@ impl JobIds {
     }
 }
 
-/// Bytes of a name of a file that comes from a scenario, at most. File systems take 255; engine, number and kind follow it, and while
-/// the file is written the id of the process.
+/// Largest length of a file name made from a scenario (B). File systems allow 255; engine, number and kind follow it, and while the file is
+/// written the id of the process.
 const LONGEST: usize = 150;
 
-/// `name` as one part of a path, whatever it is: everything but letters, digits, `-`, `_` and `.` is made a `-`. It is not empty, not
-/// hidden (`.x`), leads nowhere (`..`), and is not too long for a file. Names that differ may come out
-/// the same: who needs them apart numbers them.
+/// `name` as one part of a path, whatever it is: everything but letters, digits, `-`, `_` and `.` becomes a `-`. The result is not empty,
+/// not hidden (`.x`), not a parent (`..`), and not too long for a file. Different names may become equal: callers that need unique ones
+/// number them.
 #[must_use]
 pub fn file_name(name: &str) -> String {
-    // Letters by their category that nobody sees: fillers of Hangul.
+    // Invisible characters of the category of letters: fillers of Hangul.
     let is_seen = |c: char| !matches!(c, '\u{115f}' | '\u{1160}' | '\u{3164}' | '\u{ffa0}');
     let is_kept = |c: char| c.is_alphanumeric() && is_seen(c) || "-_.".contains(c);
     let mut safe: String = name.chars().map(|c| if is_kept(c) { c } else { '-' }).collect();
@@ -209,7 +210,7 @@ mod tests {
         channels = ["load.position", "motor.position"]
     "#;
 
-    /// A run of 3 s whose move takes 1 s has 2 s behind it, slowed or not.
+    /// A run of 3 s whose move takes 1 s has 2 s after it, slowed or not.
     #[test]
     fn what_follows_the_program_stays_as_long_as_it_was() {
         let text = TEXT.replace("duration = \"2 s\"", "duration = \"3 s\"").replace(
@@ -232,7 +233,7 @@ mod tests {
         assert_eq!(ids, ["a-b-c.exact", "a-b-c.rapier", "a-b-c.exact.2", "a-b-c.rapier.2"]);
     }
 
-    /// Names that become equal stay two files, whatever made them equal.
+    /// Names that become equal stay two files, for every cause.
     #[test]
     fn names_that_become_equal_are_numbered() {
         let long = "µ".repeat(4000);

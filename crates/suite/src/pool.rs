@@ -1,9 +1,9 @@
-//! Several jobs at once, results in the order of the jobs; what one of them breaks is its own.
+//! Several jobs at once, results in the order of the jobs; a panic affects its own job only.
 use servobench::panicked::{Panicked, caught};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// How much may be under way at a time.
+/// Bounds on concurrent jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtATime {
     /// Jobs, at least one.
@@ -12,16 +12,16 @@ pub struct AtATime {
     pub memory: u64,
 }
 
-/// What is under way and what is done.
+/// Jobs in progress and results.
 struct Desk<R> {
     next: usize,
-    /// Memory of the jobs under way (bytes).
+    /// Memory of the jobs in progress (bytes).
     memory: u64,
     done: Vec<(usize, Result<R, Panicked>)>,
 }
 
-/// Makes every item ready, which says what memory it needs (bytes), and does `work` with it, as many at once as `limit` allows. Which
-/// thread does what, and when, has no influence on the results. A panic is the result of its item only.
+/// Prepares every item, which yields its memory demand (bytes), and does `work` with it, as many at once as `limit` allows. Distribution
+/// over threads and timing have no influence on the results. A panic is the result of its item only.
 pub fn map_in_parallel<T, P, R>(
     items: &[T],
     limit: AtATime,
@@ -53,7 +53,7 @@ where
             }
         };
         let others = 1..limit.jobs.min(items.len());
-        // Where the system gives no further thread, those that there are do it all; this one is there in any case.
+        // Where the system gives no further thread, the existing ones do all; this one exists in any case.
         others.take_while(|_| thread::Builder::new().spawn_scoped(scope, working).is_ok()).for_each(drop);
         working();
     });
@@ -70,7 +70,7 @@ fn next<'a, T, R>(items: &'a [T], desk: &Mutex<Desk<R>>) -> Option<(usize, &'a T
     Some((index, items.get(index)?))
 }
 
-/// Waits until `memory` is free (bytes), and takes as much of it as there is for all: what needs more than that has to do with it, alone.
+/// Waits until `memory` is free (bytes), at most the whole of `limit`, which a larger demand gets alone.
 fn granted<R>(memory: u64, desk: &Mutex<Desk<R>>, returned: &Condvar, limit: u64) -> u64 {
     let memory = memory.min(limit);
     let mut desk = returned
@@ -80,7 +80,7 @@ fn granted<R>(memory: u64, desk: &Mutex<Desk<R>>, returned: &Condvar, limit: u64
     memory
 }
 
-/// The lock is never held while foreign code runs: nothing can be left half done.
+/// The lock is never held while foreign code runs: no change can be left incomplete.
 fn locked<R>(desk: &Mutex<Desk<R>>) -> MutexGuard<'_, Desk<R>> {
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(done, [Ok(0), Err(Panicked { words: "not ready".into() }), Ok(2)]);
     }
 
-    /// Items of 30, 60 and 250 bytes of 100: never more than 100 are granted at a time, and all get their turn.
+    /// Items of 30, 60 and 250 bytes of 100: never more than 100 are granted at a time, and all are processed.
     #[test]
     fn the_jobs_under_way_share_the_memory() {
         let items: Vec<u64> = [30, 60, 250].into_iter().cycle().take(60).collect();
@@ -156,7 +156,7 @@ mod tests {
         assert!(most.load(Ordering::SeqCst) <= 100, "{most:?}");
     }
 
-    /// Two items that fit together do run together: each waits for the other.
+    /// Two items that fit together run together: each waits for the other.
     #[test]
     fn what_fits_runs_at_once() {
         let both = Barrier::new(2);

@@ -1,32 +1,32 @@
-//! Limit of the time of a run by the clock.
+//! Limit of the wall-clock time of a run.
 //!
-//! A run that nobody gave a limit ends some day all the same: after [`LEAST`] and [`TIMES`] as long as its ticks take by the table of
-//! the engines. A run that is right takes that long on no machine; one that would take a week by a slip in a length or in a model does not
-//! hold up a suite for a week.
+//! A run without a given limit ends eventually all the same: after [`LEAST`] and [`TIMES`] the duration of its ticks by the table of the
+//! engines. A valid run takes that long on no machine; one that would take a week by a slip in a length or in a model does not hold up a
+//! suite for a week.
 use crate::error::RunError;
 use crate::job::Job;
 use servobench_scenario::{AxisMechanics, TimeBound};
 use servobench_sim::Bench;
 use std::time::Duration;
 
-/// Allowance of every run: reading a model, machines that do much else.
+/// Allowance of every run: reading a model, machines under other load.
 const LEAST: Duration = Duration::from_mins(10);
-/// The table of the engines is right within a factor of three; a model of the user's may be thirty times as large as those of the table.
+/// The table of the engines is right within a factor of three; a user's own model may be thirty times as large as those of the table.
 const TIMES: f64 = 100.0;
-/// A tick where FMUs, of which nobody knows what they take, are part of it (s).
+/// Duration of a tick with FMUs, whose cost is unknown (s).
 const TICK_WITH_FMUS: f64 = 10e-3;
 
-/// Limit of the time of a run, by the clock.
+/// Limit of the wall-clock time of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TimeLimit<'a> {
     pub(crate) time: Duration,
-    /// True where nobody gave it.
+    /// True where no limit was given.
     is_default: bool,
     job: &'a Job,
 }
 
 impl<'a> TimeLimit<'a> {
-    /// The smaller of the limit of the scenario of `job` and `given`; without either a default.
+    /// The smaller of the limit of the scenario of `job` and `given`; a default without either.
     pub(crate) fn of(job: &'a Job, given: Option<TimeBound>) -> Option<Self> {
         let bounds = || job.scenario.time_limit.into_iter().chain(given);
         let least = bounds().filter_map(TimeBound::seconds).reduce(f64::min);
@@ -43,14 +43,14 @@ impl<'a> TimeLimit<'a> {
         Bench::length(&self.job.scenario).unwrap_or(f64::NAN)
     }
 
-    /// The run came to `reached` (s).
+    /// Error of a run that came to `reached` (s).
     pub(crate) fn exceeded(self, reached: f64) -> RunError {
         let which = if self.is_default { "default limit" } else { "limit" };
         RunError::TimeLimit { which, limit: self.time, reached, length: self.length() }
     }
 }
 
-/// About how long the ticks of `job` take (s); 0 when it cannot be planned, and does not run.
+/// Approximate duration of the ticks of `job` (s); 0 when it cannot be planned, and does not run.
 fn estimate(job: &Job) -> f64 {
     let scenario = &job.scenario;
     let ticks = Bench::length(scenario).map_or(0.0, |length| length * f64::from(scenario.base_rate.hertz()));
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::job::{Source, jobs};
 
-    /// The demo, with this bound of its own and one that is given.
+    /// The demo, with this bound in the file and one from the caller.
     fn limit(own: Option<TimeBound>, given: Option<TimeBound>) -> Option<Duration> {
         let (_, text) = servobench_scenario::embedded_demo().into_iter().next().unwrap();
         let mut scenario = servobench_scenario::parse("demo", text, None).unwrap_or_else(|e| panic!("{e}")).scenario;

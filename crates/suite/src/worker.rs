@@ -1,4 +1,4 @@
-//! Runs in processes of their own: the worker is this same program, which is told one scenario after the other.
+//! Runs in separate processes: the worker is this same program, which receives one scenario after the other.
 //!
 //! ```text
 //! servobench worker
@@ -7,14 +7,14 @@
 //!                   or {"failed": "<why>"}}
 //! standard output:  the file that the recording of an order goes to; it has no name
 //! ```
-//! What contains it is [`servobench_isolation`]: it ends with this program however that ends, and nothing of it stays.
+//! [`servobench_isolation`] contains it: it ends with this program however that ends, and leaves nothing behind.
 //!
-//! What the worker says of its end is what the run is reported with, so that a reason does not depend on where a run
-//! happened. An end without a word is that of a native library; it costs this run only, and what the library wrote on
-//! standard output and standard error is reported. A worker that says nothing for [`WorkerCommand::timeout`] is ended.
+//! A run is reported with the end that its worker reports, so that a reason does not depend on where a run happened. An end without a
+//! report is that of a native library; it costs this run only, and the library's standard output and standard error are reported. A worker
+//! that is silent for [`WorkerCommand::timeout`] is killed.
 //!
-//! A worker serves again when its order came to an orderly end: starting one costs more than a short run. One that has failed in any
-//! way, or has kept much memory, does not.
+//! A worker is used again when its order came to an orderly end: starting one costs more than a short run. One that has failed in any way,
+//! or has kept much memory, is not.
 mod message;
 mod order;
 mod process;
@@ -32,38 +32,38 @@ use std::path::PathBuf;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Why a worker gave no run, or half of one.
+/// Reasons why a worker gave no run, or an incomplete one.
 #[derive(Debug, Error)]
 pub enum WorkerError {
-    /// The worker says that the input is wrong.
+    /// The worker reports that the input is wrong.
     #[error("{0}")]
     Input(String),
-    /// The worker says why the run ended early.
+    /// The worker reports why the run ended early.
     #[error("{0}")]
     Failed(String),
-    /// The process could not be started or spoken to.
+    /// The process could not be started, or communication with it failed.
     #[error("cannot {action} the worker `{}`: {source}", program.display())]
     Process {
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
         /// The program.
         program: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// The process ended without a word.
+    /// The process ended without a report.
     #[error("the engine's library ended its process: {how}")]
     Ended {
-        /// How it ended, with the last of what it wrote.
+        /// Its end, in words, with the last of its output.
         how: String,
     },
-    /// The worker said nothing for too long and was ended.
+    /// The worker was silent for too long and was killed.
     #[error(
         "the engine's process made no progress for {} s and was ended; allow it longer with `--worker-timeout`",
         timeout.as_secs_f64()
     )]
     Stalled {
-        /// How long it was waited for.
+        /// Duration of the wait.
         timeout: Duration,
     },
     /// The worker was done, but its recording cannot be read.

@@ -1,4 +1,4 @@
-//! Moves that take the same time.
+//! Moves of equal duration.
 use super::{CompareError, slow};
 use crate::job::Job;
 use servobench_metrics::Quantity;
@@ -6,8 +6,8 @@ use servobench_planner::Generator;
 use servobench_scenario::Step;
 use servobench_sim::Program;
 
-/// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time. A job
-/// that is slowed loses its limits: they were made for another set-point.
+/// Slows every move to the longest of its counterparts, so that all jobs make the same moves in the same time. A slowed job loses its
+/// limits: they were made for another set-point.
 ///
 /// # Errors
 /// [`CompareError::Moves`] when the programs differ in their number of moves, [`CompareError::Plan`].
@@ -29,8 +29,8 @@ pub fn to_equal_duration(jobs: &mut [Job]) -> Result<(), CompareError> {
     Ok(())
 }
 
-/// Slows all moves of each job in proportion, so that its longest lasts `duration` (s), and says how many times as long they last. A
-/// job that is slowed loses its limits.
+/// Slows all moves of each job in proportion, so that its longest lasts `duration` (s), and returns the factors of their durations. A
+/// slowed job loses its limits.
 ///
 /// # Errors
 /// [`CompareError::TooSlow`], [`CompareError::NotSlowable`], [`CompareError::Plan`].
@@ -39,7 +39,7 @@ pub fn to_duration(jobs: &mut [Job], duration: f64) -> Result<Vec<f64>, CompareE
     for job in jobs {
         let own = slowable(job)?;
         let longest = own.iter().copied().fold(0.0, f64::max);
-        // What is wanted may be typed with fewer digits than it has.
+        // The requested duration may be typed with fewer digits than the computed one has.
         let factor = duration / longest;
         if factor < 1.0 - ROUNDING {
             let text = |value| format!("{:.5}", Quantity::new(value, "s"));
@@ -57,7 +57,7 @@ pub fn to_duration(jobs: &mut [Job], duration: f64) -> Result<Vec<f64>, CompareE
 /// Durations that differ by less, relative, are equal.
 const ROUNDING: f64 = 1e-12;
 
-/// How long each move lasts (s).
+/// Duration of each move (s).
 ///
 /// # Errors
 /// [`CompareError::Plan`]
@@ -67,7 +67,7 @@ pub(super) fn durations(job: &Job) -> Result<Vec<f64>, CompareError> {
     Ok(program.durations().collect())
 }
 
-/// How long each move lasts (s), of moves that may be slowed.
+/// Duration of each move (s), if the moves may be slowed.
 ///
 /// # Errors
 /// [`CompareError::NotSlowable`], [`CompareError::Plan`].

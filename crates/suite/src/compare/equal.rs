@@ -1,4 +1,4 @@
-//! Moves that are slowed until what is measured of them is equal.
+//! Moves that are slowed until a measured quantity is equal.
 use super::duration::slowable;
 use super::search::{LONGEST, Search, Steps};
 use super::{CompareError, NotReached, slow};
@@ -12,10 +12,10 @@ use servobench::size::memory;
 use servobench_metrics::{Metrics, Name, Quantity};
 use thiserror::Error;
 
-/// What runs are made equal in.
+/// Quantity in which runs are made equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EqualQuantity {
-    /// How long the moves last.
+    /// Duration of the moves.
     Duration,
     /// The peak torque or force of the motor.
     Torque,
@@ -26,7 +26,7 @@ pub enum EqualQuantity {
 }
 
 impl EqualQuantity {
-    /// What it is in words.
+    /// Its name, in words.
     #[must_use]
     pub const fn in_words(self) -> &'static str {
         match self {
@@ -37,7 +37,7 @@ impl EqualQuantity {
         }
     }
 
-    /// How a value of it is asked for, of a metric in `unit`.
+    /// Example of an option that gives its value, for a metric in `unit`.
     fn example(self, unit: &str) -> &'static str {
         match (self, unit) {
             (Self::Duration, _) => "duration=1.2s",
@@ -49,7 +49,7 @@ impl EqualQuantity {
         }
     }
 
-    /// The metrics that say it, the first that all runs have.
+    /// Metrics of the quantity; the first one that all runs have is used.
     const fn metrics(self) -> &'static [Name] {
         match self {
             Self::Duration => &[Name::MoveTime],
@@ -66,18 +66,18 @@ pub const fn equal_metric(quantity: EqualQuantity) -> Name {
     quantity.metrics()[0]
 }
 
-/// Why runs cannot be made equal.
+/// Reasons why runs cannot be made equal.
 #[derive(Debug, Error)]
 pub enum EqualError {
-    /// They cannot be compared so.
+    /// They cannot be compared in this quantity.
     #[error(transparent)]
     Compare(Box<CompareError>),
-    /// One of the runs that it takes to find out was not carried out.
+    /// A run of the search was not carried out.
     #[error("{error}")]
     Run {
         /// Index of its job.
         job: usize,
-        /// Why not.
+        /// The reason.
         error: RunError,
     },
 }
@@ -88,59 +88,60 @@ impl From<CompareError> for EqualError {
     }
 }
 
-/// How runs are measured on the way.
+/// Means of measuring runs during the search.
 pub struct Measuring<'a> {
     /// The engines.
     pub engines: &'a Engines,
     /// The processes of isolated engines.
     pub workers: &'a Workers,
-    /// How much runs at a time; results do not depend on it.
+    /// Concurrent runs and memory; results do not depend on it.
     pub limit: AtATime,
-    /// Is told how many runs were made until now.
+    /// Called with the number of runs made so far.
     pub progress: &'a dyn Fn(usize),
 }
 
-/// What runs were made equal in, and how.
+/// Quantity and factors by which runs were made equal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equalized {
     /// The metric.
     pub metric: Name,
     /// Its unit.
     pub unit: String,
-    /// The value that all have, or are below of (SI).
+    /// The value that all runs have at most (SI).
     pub target: f64,
-    /// Index of the job whose value it is; `None` when it was asked for.
+    /// Index of the job whose value it is; `None` when the user gave it.
     pub gentlest: Option<usize>,
-    /// Runs that it took to find the factors.
+    /// Number of runs in the search for the factors.
     pub runs: usize,
-    /// Of each job.
+    /// Slowdown of each job.
     pub slowed: Vec<Slowed>,
 }
 
-/// How one job was slowed.
+/// Slowdown of one job.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slowed {
-    /// How many times as long its moves last; 1 when it was not slowed.
+    /// Factor of the duration of its moves; 1 when it was not slowed.
     pub factor: f64,
-    /// What it has of the metric then (SI); not a number of a run that broke a requirement at its own limits, which is left as it is.
+    /// Its value of the metric with that factor (SI); not a number for a run that broke a requirement at its own limits, which is not
+    /// slowed.
     pub value: f64,
 }
 
 /// A step of torque and current, relative.
 const STEP: f64 = 0.05;
-/// A step of vibrations, in lobes of the spectrum of the longest box that a move may be made of.
+/// A step of vibrations, in lobes of the spectrum of the longest moving average that a move may contain.
 const OF_A_LOBE: f64 = 0.099;
 
-/// Slows the moves of each job by one factor of its own, so that what is measured of it is not above `target` (SI), or that of the
-/// gentlest job at its own limits, and not below that by more than it can be met. A job that is slowed loses its limits. A job that breaks a
-/// requirement at its own limits is neither slowed nor the gentlest: an axis that never moves is gentle by not doing what was requested.
+/// Slows the moves of each job by a separate factor, so that its measured value is not above `target` (SI), or that of the gentlest job at
+/// its own limits, and not below it by more than necessary. A slowed job loses its limits. A job that breaks a requirement at its own
+/// limits is neither slowed nor the gentlest: an axis that never moves is gentle by not doing what was requested.
 ///
 /// # Errors
 /// [`CompareError::NoneSound`], [`CompareError::NotSlowable`], [`CompareError::NotMeasured`], [`CompareError::Nothing`], [`CompareError::NotReached`],
 /// [`CompareError::Plan`]; [`EqualError::Run`] for a run that could not be carried out.
 ///
 /// # Panics
-/// With what panics in a run that it makes.
+/// Where one of its runs panics.
 pub fn to_equal(
     jobs: &mut [Job],
     quantity: EqualQuantity,
@@ -232,25 +233,25 @@ fn times(own: &[f64], factor: f64) -> Vec<f64> {
     own.iter().map(|duration| duration * factor).collect()
 }
 
-/// Metrics of a run, and if it met its requirements.
+/// Metrics of a run, and whether it met its requirements.
 struct Measured {
     metrics: Metrics,
     is_sound: bool,
 }
 
-/// Runs that are made on the way.
+/// Runs of the search.
 struct Making<'a> {
     jobs: &'a [Job],
-    /// How long the moves of each job last at its own limits (s).
+    /// Duration of each move of each job at its own limits (s).
     own: &'a [Vec<f64>],
     measuring: &'a Measuring<'a>,
     wanted: &'a [Name],
-    /// How many were made.
+    /// Number of runs made.
     runs: usize,
 }
 
 impl Making<'_> {
-    /// What is measured of these jobs with their moves so many times as long, in that order.
+    /// Measurements of these jobs with their moves slowed by these factors, in that order.
     fn measured(&mut self, wanted: &[(usize, f64)]) -> Result<Vec<Measured>, EqualError> {
         let jobs: Vec<Job> = wanted.iter().map(|(job, factor)| self.slower(*job, *factor)).collect();
         let Measuring { engines, workers, limit, progress } = self.measuring;
@@ -285,8 +286,8 @@ impl Making<'_> {
         slower
     }
 
-    /// A step of the factor that is finer than a tenth of a lobe: of a box that lasts as long as all moves together, zeros are 1/(f·T)
-    /// apart, and no part of a move is longer.
+    /// A step of the factor that is finer than a tenth of a lobe: a moving average that lasts as long as all moves together has zeros
+    /// 1/(f·T) apart, and no part of a move is longer.
     fn step(
         &self,
         index: usize,

@@ -1,11 +1,11 @@
-//! Why scenarios cannot be compared.
+//! Reasons why scenarios cannot be compared.
 use servobench_sim::BuildError;
 use thiserror::Error;
 
-/// Why scenarios cannot be compared.
+/// Reasons why scenarios cannot be compared.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CompareError {
-    /// Nothing that is measured of one has a meaning for the other.
+    /// No measurement of one has a meaning for the other.
     #[error(
         "`{one}` is {motion} and `{other}` {other_motion}: a length and an angle cannot be compared; compare axes of one kind"
     )]
@@ -57,54 +57,54 @@ pub enum CompareError {
     Plan {
         /// Name of the scenario.
         scenario: String,
-        /// Why not.
+        /// The reason.
         error: BuildError,
     },
-    /// The gentlest run has nothing of what is to be equal.
+    /// The gentlest run has a value of zero in the compared quantity.
     #[error(
         "the {what} of `{scenario}` is {value}: no other run can be slowed to nothing; name a value, as in --equal {example}"
     )]
     Nothing {
         /// Name of the run.
         scenario: String,
-        /// What is to be equal, in words.
+        /// The compared quantity, in words.
         what: &'static str,
-        /// What it has, with its unit.
+        /// Its value, with its unit.
         value: String,
-        /// What may be written instead.
+        /// Option that may be written instead.
         example: &'static str,
     },
-    /// There is no run to make others equal to.
+    /// Every run breaks a requirement: there is none to equal.
     #[error(
         "the {what} cannot be made equal: every run breaks a requirement at its own limits; `servobench run` reports which"
     )]
     NoneSound {
-        /// What is to be equal, in words.
+        /// The compared quantity, in words.
         what: &'static str,
     },
-    /// What is to be equal was not measured of a run.
+    /// The compared quantity was not measured in a run.
     #[error("the {what} of `{scenario}` cannot be made equal: {metric} could not be measured, {why}{remedy}")]
     NotMeasured {
         /// Name of the run.
         scenario: String,
-        /// What is to be equal, in words.
+        /// The compared quantity, in words.
         what: &'static str,
         /// Name of the metric.
         metric: &'static str,
-        /// Why it was not measured.
+        /// Reason why it was not measured.
         why: String,
-        /// What helps, after a semicolon; empty where nothing is known.
+        /// Remedy, after a semicolon; empty where none is known.
         remedy: &'static str,
     },
-    /// Its moves have no duration of their own.
+    /// Its moves have no duration that could be changed.
     #[error("`{scenario}` cannot be slowed: {why}")]
     NotSlowable {
         /// Name of the run.
         scenario: String,
-        /// Why not.
+        /// The reason.
         why: String,
     },
-    /// It is slower than it may be.
+    /// It is slower than the requested duration.
     #[error(
         "`{scenario}` takes {shortest} at its own limits, longer than the {wanted} that are wanted: moves are slowed and not \
          sped up; name at least {shortest}, or raise its limits"
@@ -112,17 +112,17 @@ pub enum CompareError {
     TooSlow {
         /// Name of the run.
         scenario: String,
-        /// How long its longest move lasts.
+        /// Duration of its longest move.
         shortest: String,
-        /// What is wanted.
+        /// The requested duration.
         wanted: String,
     },
-    /// However slow it is, it does not come down to what is wanted.
+    /// No permitted slowdown brings its value down to the target.
     #[error(transparent)]
     NotReached(Box<NotReached>),
 }
 
-/// However slow a run is, it does not come down to what is wanted.
+/// No permitted slowdown brings a run's value down to the target.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "`{scenario}` does not come down to {what} {target}: at its own limits it has {own}, and with moves up to {factor} × as \
@@ -131,16 +131,16 @@ pub enum CompareError {
 pub struct NotReached {
     /// Name of the run.
     pub scenario: String,
-    /// What is to be equal, in words.
+    /// The compared quantity, in words.
     pub what: &'static str,
-    /// What is wanted, with its unit.
+    /// The target, with its unit.
     pub target: String,
-    /// What it has at its own limits.
+    /// Its value at its own limits.
     pub own: String,
-    /// How much longer its moves were made at most.
+    /// Largest factor of the duration of its moves that was tried.
     pub factor: String,
-    /// The least of what was measured of it.
+    /// Its least measured value.
     pub least: String,
-    /// What may be written instead.
+    /// Option that may be written instead.
     pub example: &'static str,
 }

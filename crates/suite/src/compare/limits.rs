@@ -3,7 +3,7 @@ use super::CompareError;
 use crate::job::Job;
 use servobench_scenario::{MoveStep, Step};
 
-/// Whether each move has the limits of its counterparts, as far as its order has them.
+/// Checks that each move has the limits of its counterparts, as far as its order has them.
 ///
 /// # Errors
 /// [`CompareError::Moves`] when the programs differ in their number of moves, [`CompareError::Limits`].

@@ -1,16 +1,16 @@
-//! The shortest slowdown from which on a value is met.
+//! The shortest slowdown from which on a target value is met.
 //!
-//! Factors are tried in steps, several at a time, until the value is not above what is wanted; between the last two of them the factor is
-//! closed in by regula falsi (Illinois; Dowell and Jarratt 1971) and bisection. A residual vibration has zeros, between which it
-//! comes down in dips that are narrower than a step: each dip is looked into before the steps go on. What is tried does not depend on how
-//! many are tried at the same time, so that the result does not either.
+//! Factors are tried in steps, several at a time, until the value is not above the target; between the last two of them the factor is
+//! refined by regula falsi (Illinois; Dowell and Jarratt 1971) and bisection. A residual vibration has zeros, around which it comes down in
+//! dips that are narrower than a step: each dip is searched before the steps continue. The factors tried do not depend on how many are
+//! tried at the same time, so that the result does not either.
 
-/// How factors are tried.
+/// Sequence of the factors that are tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Steps {
-    /// Each by this part longer than the one before.
+    /// Each longer than the one before by this share.
     Ratio(f64),
-    /// Each by this much longer, with a look into every dip.
+    /// Each longer by this difference, with a search of every dip.
     Difference(f64),
 }
 
@@ -20,34 +20,34 @@ const AT_A_TIME: usize = 8;
 pub(super) const LONGEST: f64 = 10.0;
 /// Steps at most.
 const MOST_STEPS: usize = 3000;
-/// Equal, relative.
+/// Relative tolerance of equal values.
 pub(super) const EQUAL: f64 = 1e-6;
-/// A factor is known well enough.
+/// Resolution of a factor.
 const RESOLUTION: f64 = 1e-10;
-/// A dip that is known to this part of a step has no more in it.
+/// Share of a step at which the search of a dip ends.
 const DIP: f64 = 1e-3;
-/// After so many times that closing in has not halved the interval, it is halved.
+/// Number of refinements that did not halve the interval, after which it is bisected.
 const PATIENCE: u32 = 2;
 
-/// A factor, and what was measured with it; infinite where nothing was.
+/// A factor and its measured value; infinite where nothing was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Point {
     pub(super) factor: f64,
     pub(super) value: f64,
 }
 
-/// What comes next.
+/// State of the search.
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     /// Steps.
     Stepping,
-    /// Between the factors of the outer points, of which a point between them is lower.
+    /// Searching a dip between the factors of the outer points, of which a point between them is lower.
     Dipping { low: f64, high: f64, best: Point },
-    /// The value is above what is wanted at the one, and not at the other.
+    /// Refining: the value is above the target at the one, and not at the other.
     Closing { above: Point, below: Point, weights: [f64; 2], last: Option<bool>, slow: u32 },
-    /// It is met.
+    /// The target is met.
     Found(Point),
-    /// It is not.
+    /// The target is not met.
     NotFound,
 }
 
@@ -58,9 +58,9 @@ pub(super) struct Search {
     steps: Steps,
     /// Points of the steps, in their order, the first at factor 1.
     tried: Vec<Point>,
-    /// Of the steps that were tried, how many were looked at.
+    /// Number of tried steps that were evaluated.
     seen: usize,
-    /// Whether the part before the first step was looked into.
+    /// True if the part before the first step was searched.
     has_begun: bool,
     phase: Phase,
     /// The least value that was measured.
@@ -68,7 +68,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// For the first factor at which the value is not above `target`, which is `own` at the factor 1.
+    /// Searches the first factor at which the value is not above `target`; it is `own` at the factor 1.
     pub(super) fn new(target: f64, own: f64, steps: Steps) -> Self {
         let first = Point { factor: 1.0, value: own };
         let is_met = own <= target * (1.0 + EQUAL);
@@ -94,7 +94,7 @@ impl Search {
         self.least
     }
 
-    /// The factors that are to be tried now; none when it has ended.
+    /// The factors to be tried now; none when the search has ended.
     pub(super) fn wanted(&self) -> Vec<f64> {
         match &self.phase {
             Phase::Stepping => {
@@ -123,7 +123,7 @@ impl Search {
         }
     }
 
-    /// What was measured with the factors that were wanted; `None` where nothing was.
+    /// Takes the values measured at the factors that [`wanted`](Self::wanted) returned; `None` where nothing was measured.
     pub(super) fn learn(&mut self, factors: &[f64], values: &[Option<f64>]) {
         let points = factors.iter().zip(values).map(|(factor, value)| {
             let value = value.filter(|value| value.is_finite()).map_or(f64::INFINITY, f64::abs);
@@ -147,7 +147,7 @@ impl Search {
         }
     }
 
-    /// Looks at the steps that were tried, one after the other.
+    /// Evaluates the tried steps, one after the other.
     fn look(&mut self, is_over: bool) {
         self.phase = Phase::Stepping;
         if let [first, second, ..] = self.tried[..]
@@ -168,7 +168,7 @@ impl Search {
             let after = self.tried.get(self.seen + 1);
             let looks_into_dips = matches!(self.steps, Steps::Difference(_));
             match after {
-                // Whether it is a dip is known with the next one.
+                // The next step decides if it is a dip.
                 None if looks_into_dips && !is_over => return,
                 Some(after)
                     if looks_into_dips
@@ -188,7 +188,7 @@ impl Search {
         }
     }
 
-    /// Looks into a dip, of which the lowest point so far is `best`.
+    /// Searches a dip, of which the lowest point so far is `best`.
     fn dip(&mut self, low: f64, high: f64, best: Point, points: &[Point]) {
         let end = |factor| Point { factor, value: f64::INFINITY };
         let mut all = if best.factor > low { vec![end(low), best] } else { vec![best] };
@@ -213,7 +213,7 @@ impl Search {
         }
     }
 
-    /// Closes in between a point above what is wanted and one that is not.
+    /// Refines between a point above the target and one that is not.
     fn between(&mut self, above: Point, below: Point) {
         self.phase = if self.is_met(below, above) {
             Phase::Found(below)
@@ -255,7 +255,7 @@ impl Search {
         }
         let has_halved = below.factor - above.factor <= 0.5 * width;
         let slow = if has_halved { 0 } else { slow + 1 };
-        // A bisection has been made: its ends count whole again.
+        // After a bisection its ends count whole again.
         let slow = if slow > PATIENCE { 0 } else { slow };
         self.phase = Phase::Closing { above, below, weights, last: Some(is_above), slow };
     }
@@ -330,7 +330,7 @@ mod tests {
         assert!((1.24..1.25).contains(&found.factor) && (found.value - 0.25).abs() < 1e-6, "{found:?}");
     }
 
-    /// What jumps is met at the jump, from the side that is not above.
+    /// A value that jumps meets the target at the jump, on the side that is not above.
     #[test]
     fn a_jump_is_found_to_the_last_digits() {
         let (found, count) = searched(0.5, Steps::Ratio(0.05), |s| Some(if s < 1.234_567 { 1.0 } else { 0.2 }));

@@ -1,11 +1,10 @@
-//! Whether runs differ in their set-points alone, and whether those have a closed form.
+//! Runs that differ in their set-points alone, and set-points with a closed form.
 use crate::job::Job;
 use servobench_planner::{Generator, Method};
 use servobench_scenario::{Scenario, Step};
 
-/// Whether the jobs differ in nothing but their set-points, so that what differs in the results is of those. Free are
-/// names and words, the program with its limits and how long it is recorded, which channels are kept, and the limits by
-/// which each run is judged on its own.
+/// True if the jobs differ in their set-points only, so that differences of the results come from these. Names and descriptions, the
+/// program with its limits, the recorded length, the kept channels and the limits that judge each run are free.
 #[must_use]
 pub fn only_setpoints_differ(jobs: &[Job]) -> bool {
     let Some((one, others)) = jobs.split_first() else { return true };
@@ -51,13 +50,13 @@ fn has_same_axis_and_drive(one: &Scenario, other: &Scenario) -> bool {
         && *coupling == other.coupling
         && *disturbances == other.disturbances
         && *initial == other.initial
-        // A peak between two rows is not seen.
+        // A peak between two rows is not recorded.
         && record.rate == other.record.rate
         && *measure == other.measure
 }
 
-/// Whether the velocity of every move is a step through moving averages and nothing else, so that its peaks say all of it: published
-/// profiles, without shapers, averages and interpolation.
+/// True if the velocity of every move is a step through moving averages only, so that its peaks describe it completely: published profiles,
+/// without shapers, averages and interpolation.
 #[must_use]
 pub fn setpoints_have_closed_form(jobs: &[Job]) -> bool {
     let is_plain = |step: &Step| match step {

@@ -1,44 +1,44 @@
-//! What a worker says.
+//! Messages of a worker.
 use serde::{Deserialize, Serialize};
 use servobench::check::Objection;
 use servobench_sim::MechanicsAtRest;
 
-/// One line of what a worker says.
+/// One message of a worker, a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Message {
-    /// Share that is done, from 0 to 1.
+    /// Completed share, from 0 to 1.
     Progress(f64),
-    /// What keeps the scenario from being built.
+    /// Reasons why the scenario cannot be built.
     Objections(Vec<Objection>),
     /// The linear model of an MJCF file.
     AtRest(MechanicsAtRest),
-    /// Memory that the worker has for itself after the order (B).
+    /// Memory that the worker occupies after the order (B).
     Holds(u64),
-    /// The last word on an order.
+    /// The last message on an order.
     End(End),
 }
 
-/// How an order ends.
+/// End of an order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
     /// The recording, or the answer, is complete.
     Done,
-    /// The input is wrong: why.
+    /// The input is wrong: the reason.
     Input(String),
-    /// The run diverged; the recording is there as far as it came.
+    /// The run diverged; the recording ends there.
     Diverged {
-        /// When (s).
+        /// Time of the divergence (s).
         time: f64,
-        /// Why, in the engine's words.
+        /// The reason, in the engine's words.
         reason: String,
     },
-    /// The program gave up: why. The recording is there as far as it came.
+    /// The program gave up: the reason. The recording ends there.
     GaveUp(String),
-    /// The run reached its limit of time at this simulated time (s). The recording is there as far as it came.
+    /// The run reached its time limit at this simulated time (s). The recording ends there.
     Stopped(f64),
-    /// The run broke off: why. The recording is there as far as it came.
+    /// The run failed: the reason. The recording ends there.
     Failed(String),
 }
 
@@ -48,7 +48,7 @@ impl Message {
         Ok(serde_json::to_string(self)? + "\n")
     }
 
-    /// What `line` says; nothing when it is none of ours.
+    /// Parses `line`; `None` when it is not a message.
     pub(super) fn of(line: &[u8]) -> Option<Self> {
         serde_json::from_slice(line).ok()
     }

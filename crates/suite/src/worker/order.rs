@@ -1,4 +1,4 @@
-//! What a worker is told.
+//! Orders to a worker.
 use crate::job::{Job, slow_to};
 use serde::{Deserialize, Serialize};
 use servobench_config::Choice as _;
@@ -7,46 +7,46 @@ use servobench_scenario::{Document, LoadError, Override, Scenario};
 use std::path::Path;
 use std::time::Duration;
 
-/// What a worker is to do with a scenario.
+/// Task of a worker with a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Task {
-    /// Say what keeps it from being built.
+    /// Report the reasons why it cannot be built.
     Check,
     /// Make a linear model of its MJCF file.
     Linearise,
-    /// Run it and leave its recording.
+    /// Run it and write its recording.
     Run {
-        /// How long that may take, by the clock.
+        /// Limit of the wall-clock time.
         time_limit: Option<Duration>,
-        /// Whether all signals are recorded that the scenario asks for.
+        /// True if all signals are recorded that the scenario requests.
         records_all: bool,
     },
 }
 
-/// A scenario, as the caller has it, and what is to be done with it.
+/// A scenario, as the caller has it, and its task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Order {
     /// Name of the scenario.
     pub name: String,
     /// File that it came from, byte by byte: models are looked up from there.
     pub path: Option<Vec<u8>>,
-    /// The folder that the files of the scenario are below, byte by byte.
+    /// The folder that contains the files of the scenario, byte by byte.
     pub root: Option<Vec<u8>>,
     /// Its text.
     pub text: String,
-    /// Keys with another value than the text gives them.
+    /// Overrides of keys in the text.
     pub overrides: Vec<String>,
     /// The engine, by its name.
     pub engine: String,
-    /// Durations that the moves are slowed to (s); empty: as they are.
+    /// Durations that the moves are slowed to (s); empty: unchanged.
     pub durations: Vec<f64>,
-    /// What is to be done.
+    /// The task.
     pub task: Task,
 }
 
 impl Order {
-    /// That `task` is done with `job`.
+    /// Order to do `task` with `job`.
     pub(crate) fn new(job: &Job, task: Task) -> Self {
         let Scenario { name, path, root, overrides, .. } = &job.scenario;
         Self {

@@ -1,4 +1,4 @@
-//! A worker process, from the side of who gives orders.
+//! A worker process, from the side of its caller.
 use super::WorkerError;
 use super::message::{End, Message};
 use super::order::Order;
@@ -11,28 +11,27 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How often a worker is looked after while it is silent, or does not listen.
+/// Interval at which a worker is checked while it is silent, or does not read.
 const GLANCE: Duration = Duration::from_millis(50);
-/// What a worker may take longer than its limit of time before it is ended: it ends its run itself, unless it is stuck, and then has
-/// its recording to write.
+/// Time beyond its limit after which a worker is killed: it ends its run itself, unless it is stuck, and then has its recording to write.
 const GRACE: Duration = Duration::from_secs(2);
-/// Memory above which a worker does not serve again (B): a library that keeps what it has had grows from run to run.
+/// Memory above which a worker is not used again (B): a library that never frees its memory grows from run to run.
 const MUCH: u64 = 500_000_000;
 /// Bytes that are read at a time.
 const CHUNK: usize = 1 << 14;
 
-/// A worker process; it is ended when this is dropped.
+/// A worker process, killed on drop.
 #[derive(Debug)]
 pub(super) struct Worker {
     process: Contained,
     channel: Channel,
-    /// What has come and is no line yet.
+    /// Received bytes that are not a complete line yet.
     heard: Vec<u8>,
-    /// Where it leaves recordings.
+    /// File of its recordings.
     recording: File,
     program: PathBuf,
     timeout: Duration,
-    /// Memory that it has for itself (B).
+    /// Memory that it occupies (B).
     holds: u64,
     orders: u32,
 }
@@ -55,17 +54,17 @@ impl Worker {
         Ok(Self { process, channel, heard: Vec::new(), recording, program, timeout, holds: 0, orders: 0 })
     }
 
-    /// Whether it has had an order before the last one.
+    /// True if it has had an order before the last one.
     pub(super) const fn is_used(&self) -> bool {
         self.orders > 1
     }
 
-    /// Whether it is as good as a new one.
+    /// True if it is as good as a new one.
     pub(super) fn may_serve_again(&self) -> bool {
         self.process.ending().is_none() && self.heard.is_empty() && self.holds < MUCH
     }
 
-    /// Gives an order and listens to its end; `on_message` gets all but the last word, and nothing from time to time.
+    /// Gives an order and reads messages to its end; `on_message` gets all but the last message, and `None` from time to time.
     pub(super) fn carry_out(
         &mut self,
         order: &Order,
@@ -89,7 +88,7 @@ impl Worker {
                 }
                 Ok(None) => return Err(self.ended().into()),
                 Err(error) if is_of_time(&error) => {
-                    // What it has started may hold the socket open.
+                    // A process that it has started may hold the socket open.
                     if self.process.ending().is_some() {
                         return Err(self.ended().into());
                     }
@@ -107,19 +106,19 @@ impl Worker {
         }
     }
 
-    /// Tells it that there are no more orders.
+    /// Closes its input: there are no more orders.
     pub(super) fn dismiss(&self) {
-        // One that has ended is as good.
+        // A worker that has ended needs no notice.
         self.channel.close().ok();
     }
 
-    /// Waits for the end of one that was dismissed: what it had left behind, in words.
+    /// Waits for the end of a dismissed worker: processes that it left behind, in words.
     pub(super) fn left_behind(&self) -> Option<String> {
         self.process.wait_for_end(GRACE);
         self.process.ending().and_then(servobench_isolation::Ending::left_in_words)
     }
 
-    /// The recording that it has left, which goes.
+    /// Takes the recording out of its file.
     pub(super) fn take_recording(&mut self) -> io::Result<Recording> {
         let recording = recording::read(&mut self.recording);
         self.recording.set_len(0)?;
@@ -133,7 +132,7 @@ impl Worker {
         while !rest.is_empty() {
             match self.channel.write(rest) {
                 Ok(count) => rest = &rest[count..],
-                // One that ends before it has read everything may have said why.
+                // A worker that ends before it has read everything may have reported the reason.
                 Err(error) if error.kind() == ErrorKind::BrokenPipe && self.orders == 1 => return Ok(()),
                 Err(error) if is_of_time(&error) && silence.elapsed() > self.timeout => return Err(self.stalled()),
                 Err(error) if is_of_time(&error) => {}
@@ -143,7 +142,7 @@ impl Worker {
         Ok(())
     }
 
-    /// The next line, which it is waited a [`GLANCE`] for; `None` when there will be none.
+    /// The next line, waiting up to a [`GLANCE`]; `None` when there will be none.
     fn line(&mut self) -> io::Result<Option<Vec<u8>>> {
         loop {
             if let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
@@ -154,14 +153,14 @@ impl Worker {
             match self.channel.read(&mut chunk) {
                 Ok(0) => return Ok(None),
                 Ok(count) => self.heard.extend_from_slice(&chunk[..count]),
-                // It ended without having read everything that it was told.
+                // It ended without having read all of its orders.
                 Err(error) if error.kind() == ErrorKind::ConnectionReset => return Ok(None),
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// It does not listen to orders any more.
+    /// Error of a worker that no longer reads orders.
     fn mute(&self, source: io::Error) -> WorkerError {
         WorkerError::Process { action: "speak to", program: self.program.clone(), source }
     }
@@ -171,7 +170,7 @@ impl Worker {
         WorkerError::Stalled { timeout: self.timeout }
     }
 
-    /// It has ended, or ends: how. One that only listens no longer is ended.
+    /// Error of a worker that has ended, or ends, with the manner of its end. One that merely no longer reads is killed.
     fn ended(&mut self) -> WorkerError {
         let waiting = Stopwatch::start();
         while self.process.ending().is_none() && waiting.elapsed() < self.timeout {
@@ -185,7 +184,7 @@ impl Worker {
     }
 }
 
-/// Whether nothing has happened but that time has passed.
+/// True if only time has passed.
 fn is_of_time(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }

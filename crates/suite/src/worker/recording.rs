@@ -5,7 +5,7 @@
 //! header (JSON): all of the recording but the values
 //! values of each channel (f64, little endian)
 //! ```
-//! It is not the format of recordings that stay: nothing is compressed or sealed, so that passing one on costs what copying it does.
+//! This is not the format of permanent recordings: nothing is compressed or sealed, so that passing one on costs as much as copying it.
 use servobench_base::Rate;
 use servobench_trace::{
     About, Call, Channel, ChannelSpec, CouplingEstimate, Event, GrowingValues, LimitReversals, LogEntry, Move,
@@ -16,18 +16,18 @@ use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
 /// Values that are converted at a time.
 const CHUNK: usize = 1 << 13;
-/// Bytes of a header, at most: what a worker says is not taken for granted.
+/// Largest header (B): messages of a worker are not trusted.
 const LONGEST_HEADER: u64 = 1 << 32;
 
-/// What it is of: scenario, engine, unit of the axis, bodies, overrides.
+/// Its origin: scenario, engine, unit of the axis, bodies, overrides.
 type AboutParts = (String, String, String, Vec<String>, Vec<String>);
-/// What happened.
+/// Its events.
 type Happened =
     (Vec<Move>, Vec<Event>, Vec<Signal>, Vec<Call>, Vec<LimitReversals>, Vec<LogEntry>, Option<CouplingEstimate>);
 /// All but the values, with the number of instants.
 type Header = (AboutParts, Rate, usize, Vec<ChannelSpec>, Happened);
 
-/// Writes `recording` into `file` in place of what is there.
+/// Writes `recording` into `file` in place of the present content.
 pub(super) fn write(recording: &Recording, file: &mut File) -> io::Result<()> {
     file.set_len(0)?;
     file.rewind()?;

@@ -18,12 +18,11 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::time::Duration;
 
-/// How often progress is told, at most.
+/// Smallest interval between reports of progress.
 const BETWEEN: Duration = Duration::from_millis(50);
 
-/// Carries out orders until nobody gives any more: those to run something with the engines `running`, those to check with `checking`. The
-/// standard streams of this process belong to that from now on: what libraries write
-/// on standard output goes to standard error.
+/// Carries out orders until there are no more: those to run something with the engines `running`, those to check with `checking`. The
+/// standard streams of this process are taken over: output of libraries on standard output goes to standard error.
 ///
 /// # Errors
 /// Those of the system.
@@ -43,10 +42,10 @@ pub fn serve(running: &Engines, checking: &Engines) -> io::Result<()> {
     }
 }
 
-/// Carries out `order` and tells the caller on `out`: progress, and at last how it ended. The recording goes to `file`.
-/// Warnings are not repeated: the caller has seen them.
+/// Carries out `order` and reports to the caller on `out`: progress, and at last the end. The recording goes to `file`. Warnings are not
+/// repeated: the caller has seen them.
 pub fn answer(order: &Order, file: &mut File, engines: &Engines, mut out: impl Write) -> End {
-    // A caller that no longer listens has ended, and nobody needs this process any longer.
+    // A caller that no longer reads has ended, and this process is no longer needed.
     let mut say = |message: &Message| {
         message.line().map_err(io::Error::from).and_then(|line| out.write_all(line.as_bytes())).ok();
         out.flush().ok();

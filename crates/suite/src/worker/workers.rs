@@ -1,4 +1,4 @@
-//! The workers of a suite: started when they are needed, and used again.
+//! The workers of a suite: started on demand, and used again.
 use super::WorkerError;
 use super::message::{End, Message};
 use super::order::{Order, Task};
@@ -15,27 +15,27 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// When a run is slow.
+/// Duration after which a run is slow.
 const SLOW: Duration = Duration::from_mins(1);
 
-/// How to start a worker, and what runs may take, wherever they are.
+/// Program of a worker, and the limits of runs in any process.
 #[derive(Debug, Clone)]
 pub struct WorkerCommand {
     /// The program.
     pub program: PathBuf,
     /// Folder for the recordings on their way from the worker; they have no names there.
     pub folder: PathBuf,
-    /// How long a worker may say nothing. It speaks every thousand ticks or so, but not while the engine reads the model
-    /// nor while it writes the recording.
+    /// Longest silence of a worker. It reports every thousand ticks or so, but not while the engine reads the model nor while it writes the
+    /// recording.
     pub timeout: Duration,
-    /// What a run may take.
+    /// Limits of a run.
     pub limits: RunLimits,
 }
 
-/// What a run may take.
+/// Limits of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunLimits {
-    /// Time by the clock; a scenario may say less. `None`: as the scenario says, otherwise a default.
+    /// Wall-clock time; a scenario may set less. `None`: that of the scenario, otherwise a default.
     pub time: Option<TimeBound>,
     /// Memory (B): of a recording, and of a worker.
     pub memory: u64,
@@ -45,30 +45,30 @@ pub struct RunLimits {
 #[derive(Debug)]
 pub struct Workers {
     command: WorkerCommand,
-    /// Those that have nothing to do.
+    /// Idle workers.
     idle: Mutex<Vec<Worker>>,
 }
 
 impl Workers {
-    /// None yet.
+    /// Without workers yet.
     #[must_use]
     pub const fn new(command: WorkerCommand) -> Self {
         Self { command, idle: Mutex::new(Vec::new()) }
     }
 
-    /// None, and no limits: an engine that needs a worker cannot be asked.
+    /// Without workers and limits: an engine that needs a worker cannot be checked.
     #[must_use]
     pub const fn none() -> Self {
         let limits = RunLimits { time: Some(TimeBound::Unlimited), memory: u64::MAX };
         Self::new(WorkerCommand { program: PathBuf::new(), folder: PathBuf::new(), timeout: Duration::ZERO, limits })
     }
 
-    /// What a run may take.
+    /// Limits of a run.
     pub(crate) const fn limits(&self) -> RunLimits {
         self.command.limits
     }
 
-    /// Ends the workers, which have nothing to do any more: what they had started and left behind, in words. It was ended too.
+    /// Ends the idle workers and returns the processes that they had started and left behind, in words; those were killed too.
     #[must_use]
     pub fn dismiss(&self) -> Vec<String> {
         let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
@@ -78,7 +78,7 @@ impl Workers {
         idle.iter().filter_map(Worker::left_behind).collect()
     }
 
-    /// When a run of `job` is slow, by the clock: after a minute, or at half of its limit of time.
+    /// Wall-clock time after which a run of `job` is slow: a minute, or half of its time limit.
     #[must_use]
     pub fn slow(&self, job: &Job) -> Duration {
         let limit = TimeLimit::of(job, self.limits().time);
@@ -124,7 +124,7 @@ impl Workers {
         }
     }
 
-    /// Asks a worker process what keeps `job` from being built.
+    /// Reasons why `job` cannot be built, from a worker process.
     pub(crate) fn ask(&self, job: &Job) -> Result<Vec<Objection>, WorkerError> {
         let mut all = Vec::new();
         self.answer(job, Task::Check, &mut |message| {
@@ -163,8 +163,8 @@ impl Workers {
         }
     }
 
-    /// Has `order` carried out; `on_message` gets what is said but the last word, and from time to time nothing. A recording that is
-    /// there, or why it cannot be read, goes to `recording`.
+    /// Has a worker carry out `order`; `on_message` gets all messages but the last, and `None` from time to time. An existing recording, or
+    /// the error of reading it, goes to `recording`.
     fn converse(
         &self,
         order: &Order,
@@ -174,7 +174,7 @@ impl Workers {
     ) -> Result<End, Broken> {
         let mut worker = self.worker()?;
         let end = match worker.carry_out(order, time_limit, on_message) {
-            // It has ended while it had nothing to do.
+            // It has ended while it was idle.
             Err(Broken::Worker(WorkerError::Process { action: "speak to", .. })) if worker.is_used() => {
                 worker = Worker::start(&self.command)?;
                 worker.carry_out(order, time_limit, on_message)
@@ -196,12 +196,12 @@ impl Workers {
     }
 }
 
-/// Why an order came to no end.
+/// Reasons why an order came to no end.
 #[derive(Debug)]
 pub(super) enum Broken {
     /// By the worker.
     Worker(WorkerError),
-    /// It took longer than its limit and was ended.
+    /// It exceeded its limit and was killed.
     Late,
 }
 
