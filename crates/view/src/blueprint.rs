@@ -1,4 +1,4 @@
-//! Which view stands where.
+//! Arrangement of the views.
 use crate::catalogue::Page;
 use crate::curves::TIMELINE;
 use crate::layout::{Layout, Node, View};
@@ -19,9 +19,9 @@ use crate::timeline_events::Happenings;
 use crate::verdict::Head;
 use servobench_metrics::round_below;
 
-/// Height of what stands below the tabs in a window of 1400 × 900 points.
+/// Height below the tabs in a window of 1400 × 900 points.
 const PAGE: f64 = 815.0;
-/// Most that the head takes of the first page; more can be scrolled to (points).
+/// Largest height of the head on the first page; the rest can be scrolled to (points).
 const HEAD: f64 = 200.0;
 /// Height of title and time axis of a plot (points).
 const AROUND: f64 = 40.0;
@@ -30,12 +30,12 @@ const LEAST: f64 = 165.0;
 /// Height of title and time axis of lanes, and of a lane (points).
 const LANES: f64 = 54.0;
 const LANE: f64 = 40.0;
-/// Most of a column that lanes take, when there are plots too.
+/// Largest share of a column for lanes, when there are plots too.
 const MOST: f64 = 0.6;
-/// More plots than this on a page stand in two columns; of the set-point, more than the second number.
+/// Largest number of plots on a page in a single column; for the set-point, the second number.
 const COLUMN: (usize, usize) = (3, 2);
 
-/// What is to be arranged.
+/// Parts to be arranged.
 pub(crate) struct Parts<'p, 'a> {
     /// The plots.
     pub(crate) plots: &'p [PlannedPlot<'a>],
@@ -47,9 +47,9 @@ pub(crate) struct Parts<'p, 'a> {
     pub(crate) signals: Lanes,
     /// Lanes of limits.
     pub(crate) reached: Option<Reached>,
-    /// Where the motor works.
+    /// Planes of the motor's operating points.
     pub(crate) planes: &'p [Plane],
-    /// What came of it.
+    /// Verdict, above every page.
     pub(crate) head: &'p Head,
     /// Length of the longest run (s).
     pub(crate) duration: f64,
@@ -58,7 +58,7 @@ pub(crate) struct Parts<'p, 'a> {
 /// Height of a part of a column.
 #[derive(Debug, Clone, Copy)]
 enum Room {
-    /// Its share of what is left.
+    /// Share of the remaining height.
     Share(f64),
     /// Points.
     Points(f64),
@@ -137,7 +137,7 @@ fn operating(planes: &[Plane]) -> Option<Node> {
     Node::of(ContainerKind::Vertical, None, rows.collect())
 }
 
-/// The page of signals: the motion, calls that came to no end, and a lane for each signal.
+/// The page of signals: the motion, calls that never completed, and a lane for each signal.
 fn program(motion: Column<'_, '_>, signals: &Lanes, height: f64) -> Option<Node> {
     if signals.paths.is_empty() && signals.fates.is_empty() {
         return None;
@@ -186,7 +186,7 @@ fn in_columns(mut plots: Column<'_, '_>, most: usize, height: f64) -> Option<Nod
     Node::of(ContainerKind::Horizontal, None, columns.collect())
 }
 
-/// The tab `name`: the head above `page`, whole as far as there is room on the first.
+/// The tab `name`: the head above `page`, on the first tab in full as far as there is room.
 fn with_head(name: &'static str, page: Node, head: &Head, is_first: bool) -> Node {
     let height = head_height(head, is_first);
     #[expect(clippy::cast_possible_truncation, reason = "rounds, to far less than a pixel")]
@@ -214,12 +214,12 @@ fn playback_speed(duration: f64) -> f64 {
     if duration > 0.0 { round_below(duration / 6.0).min(1.0) } else { 1.0 }
 }
 
-/// Share of a column that a plot takes: a disturbance has little to show.
+/// Share of a column for a plot: a disturbance needs less.
 fn share(plot: &PlannedPlot<'_>) -> Room {
     Room::Share(if plot.path.ends_with("_disturbance") { 0.6 } else { 1.0 })
 }
 
-/// Moves and events, as high as it has lanes.
+/// Moves and events, with a height for their lanes.
 fn lanes_view<'p, 'a>(timeline_events: &Happenings) -> Option<(Room, Part<'p, 'a>)> {
     let lanes = timeline_events.lanes.clone();
     let height = Room::Points(lanes_height(lanes.len().min(4)));
@@ -251,7 +251,7 @@ fn plot_view(plot: &PlannedPlot<'_>, height: f64) -> Node {
     };
     let (low, high) = plot.range(height);
     let values = ScalarAxis::new().with_range([low * plot.scale.factor, high * plot.scale.factor]);
-    // The title says what a single curve is.
+    // The title names a single curve.
     let legend =
         PlotLegend::new().with_corner(legend::corner(plot, (low, high))).with_visible(plot.shown().count() > 1);
     let view = View::new("TimeSeries", plot.title.clone(), shown.collect());

@@ -1,4 +1,4 @@
-//! Which channels are plotted together, under which name.
+//! Channels that are plotted together, and the names of plots and curves.
 use crate::style::{self, Rgb};
 use servobench_signals::Signal;
 
@@ -9,7 +9,7 @@ pub(crate) enum Page {
     Motion,
     /// Right column of the first page.
     Errors,
-    /// What was asked for.
+    /// The set-point.
     SetPoint,
     /// Currents, voltages and powers of the drive.
     Electrical,
@@ -20,7 +20,7 @@ pub(crate) enum Page {
 /// One curve of a plot.
 #[derive(Debug)]
 pub(crate) struct Curve {
-    /// Channels that can feed it; the first that was recorded does.
+    /// Channels that can feed it; the first recorded one is used.
     pub(crate) channels: &'static [&'static str],
     /// Name in the legend and last part of the entity path.
     pub(crate) name: &'static str,
@@ -30,7 +30,7 @@ pub(crate) struct Curve {
     pub(crate) width: f32,
 }
 
-/// What a title says of the curves.
+/// Number in a title, computed from the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Headline {
     /// Nothing.
@@ -42,7 +42,7 @@ pub(crate) enum Headline {
 }
 
 impl Headline {
-    /// The number that it says of a curve from `low` to `high`.
+    /// The number for a curve from `low` to `high`.
     pub(crate) fn of(self, (low, high): (f64, f64)) -> f64 {
         match self {
             Self::PeakToPeak => high - low,
@@ -60,21 +60,21 @@ pub(crate) struct Plot {
     pub(crate) linear_title: Option<&'static str>,
     /// First part of the entity path. A channel that no plot names, but whose name begins with it, is shown here too.
     pub(crate) path: &'static str,
-    /// Where it stands.
+    /// Page of the blueprint.
     pub(crate) page: Page,
-    /// What the title says of the first curve.
+    /// Number of the first curve in the title.
     pub(crate) headline: Headline,
-    /// Whether currents and voltages are amplitudes.
+    /// True if currents and voltages are amplitudes.
     pub(crate) amplitude: bool,
-    /// Values that are always in sight (SI).
+    /// Values that the axis always includes (SI).
     pub(crate) includes: &'static [f64],
-    /// Whether a value holds until the next one: a staircase.
+    /// True if a value holds until the next one: a staircase.
     pub(crate) held: bool,
-    /// Whether it is left out where nothing but zero was recorded.
+    /// True if it is left out where only zeros were recorded.
     pub(crate) needs_a_value: bool,
     /// Derivative of the position whose limit in the plan bounds it, 0 for velocity.
     pub(crate) derivative: Option<usize>,
-    /// Its curves, the one that a comparison shows first: the first of them that was recorded.
+    /// Its curves; a comparison shows only the first recorded one.
     pub(crate) curves: &'static [Curve],
 }
 
@@ -85,7 +85,7 @@ const fn curve(channels: &'static [&'static str], name: &'static str, colour: Rg
     Curve { channels, name, colour, width }
 }
 
-/// A plot as most are; the others name what differs.
+/// A plot with the usual properties; the others override them.
 const PLAIN: Plot = Plot {
     title: "",
     linear_title: None,
@@ -100,8 +100,8 @@ const PLAIN: Plot = Plot {
     curves: &[],
 };
 
-// Curves of one plot often coincide. Rerun draws them in the alphabetical order of their paths: what comes later is thinner,
-// so that all of them can be seen.
+// Curves of one plot often coincide. Rerun draws them in the alphabetical order of their paths: later ones are thinner, so that all of them
+// can be seen.
 const WIDEST: f32 = 5.0;
 const WIDE: f32 = 3.5;
 const BROAD: f32 = 2.75;
@@ -217,8 +217,7 @@ pub(crate) const PLOTS: &[Plot] = &[
         curves: &[curve(&[Signal::CommandOutput.name()], "output", style::MOTOR, MIDDLE)],
         ..PLAIN
     },
-    // The way of the set-point: from the motion task over the bus to what the motor is to follow, and what the master puts out and
-    // receives.
+    // The path of the set-point: from the motion task over the bus to the motor's reference, and the output and input of the master.
     Plot {
         title: "Set-point position",
         path: "setpoint_position",

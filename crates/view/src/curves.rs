@@ -6,12 +6,12 @@ use crate::scale::Scale;
 use crate::series::{Series, Values};
 use servobench_trace::envelope;
 
-/// How much later the upper end of an upright line is than the lower (s).
+/// Time difference between the lower and the upper end of an upright line (s).
 const UPRIGHT: f64 = 1e-9;
 /// The one timeline: seconds since the start of the run.
 pub(crate) const TIMELINE: &str = "time";
 
-/// Logs names and colours of all lines of `plot`. Without them a viewer shows what it has read so far in colours of its own.
+/// Logs names and colours of all lines of `plot`. Without them a viewer shows the data read so far in default colours.
 pub(crate) fn log_styles(stream: &RecordingStream, plot: &PlannedPlot<'_>) -> RecordingStreamResult<()> {
     plot.series.iter().try_for_each(|series| stream.log_static(series.path.clone(), &style(series, plot.held)))
 }
@@ -33,7 +33,7 @@ fn style(series: &Series<'_>, held: bool) -> SeriesLines {
     lines.with_widths([series.width]).with_interpolation_mode(mode)
 }
 
-/// Times (s) and values (in the plot's unit); what is not finite has no place in a plot.
+/// Times (s) and values (in the plot's unit); non-finite values are left out.
 fn points(series: &Series<'_>, scale: &Scale, max_instants: usize) -> (Vec<f64>, Vec<f64>) {
     match series.values {
         Values::Channel { run, values, first, origin } => {

@@ -1,8 +1,8 @@
-//! What can go wrong on the way to Rerun.
+//! Errors on the way to Rerun.
 use servobench_view_request::LabelError;
 use thiserror::Error;
 
-/// Why a recording was not shown.
+/// Reasons why a recording was not shown.
 #[derive(Debug, Error)]
 pub enum ViewError {
     /// Nothing to compare.
@@ -11,7 +11,7 @@ pub enum ViewError {
         /// Number of runs given.
         found: usize,
     },
-    /// Runs and labels do not go together.
+    /// The number of labels differs from that of the runs.
     #[error("{recordings} recordings and {labels} labels: several recordings need a label each, a single one has none")]
     Labels {
         /// Number of labels.
@@ -22,10 +22,10 @@ pub enum ViewError {
     /// A label cannot be the first part of an entity path.
     #[error(transparent)]
     Label(#[from] LabelError),
-    /// Rerun refused.
+    /// Rerun reported an error.
     #[error("rerun cannot {action}: {reason}")]
     Rerun {
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
         /// Rerun's reason.
         reason: String,
@@ -33,7 +33,7 @@ pub enum ViewError {
 }
 
 impl ViewError {
-    /// For `map_err`: what was tried, then Rerun's error.
+    /// For `map_err`: the attempted action, then Rerun's error.
     pub(crate) fn rerun<E: std::fmt::Display>(action: &'static str) -> impl Fn(E) -> Self {
         move |error| Self::Rerun { action, reason: error.to_string() }
     }

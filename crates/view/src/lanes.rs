@@ -1,4 +1,4 @@
-//! Lanes: what is, from when to when, in words and a colour.
+//! Lanes: states over time, as texts with colours.
 use crate::curves::TIMELINE;
 use crate::rerun::{
     Color, EntityPath, RecordingStream, RecordingStreamResult, StateChange, StateConfiguration, TimeColumn,
@@ -11,9 +11,9 @@ use std::borrow::Cow;
 pub(crate) struct Span<'a> {
     /// Start (s).
     pub(crate) start: f64,
-    /// End (s); infinite where it goes on to the end of the run, whenever that is.
+    /// End (s); infinite where it lasts to the end of the run, whenever that is.
     pub(crate) end: f64,
-    /// What it is.
+    /// Its text.
     pub(crate) text: Cow<'a, str>,
     /// Its colour; the same for the same text.
     pub(crate) colour: Rgb,
@@ -24,9 +24,9 @@ pub(crate) struct Span<'a> {
 pub(crate) struct Lane<'a> {
     /// Its entity.
     pub(crate) path: EntityPath,
-    /// What is shown, in order of time.
+    /// Spans in order of time.
     pub(crate) spans: Vec<Span<'a>>,
-    /// What is when no span is.
+    /// Text outside of the spans.
     pub(crate) otherwise: &'static str,
 }
 
@@ -34,7 +34,7 @@ impl Lane<'_> {
     /// Logs it.
     pub(crate) fn log(&self, stream: &RecordingStream) -> RecordingStreamResult<()> {
         let Self { path, spans, otherwise } = self;
-        // From the start of the run on, or the view would begin with the first span.
+        // From the start of the run on; otherwise the view would begin with the first span.
         let mut changes =
             if spans.first().is_some_and(|span| span.start > 0.0) { vec![(0.0, *otherwise)] } else { Vec::new() };
         for (index, span) in spans.iter().enumerate() {

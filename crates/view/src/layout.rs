@@ -15,11 +15,11 @@ use crate::rerun::{
     AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, SerializedComponentBatch,
 };
 
-/// How the viewer arranges a recording. Made by [`Presentation::blueprint`](crate::Presentation::blueprint).
+/// Arrangement of a recording in the viewer. Made by [`Presentation::blueprint`](crate::Presentation::blueprint).
 #[derive(Debug)]
 pub struct Layout {
     pub(crate) root: Node,
-    /// Seconds of the run per second of playing.
+    /// Seconds of the run per second of playback.
     pub(crate) playback_speed: f64,
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct Container {
     pub(crate) kind: ContainerKind,
     /// Name of the tab, when it is in tabs.
     pub(crate) name: Option<&'static str>,
-    /// Parts and their shares of the room.
+    /// Parts and their shares of the space.
     pub(crate) parts: Vec<(f32, Node)>,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct View {
     pub(crate) class: &'static str,
     pub(crate) title: String,
     pub(crate) contents: Vec<EntityPath>,
-    /// Whether what is below the contents is shown too.
+    /// True if entities below the contents are shown too.
     pub(crate) recursive: bool,
     /// Name of the property's archetype and its components.
     pub(crate) properties: Vec<(&'static str, Vec<SerializedComponentBatch>)>,
@@ -70,7 +70,7 @@ impl View {
 }
 
 impl Node {
-    /// Parts in `kind`; a single part stands for itself, and none for nothing.
+    /// Parts in `kind`; a single part without a container, `None` without parts.
     pub(crate) fn of(kind: ContainerKind, name: Option<&'static str>, mut parts: Vec<(f32, Self)>) -> Option<Self> {
         match (parts.len(), name) {
             (0, _) => None,
@@ -125,7 +125,7 @@ impl Layout {
     }
 }
 
-/// Logs `node` as a container (a view gets one of its own) and returns the container's id.
+/// Logs `node` as a container (a view gets a separate one) and returns the container's id.
 fn log_node(stream: &RecordingStream, node: &Node) -> RecordingStreamResult<Uuid> {
     let view_alone;
     let (container, parts): (&Container, Vec<(f32, &Node)>) = match node {

@@ -1,18 +1,18 @@
-//! Where the legend of a plot covers least.
+//! Corner in which the legend of a plot covers least.
 use crate::planned::PlannedPlot;
 use crate::rerun::blueprint::components::Corner2D;
 use crate::series::Role;
 
-/// Part of a plot's width that a legend takes.
+/// Share of a plot's width for a legend.
 const WIDTH: f64 = 0.18;
-/// Part of a plot's height that one line of a legend takes, and its frame.
+/// Shares of a plot's height for one line of a legend, and for its frame.
 const LINE: f64 = 0.12;
 const FRAME: f64 = 0.06;
-/// Instants at which a curve is looked at in a corner.
+/// Number of instants at which a curve is checked in a corner.
 const LOOKS: usize = 400;
 
-/// Corners in order of preference: whether each is at the right and at the top, and the weight of what it covers. Much of
-/// what is to be seen happens at the left.
+/// Corners in order of preference: each with true if at the right, true if at the top, and the weight of the covered points. Most events
+/// are at the left.
 const CORNERS: [(Corner2D, bool, bool, usize); 4] = [
     (Corner2D::RightTop, true, true, 1),
     (Corner2D::RightBottom, true, false, 1),
@@ -30,7 +30,7 @@ pub(crate) fn corner(plot: &PlannedPlot<'_>, (low, high): (f64, f64)) -> Corner2
             if right { (end - WIDTH * (end - start), end) } else { (start, start + WIDTH * (end - start)) };
         let (bottom, ceiling) =
             if top { (high - height * (high - low), high) } else { (low, low + height * (high - low)) };
-        // Of a bound, the rest of the line says as much.
+        // The visible rest of a bound's line suffices.
         let curves = plot.shown().filter(|series| series.role != Role::Bound);
         curves.map(|series| series.hits((from, to), (bottom, ceiling), LOOKS)).sum()
     };

@@ -1,10 +1,9 @@
-//! `Recording` → Rerun: the bytes of a file, or a viewer that is open.
+//! `Recording` → Rerun: the bytes of a file, or an open viewer.
 //!
-//! Everything stands on one timeline, `time` (s since the start of the run). A channel of more instants than
-//! [`ViewOptions::max_instants`] is thinned to a minimum/maximum envelope: the run is cut into stretches of equal length
-//! and of each the smallest and the largest value stay, at their own instants. The full rate is in the Parquet file.
-//! Curves are logged in the unit that their view's title names, chosen by the largest value of the run (µm for a
-//! following error); 3D poses are every n-th instant, at most 4 000.
+//! All data are on one timeline, `time` (s since the start of the run). A channel of more instants than [`ViewOptions::max_instants`] is
+//! thinned to a minimum/maximum envelope: the run is cut into stretches of equal length and the smallest and the largest value of each
+//! stay, at their instants. The full rate is in the Parquet file. Curves are logged in the unit in their view's title, chosen by the
+//! largest value of the run (µm for a following error); 3D poses are every n-th instant, at most 4 000.
 
 mod blueprint;
 mod catalogue;
@@ -51,7 +50,7 @@ pub fn run_rrd(recording: &Recording, options: &ViewOptions) -> Result<Vec<u8>, 
     Presentation::of_run(recording, options).to_rrd()
 }
 
-/// Several labelled runs over each other as one `.rrd` file with its blueprint.
+/// Several labelled runs overlaid, as one `.rrd` file with its blueprint.
 ///
 /// # Errors
 /// As [`Presentation::of_comparison`]; [`ViewError::Rerun`].
@@ -59,7 +58,7 @@ pub fn comparison_rrd(runs: &[(&str, &Recording)], options: &ViewOptions) -> Res
     Presentation::of_comparison(runs, options)?.to_rrd()
 }
 
-/// The `.rrd` file that `request` asks for of `recordings`: of one without a label, or of several with one each.
+/// The `.rrd` file requested by `request` for `recordings`: a single one without a label, or several with one each.
 ///
 /// # Errors
 /// [`ViewError::Labels`]; as [`run_rrd`] and [`comparison_rrd`].

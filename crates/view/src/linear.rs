@@ -1,7 +1,7 @@
 //! A linear axis in 3D: the motor's body on a rail, the others above it on leaf springs, a ruler in front.
 //!
-//! All bodies stand on one scale, that of the ruler: a body at 105 mm stands above the mark of 105 mm. Only the deflection
-//! against the motor is enlarged, as the title says; a pointer at the ruler shows where the load is without that.
+//! All bodies share one scale, that of the ruler: a body at 105 mm stands above the mark of 105 mm. Only the deflection relative to the
+//! motor is enlarged, by the factor in the title; a pointer at the ruler shows the true position of the load.
 use crate::curves::TIMELINE;
 use crate::rerun::Mat3x3;
 use crate::rerun::{
@@ -25,17 +25,17 @@ const LEAF: f32 = 0.065;
 pub(crate) const ROOM: f64 = 0.08;
 /// Distance between the rails of two runs, and of more (travels).
 const LANES: (f32, f32) = (0.7, 0.45);
-/// Room of the names of runs beside their rails (travels).
+/// Space for the names of runs beside their rails (travels).
 const RUN_NAMES: f32 = 0.5;
-/// Room of the names beside the bodies (travels).
+/// Space for the names beside the bodies (travels).
 const NAMES: f32 = 0.2;
-/// Most steps of the ruler, as more labels would not stand beside each other; a travel that overshoots by little has no more.
+/// Largest number of steps of the ruler, as more labels would overlap; a travel with a small overshoot has the same number.
 const STEPS: f64 = 5.2;
-/// Part of a step by which the travel may miss a tick of the ruler.
+/// Share of a step by which the travel may miss a tick of the ruler.
 const MISS: f64 = 0.02;
 /// Length of the arrow of the largest force (travels).
 const ARROW: f32 = 0.22;
-/// Half the width of what the camera sees, in distances from it: a view half as high as wide.
+/// Half the width of the camera's view, in distances from it: a view half as high as wide.
 const VIEW: f32 = 1.05;
 
 /// Half the length of the bed.
@@ -68,7 +68,7 @@ pub(crate) fn camera(runs: usize, bodies: usize) -> ([f32; 3], [f32; 3]) {
     let away = (HALF_BED + NAMES / 2.0) / VIEW + 0.2 + 0.5 * depth;
     // Steeper for several rails, or the bodies in front would hide those behind.
     let (back, up) = if runs > 1 { (0.72, 0.7) } else { (0.9, 0.45) };
-    // What is near takes more of the picture than what is far.
+    // Near objects take more of the picture than far ones.
     let target = if runs > NAMED { 0.3 } else { 0.42 } * depth;
     ([middle, target - back * away, height + up * away], [middle, target, height])
 }
@@ -133,7 +133,7 @@ fn log_leaves(
 ) -> RecordingStreamResult<()> {
     let path = run.path(&["axis", "spring", above.name]);
     let feet = below.positions.iter().map(|position| [scene.place(*position), y, z]);
-    // What is upright leans towards the upper body.
+    // Upright edges lean towards the upper body.
     let lean = above.positions.iter().zip(&below.positions).map(|(above, below)| scene.length(above - below));
     let matrices = lean.map(|lean| Mat3x3::from([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [lean, 0.0, LEAF]]));
     poses.send(
@@ -160,9 +160,9 @@ fn log_body(stream: &RecordingStream, path: EntityPath, body: &Body, number: usi
 /// Place of the name of body `number` of run `index`, from that of the body.
 fn beside(run: &Run<'_>, [index, number]: [usize; 2]) -> [f32; 3] {
     let (bottom, half) = storey(number);
-    // Names of a run are not in the way of those of the run behind it.
+    // Names of a run must not cover those of the run behind it.
     let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
-    // With the name of a run in front they are longer, and of rails further away.
+    // With the name of a run in front they are longer, and those of rails further away.
     let (away, height) = if run.label.is_some() { (1.6 * NAMES, 0.19 * number as f32) } else { (NAMES, bottom + half) };
     [side * (HALF_BODY + away / 2.0), 0.0, height]
 }
@@ -172,7 +172,7 @@ fn label(place: [f32; 3], word: &str, colour: Rgb) -> Points3D {
     Points3D::new([place]).with_radii([0.001]).with_colors([colour]).with_labels([word]).with_show_labels(true)
 }
 
-/// An arrow above the load, as long as it is pushed hard.
+/// An arrow above the load, with a length in proportion to the force.
 fn log_force(stream: &RecordingStream, run: &Run<'_>, poses: &Poses) -> RecordingStreamResult<()> {
     let (Some(force), Some(load)) = (&poses.force, poses.bodies.last()) else { return Ok(()) };
     let peak = range(force).map_or(0.0, |(low, high)| high.max(-low));
@@ -212,7 +212,7 @@ fn log_bed(stream: &RecordingStream, run: &Run<'_>, y: f32) -> RecordingStreamRe
     stream.log_static(run.path(&["axis", "bed"]), &bed)
 }
 
-/// Where the bodies are, in the unit of the axis.
+/// Ruler of the positions of the bodies, in the unit of the axis.
 fn log_ruler(stream: &RecordingStream, run: &Run<'_>, scene: &Scene) -> RecordingStreamResult<()> {
     let (low, high) = (scene.low, scene.low + scene.travel);
     let step = round_above(scene.travel / STEPS);

@@ -23,7 +23,7 @@ recording. docs/viewer.md describes it.
   -V, --version  Print version
 ";
 
-/// Why nothing was drawn.
+/// Reasons why nothing was drawn.
 #[derive(Debug, Error)]
 enum Failure {
     #[error("name a recording (.parquet)")]
@@ -47,7 +47,7 @@ enum Failure {
 }
 
 impl Failure {
-    /// Exit codes as those of `servobench`: 2 for invalid input, 3 for what could not be carried out.
+    /// Exit codes as those of `servobench`: 2 for invalid input, 3 for a failed operation.
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::NoRecording
@@ -67,7 +67,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let text = printable_lines(&failure.to_string());
-            // When standard error is closed, there is nobody to tell.
+            // When standard error is closed, no reader is left.
             writeln!(io::stderr(), "{PROGRAM}: {text}").ok();
             failure.exit_code()
         }

@@ -1,5 +1,5 @@
-//! Where a motor works, beside what it can give: effort over speed in its envelope, current in the circle of the drive, voltage in the
-//! hexagon of the inverter, and effort over the angle.
+//! Operating points of a motor against its capability: effort over speed in its envelope, current in the circle of the drive, voltage in
+//! the hexagon of the inverter, and effort over the angle.
 use crate::plane::{Axis, Curve, Plane};
 use crate::rerun::EntityPath;
 use crate::run::{Run, range};
@@ -22,11 +22,11 @@ pub(crate) const PATHS: [&str; 4] = [EFFORT_OVER_SPEED, CURRENT_PLANE, VOLTAGE_P
 
 /// Points of a bound.
 const OF_A_BOUND: u32 = 240;
-/// How far beyond the fastest point of a run, or beyond its corner, an envelope goes.
+/// Factor by which an envelope extends beyond the fastest point of a run, or beyond its corner.
 const BEYOND: f64 = 1.25;
-/// Part of the standstill effort that the corner of an envelope still has.
+/// Share of the standstill effort that the corner of an envelope still has.
 const CORNER: f64 = 0.98;
-/// The fastest that an envelope is looked for (electrical, rad/s).
+/// Largest speed at which an envelope is searched (electrical, rad/s).
 const FASTEST: f64 = 1e6;
 
 /// The planes of `runs`, all on the motor of `limits`, with about `most` points of each run.
@@ -54,7 +54,7 @@ fn effort_over_speed(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Opt
     let corner = limits.motor.fastest_with(bounds, CORNER * standing.min(limits.effort), FASTEST) / ratio;
     let to = (BEYOND * fastest.max(corner)).min(end);
     let given = |speed: f64| limits.motor.most_effort(bounds, ratio * speed).map(|most| most.effort.min(limits.effort));
-    // From standstill either way, driving and braking: it ends where the motor can go no faster, or where nobody went.
+    // From standstill in both directions, driving and braking: it ends at the motor's largest speed, or beyond the speeds of all runs.
     let ways = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     let quarters = ways.map(|(way, side)| {
         let speeds = (0..=OF_A_BOUND).map(|k| way * to * f64::from(k) / f64::from(OF_A_BOUND));
@@ -99,7 +99,7 @@ fn voltages(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Plane
         let (d, q, position, velocity) = (d?, q?, position?, velocity?);
         let half_a_tick = 0.5 * run.recording.rate.period();
         let in_the_stator = |k: usize| {
-            // The voltage is that of the middle of a tick.
+            // The voltage applies to the middle of a tick.
             let motor = (position[k] + half_a_tick * velocity[k]) / limits.transmission;
             let angle = ElectricalAngle::from_mechanical(motor, limits.motor.electrical_ratio);
             let voltage = Dq { d: d[k], q: q[k] }.to_alpha_beta(angle.rotation());
@@ -147,7 +147,7 @@ fn over_angle(runs: &[Run<'_>], limits: &MotorLimits, most: usize) -> Option<Pla
         let turn = |k: usize| (position[k] / limits.transmission / period).floor();
         let angle = |k: usize| position[k] / limits.transmission - turn(k) * period;
         let all = strips(position.len(), most, |k| [angle(k), effort[k]]);
-        // A line does not go back through the plane where a turn ends.
+        // A line does not cross the plane backwards where a turn ends.
         let is_whole = |pair: &[f64; 2], next: &[f64; 2]| (pair[0] - next[0]).abs() < 0.5 * period;
         Some(all.iter().flat_map(|strip| strip.chunk_by(is_whole).map(<[_]>::to_vec)).collect())
     })?;
@@ -203,8 +203,8 @@ fn curves(
     (!all.is_empty()).then_some(all)
 }
 
-/// `count` points in lines that end at what is not finite. Of more than `most` the extremes of both quantities stay, each where it is, so
-/// that no ripple is lost.
+/// `count` points in lines that end at non-finite values. Of more than `most` points the extremes of both quantities stay, each at its
+/// place, so that no ripple is lost.
 fn strips(count: usize, most: usize, point: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let points: Vec<[f64; 2]> = (0..count).map(point).collect();
     let extremes = |axis: usize| envelope(&points.iter().map(|point| point[axis]).collect::<Vec<f64>>(), most / 4);
@@ -228,7 +228,7 @@ fn circle(radius: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The largest magnitude that any point has on an axis.
+/// The largest magnitude of all points on an axis.
 fn largest(curves: &[Curve], axis: usize) -> f64 {
     let points = curves.iter().flat_map(|curve| curve.strips.iter().flatten());
     points.map(|point| point[axis].abs()).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! What will be plotted: the catalogue, met with what was recorded.
+//! Plots to be drawn: those of the catalogue for which channels were recorded.
 use crate::catalogue::{BOUND, Headline, PLOTS, Page, Plot};
 use crate::planned::{ALLOWED, Bound, Frame, PlannedPlot, Sides};
 use crate::residual;
@@ -34,14 +34,14 @@ pub(crate) fn plots<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Vec<PlannedP
     planned
 }
 
-/// The first derivative of the position (0: velocity) that may be missing although the axis moves: a bus need not carry the
-/// acceleration, and the order of a move need not limit what follows.
+/// The first derivative of the position (0: velocity) that may be missing although the axis moves: a bus need not carry the acceleration,
+/// and the order of a move need not limit the higher derivatives.
 const ACCELERATION: usize = 1;
 
-/// Width of a curve that is alone (points).
+/// Width of a single curve (points).
 const ALONE: f32 = 2.0;
 
-/// A curve that is to be plotted.
+/// A curve to be plotted.
 struct Wanted<'c> {
     channels: &'c [&'c str],
     name: Cow<'c, str>,
@@ -119,7 +119,7 @@ fn plan_others<'a>(group: &[Unlisted<'a>], runs: &[Run<'a>]) -> Option<PlannedPl
     let first = group.first()?;
     let own: Vec<[&str; 1]> = group.iter().map(|other| [other.channel]).collect();
     let wanted: Vec<Wanted<'_>> = wanted(group, &own, 0).collect();
-    // One name for all runs and plots: what a channel may be called is nobody's business here.
+    // One name for all runs and plots: any channel name is accepted here.
     let (lead, series) = series(OTHERS, &wanted, runs);
     series.iter().find(|one| one.range().is_some())?;
     let name = first.group.replace('_', " ");
@@ -159,8 +159,8 @@ fn wanted<'c>(
     })
 }
 
-/// The series of `wanted` of all `runs`, and the name of the curve that the title speaks of: the first that one of them
-/// has. In a comparison, all runs show that one.
+/// The series of `wanted` of all `runs`, and the name of the curve that the title describes: the first that one of them has. In a
+/// comparison, all runs show that one.
 fn series<'a, 'c>(path: &str, wanted: &'c [Wanted<'_>], runs: &[Run<'a>]) -> (&'c str, Vec<Series<'a>>) {
     let recorded = |curve: &&Wanted<'_>| runs.iter().any(|run| run.first_of(curve.channels).is_some());
     let Some(lead) = wanted.iter().find(recorded) else { return ("", Vec::new()) };
@@ -169,7 +169,7 @@ fn series<'a, 'c>(path: &str, wanted: &'c [Wanted<'_>], runs: &[Run<'a>]) -> (&'
         for (index, run) in runs.iter().enumerate() {
             let Some(channel) = run.first_of(curve.channels) else { continue };
             let leads = std::ptr::eq(curve, lead);
-            // A motor that is one body with its load would only draw the same curve twice.
+            // A motor rigid with its load would only draw the same curve twice.
             let twin = run.is_rigid() && lead.name == "load" && curve.name == "motor";
             let part = if path == OTHERS { channel.spec.name.clone() } else { curve.name.replace(' ', "_") };
             series.push(Series {
@@ -192,12 +192,12 @@ fn series<'a, 'c>(path: &str, wanted: &'c [Wanted<'_>], runs: &[Run<'a>]) -> (&'
     (&lead.name, series)
 }
 
-/// Whether `channel` is one of those of `plot`.
+/// True if `channel` is one of those of `plot`.
 fn shows(plot: &Plot, channel: &str) -> bool {
     plot.curves.iter().any(|curve| curve.channels.contains(&channel))
 }
 
-/// What is allowed of the curves of `plot` that are shown.
+/// Allowed values of the curves of `plot` that are shown.
 fn allowed(plot: &Plot, series: &[Series<'_>], options: &ViewOptions) -> Vec<Bound> {
     let bound = |(metric, most): &(Name, f64)| {
         let signal = bounded_signal(*metric)?;
@@ -213,7 +213,7 @@ fn allowed(plot: &Plot, series: &[Series<'_>], options: &ViewOptions) -> Vec<Bou
     options.allowed.iter().filter_map(bound).collect()
 }
 
-/// The signal whose magnitude is bounded when `metric` is.
+/// The signal whose magnitude `metric` limits.
 const fn bounded_signal(metric: Name) -> Option<Signal> {
     match metric {
         Name::FollowingErrorPeakLoad => Some(Signal::FollowingErrorLoad),
@@ -232,20 +232,20 @@ fn planned_limit(runs: &[Run<'_>], derivative: usize) -> Option<f64> {
     limits.all(|limit| limit.is_some_and(|limit| limit.to_bits() == first.to_bits())).then_some(first)
 }
 
-/// What a channel says of a derivative of the position.
+/// Content of a channel of a derivative of the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Content {
     /// It is the derivative.
     Curve,
-    /// It is the derivative in some moves; others do not bound it.
+    /// The derivative in some moves; others do not bound it.
     CurveAndImpulses,
-    /// No move bounds it: a row of impulses, which no channel shows.
+    /// Unbounded in every move: a row of impulses, which no channel shows.
     Impulses,
-    /// Nothing but zero.
+    /// Zeros only.
     Nothing,
 }
 
-/// What `values` say of a derivative of the position of `run`.
+/// Content of `values`, a derivative of the position of `run`.
 fn content(run: &Run<'_>, values: &[f64], derivative: usize) -> Content {
     let moves = &run.recording.moves;
     let unbounded = moves.iter().filter(|made| !made.peaks[derivative].is_finite()).count();

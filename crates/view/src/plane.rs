@@ -1,7 +1,7 @@
 //! Two quantities against each other: a picture with its own axes.
 //!
-//! Rerun's plots have time on one axis, and its 2D view no axes and one scale for both directions. So a plane is drawn: all of it in a
-//! frame of fixed size, with lines and numbers at round values.
+//! Rerun's plots have time on one axis, and its 2D view has no axes and one scale for both directions. So a plane is drawn as lines and
+//! numbers at round values, in a frame of fixed size.
 use crate::layout::{Node, View};
 use crate::rerun::blueprint::archetypes::VisualBounds2D;
 use crate::rerun::{EntityPath, LineStrips2D, Points2D, RecordingStream, RecordingStreamResult};
@@ -12,17 +12,17 @@ use crate::style::{self, Rgb};
 
 /// Width of a frame whose height is 1.
 const WIDTH: f64 = 1.6;
-/// Room around a frame for the numbers at its axes.
+/// Margin of a frame for the numbers at its axes.
 const AROUND: f64 = 0.14;
-/// Part of the range of the curves that stays free at their ends.
+/// Share of the range of the curves that stays free at their ends.
 const FREE: f64 = 0.06;
-/// Lines across a frame, about.
+/// Approximate number of lines across a frame.
 const LINES: f64 = 5.0;
-/// Names below and beside a frame, and numbers at its lines: how far from it.
+/// Distances from a frame of the numbers at its lines, and of the names below and beside it.
 const NUMBERS: f64 = 0.035;
 const NAMES: f32 = 0.1;
 
-/// One axis: what it shows, and how.
+/// One axis: its quantity and scale.
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
     /// `speed`
@@ -35,7 +35,7 @@ pub(crate) struct Axis {
 #[derive(Debug, Clone)]
 pub(crate) struct Curve {
     pub(crate) path: EntityPath,
-    /// What stands at its first point.
+    /// Text at its first point.
     pub(crate) label: Option<String>,
     pub(crate) colour: Rgb,
     /// Width (points).
@@ -51,12 +51,12 @@ pub(crate) struct Plane {
     /// Entity of its frame.
     pub(crate) path: EntityPath,
     pub(crate) axes: [Axis; 2],
-    /// Whether both axes have one scale: a circle is a circle.
+    /// True if both axes have one scale: a circle is a circle.
     pub(crate) is_isometric: bool,
     pub(crate) curves: Vec<Curve>,
 }
 
-/// Where values of the axes stand in the frame.
+/// Transformation from axis values to the frame.
 struct Frame {
     /// Ends of both axes (SI).
     ends: [(f64, f64); 2],
@@ -141,7 +141,7 @@ impl Plane {
 }
 
 impl Frame {
-    /// A point (SI) in the frame, whose lower left corner is 0; what is above is negative.
+    /// A point (SI) in the frame, whose lower left corner is 0; upwards is negative.
     #[expect(clippy::cast_possible_truncation, reason = "rounds, to far less than a pixel")]
     fn place(&self, point: [f64; 2]) -> [f32; 2] {
         let part = |index: usize| {

@@ -6,86 +6,86 @@ use crate::series::{Role, Series, Values};
 use crate::style::{self, Rgb};
 use crate::ticks::range_with_labels;
 
-/// A limit is drawn as a line when it is at most this many times the largest value: beyond, it would flatten the curves,
-/// and the title names it instead.
+/// A limit is drawn as a line when it is at most this many times the largest value: a larger one would flatten the curves, and is named in
+/// the title instead.
 const IN_SIGHT: f64 = 3.0;
-/// Part of the peak below which a negative value is rounding.
+/// Share of the peak below which a negative value is rounding.
 const ROUNDING: f64 = 1e-9;
-/// More runs than this are not listed one by one in a title.
+/// Largest number of runs that a title lists one by one.
 const LISTED: usize = 3;
-/// Height of the lowest plot that is reckoned with (points).
+/// Height of the lowest plot considered (points).
 const LOWEST: f64 = 60.0;
 
-/// A plot with the curves that it can have.
+/// A plot with its recorded curves.
 #[derive(Debug)]
 pub(crate) struct PlannedPlot<'a> {
-    /// What it shows, the unit, the peak, and limits that are out of sight.
+    /// Its subject, the unit, the peak, and limits that are out of sight.
     pub(crate) title: String,
     /// First part of the entity paths of its curves, the second in a comparison.
     pub(crate) path: String,
-    /// Where it stands.
+    /// Page of the blueprint.
     pub(crate) page: Page,
     /// Unit in which they are shown.
     pub(crate) scale: Scale,
     /// Curves, limit lines and marks.
     pub(crate) series: Vec<Series<'a>>,
-    /// Whether a value holds until the next one.
+    /// True if a value holds until the next one.
     pub(crate) held: bool,
-    /// Smallest and largest value that must be in sight (SI).
+    /// Smallest and largest value that the axis must include (SI).
     pub(crate) reach: (f64, f64),
-    /// First and last instant that it shows (s), when it does not share the time axis of the others.
+    /// First and last instant on its time axis (s), when it does not share that of the others.
     pub(crate) own_time: Option<(f64, f64)>,
 }
 
-/// What a plot is told beside its curves.
+/// Properties of a plot beside its curves.
 pub(crate) struct Frame<'t> {
-    /// What it shows.
+    /// Its subject.
     pub(crate) title: &'t str,
-    /// Of which curve the title speaks, where there are several.
+    /// Name of the curve that the title describes, where there are several.
     pub(crate) lead: Option<&'t str>,
     /// Part of the entity paths.
     pub(crate) path: &'t str,
-    /// Where it stands.
+    /// Page of the blueprint.
     pub(crate) page: Page,
     /// SI unit of all its curves.
     pub(crate) unit: &'t str,
-    /// Whether its currents and voltages are amplitudes.
+    /// True if its currents and voltages are amplitudes.
     pub(crate) amplitude: bool,
-    /// What the title says of the curves.
+    /// Number of the curves in the title.
     pub(crate) headline: Headline,
-    /// Values that are always in sight (SI).
+    /// Values that the axis always includes (SI).
     pub(crate) includes: &'t [f64],
-    /// Whether a value holds until the next one.
+    /// True if a value holds until the next one.
     pub(crate) held: bool,
-    /// Bounds, if there are any.
+    /// Bounds, if any.
     pub(crate) bounds: Vec<Bound>,
     /// Instants that are marked.
     pub(crate) marks: Vec<Mark>,
-    /// What the title says beside the numbers of the curves.
+    /// Texts in the title beside the numbers of the curves.
     pub(crate) remarks: Vec<String>,
 }
 
-/// What curves should not exceed.
+/// Value that curves should not exceed.
 #[derive(Debug, Clone)]
 pub(crate) struct Bound {
     /// First part of its entity path: `limit`, `allowed` or `window`.
     pub(crate) root: &'static str,
-    /// Its name: the root, or with what it is about.
+    /// Its name: the root, possibly with its subject.
     pub(crate) name: String,
     /// Largest magnitude (SI).
     pub(crate) value: f64,
-    /// On which sides of zero it counts.
+    /// Sides of zero on which it applies.
     pub(crate) sides: Sides,
     /// Colour of its lines.
     pub(crate) colour: Rgb,
 }
 
-/// On which sides of zero a bound counts.
+/// Sides of zero on which a bound applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sides {
-    /// On those on which the curves are.
+    /// The sides that the curves reach.
     Curves,
-    /// On both.
+    /// Both sides.
     Both,
     /// Above.
     Above,
@@ -100,7 +100,7 @@ pub(crate) struct Mark {
     pub(crate) path: EntityPath,
     /// Its name in the legend.
     pub(crate) name: String,
-    /// When (s).
+    /// Time (s).
     pub(crate) time: f64,
     /// Colour of its line.
     pub(crate) colour: Rgb,
@@ -134,7 +134,7 @@ impl<'a> PlannedPlot<'a> {
         }
         let shown = plot.shown().filter_map(Series::range).chain([plot.reach]);
         plot.reach = shown.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1))).unwrap_or_default();
-        // From end to end of the axis, which in a low plot is longer than in a high one.
+        // From end to end of the axis, which in a low plot spans more than in a high one.
         let upright = plot.range(LOWEST);
         for Mark { path, name, time, colour } in frame.marks.iter().filter(|mark| mark.time <= span.1) {
             let values = Values::Instant { time: *time, range: upright };
@@ -162,12 +162,12 @@ impl<'a> PlannedPlot<'a> {
         self.own_time.or(all).unwrap_or_default()
     }
 
-    /// Appends to the title what a reader would otherwise have to read off.
+    /// Appends the numbers of the curves to the title, so that they need not be read off the plot.
     fn add_headline(&mut self, headline: Headline, lead: Option<&str>) {
         let is_comparison = self.series.iter().filter(|series| series.role == Role::Lead).count() > 1;
         let word = match headline {
             Headline::None => {
-                // The legend names the runs, and not what of them is shown.
+                // The legend names the runs, but not the curve.
                 if let Some(lead) = lead.filter(|_| is_comparison) {
                     self.title = format!("{}, {lead}", self.title);
                 }
@@ -223,7 +223,7 @@ impl<'a> PlannedPlot<'a> {
         }
         let lines = [("upper", bound.value, above), ("lower", -bound.value, below)];
         for (part, value, _) in lines.into_iter().filter(|(.., is_there)| *is_there) {
-            // Two bounds of one kind in a plot are told apart by what they are about.
+            // The subjects of two bounds of one kind in a plot distinguish them.
             let about = bound.name.strip_prefix(bound.root).unwrap_or(&bound.name).trim().replace(' ', "_");
             let parts = [bound.root, &self.path, &about, part].into_iter().filter(|part| !part.is_empty());
             let path = EntityPath::new(parts.map(EntityPathPart::new).collect());
@@ -236,12 +236,12 @@ impl<'a> PlannedPlot<'a> {
 }
 
 impl Bound {
-    /// What motor, drive or plan keep a curve within.
+    /// Bound of a curve by motor, drive or plan.
     pub(crate) fn limit(value: f64) -> Self {
         Self { root: BOUND, name: BOUND.into(), value, sides: Sides::Curves, colour: style::LIMIT }
     }
 
-    /// What a run is judged by: the `name` begins with `allowed`.
+    /// Bound that judges a run: the `name` begins with `allowed`.
     pub(crate) fn allowed(name: String, value: f64, sides: Sides) -> Self {
         Self { root: ALLOWED, name, value, sides, colour: style::ALLOWED }
     }

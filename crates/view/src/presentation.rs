@@ -1,4 +1,4 @@
-//! Everything together: what is logged and how it is arranged.
+//! Everything together: logged data and their arrangement.
 use crate::blueprint::{self, Parts};
 use crate::curves;
 use crate::error::ViewError;
@@ -20,7 +20,7 @@ use servobench_view_request::{ViewOptions, check_labels};
 /// Application id of all our recordings: the viewer keeps one blueprint for them.
 const APPLICATION: &str = "servobench";
 
-/// One run, or several over each other, ready for any Rerun stream: a file, or a viewer that is open.
+/// One run, or several overlaid, ready for any Rerun stream: a file, or an open viewer.
 #[derive(Debug)]
 pub struct Presentation<'a> {
     name: String,
@@ -40,8 +40,8 @@ impl<'a> Presentation<'a> {
         Self::plan(name, vec![Run { label: None, recording }], options)
     }
 
-    /// Several runs over each other, time 0 on time 0. Entities are `/jerk/position/load`, `/snap/position/load` and so
-    /// on for runs labelled `jerk` and `snap`; a plot shows the same curve of every run.
+    /// Several runs overlaid, all starting at time 0. Entities are `/jerk/position/load`, `/snap/position/load` and so on for runs labelled
+    /// `jerk` and `snap`; a plot shows the same curve of every run.
     ///
     /// # Errors
     /// [`ViewError::TooFewRuns`]; [`ViewError::Label`] for a label that is empty, reserved or used twice.
@@ -54,7 +54,7 @@ impl<'a> Presentation<'a> {
         let labels = labels.join(" against ");
         let mut engines: Vec<&str> = runs.iter().map(|(_, recording)| recording.about.engine.as_str()).collect();
         engines.dedup();
-        // Variants of one scenario are told apart by their labels.
+        // Labels distinguish variants of one scenario.
         let first = &runs[0].1.about;
         let is_of_all = runs.iter().all(|(_, recording)| recording.about.overrides == first.overrides);
         let overridden = if is_of_all { first.overridden() } else { String::new() };
@@ -72,7 +72,7 @@ impl<'a> Presentation<'a> {
         Self { name, runs, plots, scene, planes, head, max_instants: options.max_instants }
     }
 
-    /// How the viewer arranges it.
+    /// Its arrangement in the viewer.
     #[must_use]
     pub fn blueprint(&self) -> Layout {
         let duration = self.runs.iter().map(Run::end).fold(0.0, f64::max);
@@ -95,8 +95,8 @@ impl<'a> Presentation<'a> {
     pub fn log(&self, stream: &RecordingStream) -> Result<(), ViewError> {
         let action = "log the recording";
         self.log_all_but_curves(stream).map_err(ViewError::rerun(action))?;
-        // Static data wait in a batch. Without this the curves would come first, and a viewer would show them, while it
-        // reads a large file, in colours of its own and without axis.
+        // Static data wait in a batch. Without this the curves would come first, and a viewer would show them, while it reads a large file,
+        // in default colours and without axis.
         stream.flush_blocking().map_err(ViewError::rerun(action))?;
         self.plots
             .iter()

@@ -1,4 +1,4 @@
-//! Limits of the drive that cut something: a lane for each, so that none covers another.
+//! Limits of the drive that were reached: a lane for each, so that none covers another.
 use crate::lanes::{Lane, Span};
 use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult};
 use crate::run::Run;
@@ -6,28 +6,28 @@ use crate::scale::Scale;
 use crate::style::{self, Rgb};
 use servobench_trace::{Channel, Recording};
 
-/// First part of the name of a channel that says in which share of its ticks a controller was at a limit.
+/// First part of the name of a channel of the share of ticks in which a controller was at a limit.
 pub(crate) const GROUP: &str = "saturation.";
-/// Largest number of stretches that a lane is cut into: a screen shows no more.
+/// Largest number of stretches of a lane: a screen shows no more.
 const STRETCHES: usize = 1_000;
-/// A share from here on is all of the ticks; the rest is rounding.
+/// A share from here on counts as all of the ticks; the rest is rounding.
 const ALL: f64 = 1.0 - 1e-9;
 
-/// What is said of a stretch by its share of saturated ticks, from the largest share down.
+/// Texts and colours of a stretch by its share of saturated ticks, from the largest share down.
 const LEVELS: [(f64, &str, Rgb); 3] =
     [(ALL, "at every tick", style::LIMIT), (0.5, "at most ticks", style::LOAD), (0.0, "at some ticks", style::TABLE)];
 
 /// Lanes of limits.
 #[derive(Debug)]
 pub(crate) struct Reached {
-    /// Which limits, for how long in all.
+    /// The limits, each with its total duration.
     pub(crate) title: String,
     /// Their entities.
     pub(crate) paths: Vec<EntityPath>,
 }
 
 impl Reached {
-    /// Those of `runs`; `None` where no limit was reached.
+    /// Limits reached in `runs`; `None` where there are none.
     pub(crate) fn of(runs: &[Run<'_>]) -> Option<Self> {
         let mut said = Vec::new();
         let mut paths = Vec::new();
@@ -71,7 +71,7 @@ fn spans(recording: &Recording, shares: &[f64]) -> Vec<Span<'static>> {
     let length = shares.len().div_ceil(STRETCHES).max(1);
     let mut spans: Vec<Span<'static>> = Vec::new();
     for (index, stretch) in shares.chunks(length).enumerate() {
-        // What is not a number cut nothing that could be shown.
+        // A non-number counts as not reached.
         let mean = stretch.iter().filter(|share| **share > 0.0).sum::<f64>() / stretch.len() as f64;
         let Some((_, text, colour)) = LEVELS.iter().find(|(least, ..)| mean > 0.0 && mean >= *least) else { continue };
         let [start, end] = [index * length, index * length + stretch.len()].map(|row| recording.time_of(row));
@@ -114,7 +114,7 @@ mod tests {
             [("at every tick", 400.0, 800.0), ("at most ticks", 800.0, 1200.0), ("at some ticks", 1200.0, 1204.0)];
         assert_eq!(said.len(), expected.len(), "{said:?}");
         for (one, other) in said.iter().zip(expected) {
-            // Times are rows times a period that is no binary fraction.
+            // Times are rows times a period that is not a binary fraction.
             assert!(one.0 == other.0 && (one.1 - other.1).abs() + (one.2 - other.2).abs() < 1e-9, "{said:?}");
         }
     }

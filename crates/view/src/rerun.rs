@@ -1,6 +1,6 @@
-//! What is used of Rerun, under the names that its documentation gives it.
+//! Items of Rerun in use, under the names in its documentation.
 //!
-//! The package `rerun` would bring its data-platform client, chunk store and analytics along, 47 packages that nothing here calls.
+//! The package `rerun` would add its data-platform client, chunk store and analytics, 47 packages without use here.
 pub(crate) use re_sdk::external::re_log_types::BlueprintActivationCommand;
 pub(crate) use re_sdk::log::TimeColumn;
 pub(crate) use re_sdk::{
@@ -17,7 +17,7 @@ pub(crate) use re_sdk_types::datatypes::{
 };
 pub(crate) use re_sdk_types::external::uuid::Uuid;
 
-/// How the viewer is arranged.
+/// Arrangement of the viewer.
 pub(crate) mod blueprint {
     pub(crate) use re_sdk_types::blueprint::{archetypes, components, datatypes};
 }

@@ -1,5 +1,5 @@
-//! The residual vibration: the load minus its target after the last profile, as the metric has it, with its window, when
-//! it is in it for good, and what is allowed.
+//! The residual vibration: the load minus its target after the last profile, as the metric defines it, with its window, the instant of
+//! settling in it, and the allowed values.
 use crate::catalogue::{Headline, Page};
 use crate::planned::{ALLOWED, Bound, Frame, Mark, PlannedPlot, Sides, WINDOW};
 use crate::run::Run;
@@ -21,7 +21,7 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
     for (index, run) in runs.iter().enumerate() {
         let Some(channel) = run.first_of(&[Signal::LoadPosition.name()]) else { continue };
         let Some((from, target)) = run.after_the_last_move().or_else(|| {
-            // Without a target, where the load is in the end.
+            // Without a target, relative to the final position of the load.
             Some((options.residual_from?, *channel.values.last()?))
         }) else {
             continue;
@@ -50,7 +50,7 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
         match options.window.and_then(|window| settling(run, window)) {
             Some(Settling::After(time)) => {
                 let said = format!("settled after {}", shown(time, "s"));
-                // Dark where a run has its own colour, so that the line is not taken for the curve.
+                // Dark for a single run, so that the line is not taken for the curve.
                 marks.push(mark("settled", said.clone(), time, run.label.map_or(style::MARK, |_| colour)));
                 if run.label.is_none() {
                     remarks.push(said);
@@ -59,7 +59,7 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
             Some(Settling::Never) => remarks.push(run.labelled("not settled")),
             None => {}
         }
-        // Of several runs, each with an end of its own, the lines would hide the curves.
+        // In a comparison every run ends at another time, and the lines would hide the curves.
         if let Some(most) = allowed(options, Name::SettlingTime).filter(|_| run.label.is_none()) {
             let name = format!("{ALLOWED} settling time {}", shown(most, "s"));
             marks.push(mark("allowed_settling", name, most, style::ALLOWED));
@@ -98,7 +98,7 @@ pub(crate) fn plan<'a>(runs: &[Run<'a>], options: &ViewOptions) -> Option<Planne
     Some(planned)
 }
 
-/// The window, and what is allowed beyond the target.
+/// The window, and the allowed overshoot beyond the target.
 fn bounds(runs: &[Run<'_>], options: &ViewOptions) -> Vec<Bound> {
     let window = options.window.map(|value| Bound {
         root: WINDOW,
@@ -109,7 +109,7 @@ fn bounds(runs: &[Run<'_>], options: &ViewOptions) -> Vec<Bound> {
     });
     let amplitude = allowed(options, Name::ResidualVibrationAmplitude)
         .map(|value| Bound::allowed(format!("{ALLOWED} amplitude"), value, Sides::Both));
-    // Beyond the target is above it or below: which, all runs must agree in.
+    // Beyond the target is above or below it; all runs must agree.
     let last = |run: &Run<'_>| run.recording.moves.iter().max_by(|one, two| one.end.total_cmp(&two.end)).cloned();
     let mut upwards = runs.iter().filter_map(last).map(|made| made.to >= made.from);
     let first = upwards.next();

@@ -55,13 +55,13 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize, poses: 
             .with_colors([body.colour])
             .with_fill_mode(FillMode::Solid);
         stream.log_static(path.clone(), &disc)?;
-        // A mark on the face, without which nobody sees a disc turn.
+        // A mark on the face, without which the rotation of a disc is not visible.
         let mark = Boxes3D::from_centers_and_half_sizes([[0.0, 0.0, 0.5]], [[HALF_DISC + 0.02, 0.06, 0.45]])
             .with_colors([[245, 245, 245]])
             .with_fill_mode(FillMode::Solid);
         stream.log_static(path, &mark)?;
         if let Some(word) = body.label.as_ref().filter(|_| poses.name.is_none()) {
-            // An entity of its own, as it must not turn with the disc.
+            // A separate entity, as it must not turn with the disc.
             let label = Points3D::new([[place[0], 0.0, 1.55]])
                 .with_radii([0.001])
                 .with_colors([body.ink])

@@ -8,7 +8,7 @@ use servobench_view_request::check_labels;
 pub(crate) struct Run<'a> {
     /// First part of its entity paths; `None` for the only run.
     pub(crate) label: Option<&'a str>,
-    /// What was recorded.
+    /// Its data.
     pub(crate) recording: &'a Recording,
 }
 
@@ -29,12 +29,12 @@ impl<'a> Run<'a> {
         names.iter().find_map(|name| self.recording.find(name))
     }
 
-    /// `text`, and in a comparison the run that it is about.
+    /// `text`, in a comparison preceded by the label of the run.
     pub(crate) fn labelled(&self, text: &str) -> String {
         self.label.map_or_else(|| text.to_owned(), |label| format!("{label} {text}"))
     }
 
-    /// Whether motor and load are one body.
+    /// True if motor and load are one body.
     pub(crate) fn is_rigid(&self) -> bool {
         self.recording.about.bodies.len() == 1
     }

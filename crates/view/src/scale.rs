@@ -1,10 +1,10 @@
-//! Units a person can read: µm for a following error, mm/s for a slow axis.
+//! Readable units: µm for a following error, mm/s for a slow axis.
 use servobench_metrics::Quantity;
 
-/// Numbers from here on are written with an exponent.
+/// Numbers from here on have an exponent.
 const MANY: f64 = 1e7;
 
-/// Factor from SI to the unit that is shown.
+/// Factor from SI to the displayed unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
     /// Shown value per SI value.
@@ -13,7 +13,7 @@ pub(crate) struct Scale {
     pub(crate) unit: String,
 }
 
-/// The unit `unit` of a channel as it is shown: a product with its dot, a current or voltage that is an amplitude as such.
+/// The unit `unit` of a channel for display: a product with its dot, a current or voltage that is an amplitude marked as such.
 pub(crate) fn shown_unit(unit: &str, amplitude: bool) -> String {
     match unit {
         "A" | "V" if amplitude => format!("{unit}pk"),
@@ -59,7 +59,7 @@ impl Scale {
     }
 }
 
-/// A number as it is written: that of a run that diverges has more digits than a title has room for.
+/// A number as text, with an exponent if it is large: that of a diverging run has more digits than a title has space for.
 pub(crate) fn short(number: f64) -> String {
     if number.abs() < MANY { number.to_string() } else { format!("{number:.2e}") }
 }

@@ -12,21 +12,20 @@ use servobench_view_request::ViewOptions;
 /// Largest number of poses per run: a screen shows far fewer.
 const POSES: usize = 4_000;
 
-/// What the 3D view shows and from where. One unit of length in it is the travel of a linear axis, or the radius of a
-/// rotary axis.
+/// Content and camera of the 3D view. Its unit of length is the travel of a linear axis, or the radius of a rotary axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    /// What runs, and the enlargement.
+    /// Subject of the runs, and the enlargement.
     pub(crate) title: String,
-    /// Entity above everything, one per run.
+    /// Top entity of each run.
     pub(crate) roots: Vec<EntityPath>,
     /// Place of the camera.
     pub(crate) eye: [f32; 3],
-    /// What it looks at.
+    /// Target of the camera.
     pub(crate) target: [f32; 3],
-    /// Whether the bodies turn.
+    /// True if the axis is rotary.
     rotary: bool,
-    /// Smallest position of all runs, asked for or actual (axis unit).
+    /// Smallest position of all runs, reference or actual (axis unit).
     pub(crate) low: f64,
     /// Travel of all runs (axis unit).
     pub(crate) travel: f64,
@@ -41,13 +40,13 @@ pub(crate) struct Scene {
 pub(crate) struct Poses {
     /// The instants (s).
     pub(crate) times: Vec<f64>,
-    /// Position of what was asked for (axis unit).
+    /// Reference position (axis unit).
     pub(crate) reference: Option<Vec<f64>>,
-    /// What pushes the load (N or N·m).
+    /// Effort of the disturbance on the load (N or N·m).
     pub(crate) force: Option<Vec<f64>>,
     /// The bodies, the motor's first.
     pub(crate) bodies: Vec<Body>,
-    /// Name of the run and its colour, where it stands in place of those of its bodies.
+    /// Name of the run and its colour, where it replaces the names of the bodies.
     pub(crate) name: Option<(String, Rgb)>,
 }
 
@@ -56,7 +55,7 @@ pub(crate) struct Poses {
 pub(crate) struct Body {
     /// `motor`, `table` or `load`, or `body` when it is all of them.
     pub(crate) name: &'static str,
-    /// What stands beside it; in a comparison with the run that it is of.
+    /// Text beside it, in a comparison with the label of its run.
     pub(crate) label: Option<String>,
     /// Its colour.
     pub(crate) colour: Rgb,
@@ -64,22 +63,22 @@ pub(crate) struct Body {
     pub(crate) ink: Rgb,
     /// Positions (axis unit), the deflection enlarged.
     pub(crate) positions: Vec<f64>,
-    /// Positions (axis unit) as they were.
+    /// True positions (axis unit).
     pub(crate) actual: Vec<f64>,
 }
 
-/// More runs than this have no room for a name beside each body: each has its own beside the rail or the shaft.
+/// Largest number of runs with a name beside each body: of more, each has one name beside the rail or the shaft.
 pub(crate) const NAMED: usize = 2;
 /// A longer subject is left out of the title; it stands above the page.
 const SUBJECT: usize = 50;
-/// Largest enlargement that is chosen: a deflection that needs more is none to be looked at.
+/// Largest enlargement: a smaller deflection is not worth showing.
 const ENLARGED: f64 = 10_000.0;
 const REFERENCES: [&str; 2] = [Signal::ReferencePosition.name(), Signal::SetpointPosition.name()];
 /// Channels of the bodies, the motor's first.
 const BODIES: [&str; 3] = [Signal::MotorPosition.name(), Signal::TablePosition.name(), Signal::LoadPosition.name()];
 
 impl Scene {
-    /// The scene of `runs`, of which `subject` says what they are; `None` when no position was recorded.
+    /// The scene of `runs`, described by `subject`; `None` when no position was recorded.
     pub(crate) fn of(subject: &str, runs: &[Run<'_>], options: &ViewOptions) -> Option<Self> {
         let ranges = runs.iter().filter_map(shown_range);
         let (low, high) = ranges.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)))?;
@@ -88,12 +87,11 @@ impl Scene {
         let span = if high > low { high - low } else { 1.0 };
         let deflection = runs.iter().map(largest_deflection).fold(0.0, f64::max);
         let bodies = runs.iter().map(|run| bodies(run).len()).max().unwrap_or(0);
-        // As far as one body may hang over the one below it, or about 20° of a disc.
+        // Up to the overhang of one body above the one below it, or about 20° of a disc.
         let room = if rotary { rotary::ROOM } else { linear::ROOM * span };
         let fitting = if deflection > 0.0 { round_below(room / deflection).clamp(1.0, ENLARGED) } else { 1.0 };
         let exaggeration = options.exaggeration.unwrap_or(fitting);
-        // Where the deflection is most of the motion (a ring-down), the rail is as long as it takes for bodies to stay above
-        // each other.
+        // Where the deflection is most of the motion (a ring-down), the rail is long enough for bodies to stay above each other.
         let travel = span.max(exaggeration * deflection / linear::ROOM);
         let enlarged = deflection > 0.0 && (exaggeration - 1.0).abs() > 0.0;
         let enlargement = if enlarged { format!(", deflection × {exaggeration}") } else { String::new() };
@@ -142,7 +140,7 @@ fn bodies<'a>(run: &Run<'a>) -> Vec<(&'static str, &'a [f64])> {
     bodies.collect()
 }
 
-/// From where to where the bodies of `run` move, with what was asked for: beside that one sees that an axis does not move.
+/// Range of the bodies and of the reference of `run`: beside the reference, an axis that does not move is recognisable.
 fn shown_range(run: &Run<'_>) -> Option<(f64, f64)> {
     let ranges = bodies(run).into_iter().filter_map(|(_, positions)| range(positions));
     let of_bodies = ranges.reduce(|one, two| (one.0.min(two.0), one.1.max(two.1)))?;
@@ -150,7 +148,7 @@ fn shown_range(run: &Run<'_>) -> Option<(f64, f64)> {
     Some((of_bodies.0.min(asked.0), of_bodies.1.max(asked.1)))
 }
 
-/// What was asked for.
+/// The reference position.
 fn reference<'a>(run: &Run<'a>) -> Option<&'a [f64]> {
     let recorded = REFERENCES.into_iter().find_map(|name| run.recording.channel(name));
     recorded.filter(|values| values.len() == run.recording.len())
@@ -167,8 +165,8 @@ fn largest_deflection(run: &Run<'_>) -> f64 {
     peaks.fold(0.0, f64::max)
 }
 
-/// Every n-th instant and the last, where all positions are finite: bodies must be seen at the same instant, so an
-/// envelope of each would not do.
+/// Every n-th instant and the last, where all positions are finite: bodies must be shown at the same instant, which an envelope of each
+/// would not give.
 fn poses(run: &Run<'_>, index: usize, exaggeration: f64) -> Poses {
     let recording = run.recording;
     let recorded = bodies(run);

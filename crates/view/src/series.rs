@@ -14,18 +14,18 @@ pub(crate) struct Series<'a> {
     pub(crate) colour: Rgb,
     /// Width (points).
     pub(crate) width: f32,
-    /// Whether the plot shows it; otherwise it is logged for the user to add.
+    /// True if the plot shows it; otherwise it is logged for the user to add.
     pub(crate) shown: bool,
-    /// What it is to the plot.
+    /// Its role in the plot.
     pub(crate) role: Role,
     /// Its values (SI).
     pub(crate) values: Values<'a>,
 }
 
-/// What a line is to its plot.
+/// Role of a line in its plot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// The curve that the title speaks of.
+    /// The curve that the title describes.
     Lead,
     /// Another curve.
     Companion,
@@ -44,21 +44,21 @@ pub(crate) enum Values<'a> {
         values: &'a [f64],
         /// First instant that is shown.
         first: usize,
-        /// What is subtracted.
+        /// Offset that is subtracted.
         origin: f64,
     },
     /// A constant.
     Level {
         /// Value.
         value: f64,
-        /// From when to when (s).
+        /// Start and end (s).
         span: (f64, f64),
     },
-    /// An instant, upright.
+    /// An instant, as an upright line.
     Instant {
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// From which value to which.
+        /// Lower and upper end.
         range: (f64, f64),
     },
 }
@@ -84,7 +84,8 @@ impl Series<'_> {
         }
     }
 
-    /// How many of at most `looks` instants, evenly spread over the times `from` to `to` (s), find it between `low` and `high`.
+    /// Number of instants, among at most `looks` evenly spread over the times `from` to `to` (s), at which it lies between `low` and
+    /// `high`.
     pub(crate) fn hits(&self, (from, to): (f64, f64), (low, high): (f64, f64), looks: usize) -> usize {
         let inside = |value: f64| low <= value && value <= high;
         match self.values {

@@ -1,24 +1,24 @@
-//! When the load is in its window for good after the last move.
+//! Settling of the load in its window after the last move.
 use crate::run::Run;
 use servobench_metrics::{Absence, Name, Question, measure};
 use servobench_signals::Signal;
 use servobench_trace::Recording;
 
-/// How the load settles after the last move.
+/// Settling of the load after the last move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Settling {
-    /// So long (s) after the end of the profile.
+    /// Time after the end of the profile (s).
     After(f64),
-    /// Not while it was recorded.
+    /// Never within the recording.
     Never,
 }
 
-/// How the load of `run` settles in ± `window`, by the definition of the metric; `None` where that cannot be measured.
+/// Settling of the load of `run` in ± `window`, by the definition of the metric; `None` where it cannot be measured.
 pub(crate) fn settling(run: &Run<'_>, window: f64) -> Option<Settling> {
     let recording = run.recording;
     let last = recording.moves.iter().max_by(|one, two| one.end.total_cmp(&two.end))?;
     let load = run.first_of(&[Signal::LoadPosition.name()])?;
-    // What the metric does not need would only take its time.
+    // Data that the metric does not need would only cost time.
     let mut only = Recording::new(recording.about.clone(), recording.rate);
     (only.channels, only.moves) = (vec![load.clone()], vec![last.clone()]);
     let metrics = measure(&only, &Question { window: Some(window), ..Question::default() });

@@ -1,4 +1,4 @@
-//! Signals: a lane for each, those of one source together; a lane for what kept a call from its end.
+//! Signals: a lane for each, those of one source together; a lane for the reason why a call never completed.
 use crate::curves::TIMELINE;
 use crate::lanes::{Lane, Span};
 use crate::rerun::{
@@ -12,9 +12,9 @@ use servobench_trace::{Call, CallFate, Recording, Signal};
 const COLOURS: [Rgb; 6] =
     [style::MOTOR, style::LOAD, style::TABLE, style::AUXILIARY, style::DISTURBANCE, style::REFERENCE];
 
-/// Values that say that something is off.
+/// Values of an inactive signal.
 const OFF: [&str; 5] = ["FALSE", "0", "none", "Off", "Disabled"];
-/// Parts of values that say that something went wrong.
+/// Parts of values that indicate an error.
 const WRONG: [&str; 5] = ["Error", "Fault", "fault", "Underflow", "Overflow"];
 
 /// Lanes of signals.
@@ -24,7 +24,7 @@ pub(crate) struct Lanes {
     pub(crate) paths: Vec<EntityPath>,
     /// Those of calls that were never executed or failed, which stand above the others.
     pub(crate) fates: Vec<EntityPath>,
-    /// Whether there is a program of function blocks.
+    /// True if there is a program of function blocks.
     pub(crate) has_program: bool,
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamRes
     fates(run).try_for_each(|lane| lane.log(stream))
 }
 
-/// A lane for each call that was never executed, and for each that failed: from when on, and why.
+/// A lane for each call that was never executed, and for each that failed: start and reason.
 fn fates<'a>(run: &Run<'a>) -> impl Iterator<Item = Lane<'a>> {
     run.recording.calls.iter().filter_map(move |call| fate(run, call))
 }
@@ -80,14 +80,14 @@ fn fate<'a>(run: &Run<'a>, call: &'a Call) -> Option<Lane<'a>> {
     Some(Lane { path: block_path(run, &call.name, name), spans: vec![span], otherwise: "no error" })
 }
 
-/// The signals in which something happens: those of a block that is never in error would hide the others.
+/// Signals with active values: those of a block that is never in error would hide the others.
 fn eventful<'a>(run: &Run<'a>) -> impl Iterator<Item = &'a Signal> {
     let happens = |signal: &&Signal| signal.changes.iter().any(|(_, value)| !OFF.contains(&value.as_str()));
     run.recording.signals.iter().filter(happens)
 }
 
 fn path(run: &Run<'_>, signal: &Signal) -> EntityPath {
-    // The viewer sorts lanes by their paths: the axis, the blocks, what is below them.
+    // The viewer sorts lanes by their paths: the axis, the blocks, then the entities below them.
     match signal.source.as_str() {
         source if is_no_block(source) => run.path(&[source, &signal.name]),
         block => block_path(run, block, &signal.name),
@@ -98,8 +98,8 @@ fn is_no_block(source: &str) -> bool {
     matches!(source, "axis" | "drive" | "link")
 }
 
-/// The lane `name` of a block. Its number in the program stands before its name, since the viewer sorts by paths, numbers in
-/// them by their value.
+/// The lane `name` of a block. Its number in the program precedes its name, since the viewer sorts by paths, numbers in them by their
+/// value.
 fn block_path(run: &Run<'_>, block: &str, name: &str) -> EntityPath {
     let Recording { calls, signals, .. } = run.recording;
     let mut order: Vec<&str> = calls.iter().map(|call| call.name.as_str()).collect();
@@ -113,7 +113,7 @@ fn block_path(run: &Run<'_>, block: &str, name: &str) -> EntityPath {
     run.path(&["blocks", numbered.as_deref().unwrap_or(block), name])
 }
 
-/// What stands in a lane that has this value: in one that is FALSE nothing, so that what is TRUE is seen.
+/// Text of a value in a lane: none for FALSE, so that TRUE stands out.
 fn label(value: &str) -> &str {
     // Without a label the viewer shows the value.
     if value == "FALSE" { " " } else { value }

@@ -1,9 +1,9 @@
-//! Colours and widths, the same in every view. They can be told apart on a dark and on a light background.
+//! Colours and widths, the same in every view, distinguishable on a dark and on a light background.
 
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// What was asked for.
+/// Reference position and set-point.
 pub(crate) const REFERENCE: Rgb = [175, 175, 175];
 /// Request of the task.
 pub(crate) const REQUEST: Rgb = [200, 170, 40];
@@ -15,20 +15,20 @@ pub(crate) const TABLE: Rgb = [46, 184, 150];
 pub(crate) const LOAD: Rgb = [245, 140, 40];
 /// A second quantity beside the main one.
 pub(crate) const AUXILIARY: Rgb = [160, 110, 230];
-/// What the iron takes.
+/// Iron losses.
 pub(crate) const IRON: Rgb = [165, 110, 70];
-/// What pushes from outside.
+/// Disturbances.
 pub(crate) const DISTURBANCE: Rgb = [230, 90, 160];
-/// Nothing happens.
+/// Inactive state.
 pub(crate) const IDLE: Rgb = [52, 56, 64];
-/// A bound that motor, drive or plan keep, or that went wrong.
+/// A bound by motor, drive or plan, or an error.
 pub(crate) const LIMIT: Rgb = [225, 70, 80];
 /// A bound by which a run is judged.
 pub(crate) const ALLOWED: Rgb = [200, 60, 190];
 /// An instant that is marked.
 pub(crate) const MARK: Rgb = [128, 134, 145];
 
-/// One colour per run of a comparison; starts again after the last. None is like that of a bound.
+/// One colour per run of a comparison; starts again after the last. All differ from those of bounds.
 const RUNS: [Rgb; 6] = [LOAD, [40, 180, 220], [110, 190, 70], [160, 110, 230], [165, 110, 70], [200, 170, 40]];
 
 /// Colour of a run in a comparison.

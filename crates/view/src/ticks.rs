@@ -1,19 +1,19 @@
-//! Range of a value axis: ticks with a number at them.
+//! Range of a value axis that contains numbered ticks.
 //!
-//! Rerun labels the multiples of one power of ten, and those only where the labels stand far enough apart. An axis that
-//! ends where its curves end may therefore have a single label, 0, and no scale.
+//! Rerun labels the multiples of one power of ten, and those only where the labels are far enough apart. An axis that ends where its curves
+//! end may therefore have a single label, 0, and no scale.
 
-/// Distance of two labels that read well (points).
+/// Distance of two labels for good legibility (points).
 const CLEAR: f64 = 26.0;
 /// Distance below which Rerun leaves labels out (points).
 const LEAST: f64 = 21.0;
-/// The most that a range may be widened for labels that stand clear of each other, where it need not be for others.
+/// Largest factor by which a range is widened for labels at a clear distance, where the smaller distance needs less.
 const WORTH: f64 = 1.3;
-/// Room below (part of the range).
+/// Margin below (share of the range).
 const BELOW: f64 = 0.03;
-/// Room above (part of the range): a label at the highest tick ends under the title.
+/// Margin above (share of the range): a label at the highest tick ends under the title.
 const ABOVE: f64 = 0.055;
-/// What rounding may take from a tick (ticks).
+/// Largest rounding error of a tick (ticks).
 const ROUNDING: f64 = 1e-9;
 
 /// The smallest range around `low` to `high` in which, in a plot of `height` points, at least two ticks have a label.

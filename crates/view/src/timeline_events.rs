@@ -1,4 +1,4 @@
-//! Moves, disturbances, events and what FMUs say: a log to read, and lanes to see when.
+//! Moves, disturbances, events and messages of FMUs: a log of texts, and lanes of times.
 use crate::curves::TIMELINE;
 use crate::lanes::{Lane, Span};
 use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextLog, TimeColumn};
@@ -18,7 +18,7 @@ pub(crate) struct Happenings {
     pub(crate) lanes: Vec<EntityPath>,
 }
 
-/// Channel, its lane, and what it is.
+/// Channel, its lane, and its text.
 const DISTURBANCES: [(&str, &str, &str); 2] = [
     (Signal::DisturbanceMotor.name(), "motor_disturbance", "disturbance on the motor"),
     (Signal::DisturbanceLoad.name(), "load_disturbance", "disturbance on the load"),
@@ -41,7 +41,7 @@ impl Happenings {
     }
 }
 
-/// Logs moves, events and what was said in `run`.
+/// Logs moves, events and messages of `run`.
 pub(crate) fn log(stream: &RecordingStream, run: &Run<'_>, index: usize) -> RecordingStreamResult<()> {
     log_text(stream, run)?;
     lanes(run, index).iter().try_for_each(|lane| lane.log(stream))
@@ -89,7 +89,7 @@ fn log_text(stream: &RecordingStream, run: &Run<'_>) -> RecordingStreamResult<()
     stream.send_columns(run.path(&["log"]), [times], columns)
 }
 
-/// Whether what became of `call` is `message`: then it is said of the call, with its block.
+/// True if `message` is the outcome of `call`: it is then logged with the call and its block.
 fn says(call: &Call, message: &str) -> bool {
     match &call.fate {
         CallFate::Executed => false,
@@ -98,7 +98,7 @@ fn says(call: &Call, message: &str) -> bool {
     }
 }
 
-/// What is to be said of calls that were never executed, which is known at the end of the run, and of those that failed.
+/// Lines of calls that were never executed, which is known at the end of the run, and of those that failed.
 fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
     let line = |call: &servobench_trace::Call| {
         let who = format!("`{}` ({})", call.name, call.block);
@@ -119,7 +119,7 @@ fn calls(run: &Run<'_>) -> Vec<(f64, &'static str, String)> {
     run.recording.calls.iter().filter_map(line).collect()
 }
 
-/// What Rerun calls it.
+/// Rerun's name of `severity`.
 const fn level(severity: Severity) -> &'static str {
     match severity {
         Severity::Info => "INFO",
@@ -152,12 +152,12 @@ fn lanes<'a>(run: &Run<'a>, index: usize) -> Vec<Lane<'a>> {
     lanes
 }
 
-/// What a lane of moves says: where from and where to come first in the room that there is.
+/// Label of a move in a lane: start and target come first in the limited space.
 fn short(label: &str) -> &str {
     label.strip_prefix("move from ").unwrap_or(label)
 }
 
-/// When the effort in `channel` acts and how large it is. A row of zero between two others is a sine on its way.
+/// Times and size of the effort in `channel`. A single row of zero between two others is a zero crossing of a sine.
 fn disturbed(run: &Run<'_>, channel: &str) -> Vec<Span<'static>> {
     let Some(channel) = run.first_of(&[channel]) else { return Vec::new() };
     let unit = shown_unit(&channel.spec.unit, false);

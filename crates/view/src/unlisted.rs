@@ -1,6 +1,6 @@
 //! Channels that the catalogue does not name: they are plotted too, with those of their group.
 //!
-//! A group is what stands before the first dot of a name, and a unit: `power.copper` and `power.shaft` are of one group.
+//! A group is the part of a name before its first dot, and a unit: `power.copper` and `power.shaft` are of one group.
 use crate::catalogue::PLOTS;
 use crate::reached;
 use crate::run::Run;
@@ -15,20 +15,20 @@ const COLOURS: [Rgb; 6] =
 pub(crate) struct Unlisted<'a> {
     /// Its whole name.
     pub(crate) channel: &'a str,
-    /// What stands before the first dot; all of it without one.
+    /// Part before the first dot; the whole name without one.
     pub(crate) group: &'a str,
     /// Its unit.
     pub(crate) unit: &'a str,
 }
 
 impl<'a> Unlisted<'a> {
-    /// Name in a legend: what follows the group.
+    /// Name in a legend: the part after the group.
     pub(crate) fn name(&self) -> String {
         let name = self.channel.strip_prefix(self.group).unwrap_or(self.channel).trim_start_matches('.');
         if name.is_empty() { self.channel } else { name }.replace('_', " ")
     }
 
-    /// Those of `runs`, each once, in the order of the recordings.
+    /// Such channels of `runs`, each once, in the order of the recordings.
     pub(crate) fn of(runs: &[Run<'a>]) -> Vec<Self> {
         let mut found: Vec<Self> = Vec::new();
         for spec in runs.iter().flat_map(|run| &run.recording.channels).map(|channel| &channel.spec) {
@@ -42,13 +42,13 @@ impl<'a> Unlisted<'a> {
     }
 }
 
-/// Whether the catalogue or another view shows it.
+/// True if the catalogue or another view shows it.
 fn is_listed(channel: &str) -> bool {
     let is_plotted = || PLOTS.iter().flat_map(|plot| plot.curves).any(|curve| curve.channels.contains(&channel));
     channel.starts_with(reached::GROUP) || is_plotted()
 }
 
-/// Colour of the `index`-th of them in a plot.
+/// Colour of the `index`-th one in a plot.
 pub(crate) fn colour(index: usize) -> Rgb {
     COLOURS[index % COLOURS.len()]
 }

@@ -1,4 +1,4 @@
-//! What came of a run, in words: the head of every page.
+//! Outcome of a run, in words: the head of every page.
 use crate::rerun::{EntityPath, RecordingStream, RecordingStreamResult, TextDocument};
 use crate::run::Run;
 use servobench_view_request::{Outcome, Verdict, ViewOptions};
@@ -11,17 +11,17 @@ const PARAGRAPH: f64 = 29.0;
 const LIST: f64 = 13.0;
 const ITEM: f64 = 16.0;
 
-/// The text that stands above everything.
+/// The text above every page.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
-    /// Which runs: `vibration-snap on exact`.
+    /// Names of the runs: `vibration-snap on exact`.
     pub(crate) subject: String,
     /// Markdown, a line or more for each run; empty where nothing was recorded.
     text: String,
 }
 
 impl Head {
-    /// The head of `runs`, of which `subject` says what they are.
+    /// The head of `runs`, described by `subject`.
     pub(crate) fn of(subject: String, runs: &[Run<'_>], options: &ViewOptions) -> Self {
         let is_empty = |run: &Run<'_>| run.recording.is_empty() && run.recording.signals.is_empty();
         let text = if runs.iter().all(is_empty) {
@@ -35,7 +35,7 @@ impl Head {
         Self { subject, text }
     }
 
-    /// Its entity; `None` when there is nothing to say.
+    /// Its entity; `None` when the text is empty.
     pub(crate) fn path(&self) -> Option<EntityPath> {
         (!self.text.is_empty()).then(|| EntityPath::from(PATH))
     }
@@ -56,8 +56,7 @@ impl Head {
     }
 }
 
-/// What is said of `runs`: the outcomes of all in one line, which is what a page other than the first shows, then why, a
-/// line each.
+/// The text for `runs`: the outcomes of all in one line, the only one on pages other than the first, then the reasons, a line each.
 fn text(runs: &[(Option<&str>, &Verdict)]) -> String {
     let outcome = |(label, verdict): &(Option<&str>, &Verdict)| {
         let of = label.map_or(String::new(), |label| format!("{}: ", escaped(label)));
