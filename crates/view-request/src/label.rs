@@ -17,7 +17,7 @@ pub struct LabelError {
     pub reason: &'static str,
 }
 
-/// Checks the labels of runs that lie over each other.
+/// Checks the labels of overlaid runs.
 ///
 /// # Errors
 /// [`LabelError`] for a label that is empty, reserved or used twice.

@@ -4,7 +4,7 @@
 //! servobench-view RECORDING.parquet …  < request (JSON)  > drawn.rrd
 //! ```
 //! The recordings are the arguments. Standard input has everything to be shown that is not in them: labels, verdicts, limits, the motor.
-//! An empty one stands for a request without any. `docs/viewer.md` describes the JSON.
+//! Empty input stands for a request without any of these. `docs/viewer.md` describes the JSON.
 
 mod label;
 mod motor;

@@ -10,15 +10,15 @@ pub struct MotorLimits {
     /// The motor.
     #[serde(with = "by_name")]
     pub motor: Params,
-    /// Largest current that the drive asks for, and voltage that the inverter gives in every direction.
+    /// Largest current that the drive requests, and voltage that the inverter gives in every direction.
     #[serde(with = "BoundsFields")]
     pub bounds: Bounds,
     /// Voltage of the DC link (V).
     pub dc_link: f64,
-    /// Largest effort that the drive asks for (N·m or N); may be infinite.
+    /// Largest effort that the drive requests (N·m or N); may be infinite.
     #[serde(with = "unbounded")]
     pub effort: f64,
-    /// Axis coordinate per motor coordinate; negative for a motor that is mounted the other way round.
+    /// Axis coordinate per motor coordinate; negative for a motor that is mounted in reverse.
     pub transmission: f64,
     /// Motion of the motor.
     #[serde(with = "CoordinateName")]

@@ -1,9 +1,9 @@
-//! What the caller knows and a recording does not.
+//! Data for display that a recording does not contain.
 use crate::motor::MotorLimits;
 use serde::{Deserialize, Serialize};
 use servobench_metrics::Name;
 
-/// What to show beside the recorded channels.
+/// Data shown beside the recorded channels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ViewOptions {
@@ -17,15 +17,15 @@ pub struct ViewOptions {
     /// vibration. Others are left out.
     #[serde(with = "by_name")]
     pub allowed: Vec<(Name, f64)>,
-    /// Settling window, ± (axis unit): drawn around the residual vibration, with the instant from which on the load is in it.
+    /// Settling window, ± (axis unit): drawn around the residual vibration, with the instant from which on the load stays in it.
     pub window: Option<f64>,
-    /// From when on residual vibration is shown when there is no move (s).
+    /// Start of the residual vibration when there is no move (s).
     pub residual_from: Option<f64>,
     /// Largest number of instants per curve. A longer channel is thinned to a minimum/maximum envelope: every extreme stays, at
     /// its own instant.
     pub max_instants: usize,
-    /// Factor by which the deflection of the load against the motor is enlarged in the 3D view; `None` chooses one at
-    /// which the largest deflection can be seen.
+    /// Factor by which the deflection of the load relative to the motor is enlarged in the 3D view; `None` chooses one at which the largest
+    /// deflection is visible.
     pub exaggeration: Option<f64>,
     /// The motor and its bounds, for the page of its operating point; `None` without a synchronous motor.
     pub motor: Option<MotorLimits>,
@@ -49,9 +49,9 @@ pub struct Verdict {
 pub enum Outcome {
     /// It kept all its limits.
     Passed,
-    /// It did not.
+    /// It exceeded at least one.
     Failed,
-    /// There was nothing to judge it by.
+    /// It has no limits.
     #[default]
     Unjudged,
 }

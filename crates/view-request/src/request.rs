@@ -11,17 +11,17 @@ const FORMAT: &str = "servobench-view/1";
 pub struct Request {
     /// Labels of the recordings, in their order; none for a single run.
     pub labels: Vec<String>,
-    /// What is shown beside the channels.
+    /// Data shown beside the channels.
     pub options: ViewOptions,
 }
 
-/// Why a text is not a request.
+/// Reasons why a text is not a request.
 #[derive(Debug, Error)]
 pub enum RequestError {
-    /// It is not JSON, or has other fields.
+    /// The text is not JSON, or has other fields.
     #[error("standard input is not a request: {0}")]
     Json(#[from] serde_json::Error),
-    /// It is of another version.
+    /// Another version of the format.
     #[error(
         "standard input has a request in the format `{found}`; this program reads `{FORMAT}`: take servobench and \
              servobench-view from one build"
@@ -52,7 +52,7 @@ impl Request {
         Ok(serde_json::to_string(&Written { format: FORMAT.to_owned(), labels, options })?)
     }
 
-    /// Reads JSON; an empty text stands for a request without anything.
+    /// Reads JSON; an empty text stands for an empty request.
     ///
     /// # Errors
     /// [`RequestError`].
