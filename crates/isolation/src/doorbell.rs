@@ -1,32 +1,32 @@
-//! Doorbells: one process tells another that it is its turn.
+//! Doorbells: one process signals another that it is its turn.
 //!
-//! Whoever waits looks at the word for a moment, then sleeps in the kernel (a futex that both processes see) until the other
-//! side rings. Looking pays only while the other side runs on another core: for as long as a sleep and a waking cost, so that
-//! it never costs more than twice what would have been best, and not for a while after it was in vain. On two cores that both
-//! have other work, processes that only look get milliseconds in each other's way.
+//! The waiting process polls the word for a moment, then sleeps in the kernel (a futex that both processes see) until the other side rings.
+//! Polling pays only while the other side runs on another core: it lasts as long as a sleep and a wake-up cost, so that it never costs more
+//! than twice the optimum, and is skipped for a while after it was in vain. On two cores that both have other work, processes that only
+//! poll delay each other by milliseconds.
 use crate::sys;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
 use std::time::{Duration, Instant};
 
-/// About what going to sleep and being woken costs.
+/// Approximate cost of going to sleep and being woken.
 const LOOK: Duration = Duration::from_micros(5);
-/// Looks between two glances at the clock.
+/// Polls between two readings of the clock.
 const GLANCES: usize = 16;
-/// Turns without looking after it was in vain.
+/// Turns without polling after it was in vain.
 const PAUSE: u32 = 256;
 
-/// A word in memory that both see.
+/// A word in shared memory.
 #[repr(C, align(64))]
 #[derive(Debug, Default)]
 pub struct Doorbell {
     number: AtomicU32,
-    /// Not zero: somebody sleeps until it rings.
+    /// Not zero: the other side sleeps until it rings.
     asleep: AtomicU32,
 }
 
 impl Doorbell {
-    /// Rings with `number`. What was written before is seen by who hears it.
+    /// Rings with `number`. Earlier writes are visible to the side that receives it.
     #[inline]
     pub fn ring(&self, number: u32) {
         self.number.store(number, SeqCst);
@@ -36,7 +36,7 @@ impl Doorbell {
         }
     }
 
-    /// Wakes who waits, with a number that is no order's: the other side will not ring any more.
+    /// Wakes the waiting side, with a number that no order has: the other side will not ring any more.
     #[inline]
     pub fn give_up(&self) {
         self.number.fetch_xor(1 << 31, SeqCst);
@@ -59,16 +59,16 @@ impl Doorbell {
     }
 }
 
-/// One that waits for a doorbell, and learns whether looking pays.
+/// The waiting side of a doorbell; learns whether polling pays.
 #[derive(Debug, Default)]
 pub struct Listener {
-    /// Turns until it looks again.
+    /// Turns until it polls again.
     pause: u32,
 }
 
 impl Listener {
-    /// Waits until `doorbell` rings with `number`. Meanwhile `go_on` is asked at least every `glance`, and before each sleep;
-    /// `false` when it said so first.
+    /// Waits until `doorbell` rings with `number`. Meanwhile calls `go_on` at least every `glance`, and before each sleep; returns `false`
+    /// when that returned `false` first.
     #[inline]
     pub fn wait(
         &mut self,
@@ -82,7 +82,7 @@ impl Listener {
         }
         doorbell.asleep.store(1, SeqCst);
         let rung = loop {
-            // Read before `go_on` is asked: what happens after that changes it, and nobody falls asleep over it.
+            // Read before `go_on` is called: a later change of the number then prevents the sleep.
             let present = doorbell.number.load(SeqCst);
             if present == number {
                 break true;
@@ -124,7 +124,7 @@ mod tests {
 
     const GLANCE: Duration = Duration::from_mins(1);
 
-    /// Both sides count what they hear: no ring is lost, whether it is heard awake or asleep. A lost one would cost a minute.
+    /// Both sides count the rings they receive: no ring is lost, whether received awake or asleep. A lost one would cost a minute.
     #[test]
     fn no_ring_is_lost() {
         const TURNS: u32 = 20_000;
@@ -145,7 +145,7 @@ mod tests {
         });
     }
 
-    /// Who looks late finds both: that it has rung, and that it will not again.
+    /// A side that looks late finds both: that it has rung, and that it will not again.
     #[test]
     fn what_has_rung_is_known_after_it_has_given_up() {
         let doorbell = Doorbell::default();

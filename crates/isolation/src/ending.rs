@@ -1,54 +1,54 @@
-//! How a process ended, in words.
+//! The end of a process, in words.
 use crate::memory::in_words;
 use crate::sys;
 use std::process::ExitStatus;
 
-/// What libraries say when they get no memory: Rust's allocator, C++'s `new`, Python, and the system's own words (ENOMEM).
+/// Messages of libraries that get no memory: Rust's allocator, C++'s `new`, Python, and the system's own words (ENOMEM).
 const NO_MEMORY: [&str; 4] = ["memory allocation of ", "std::bad_alloc", "MemoryError", "Cannot allocate memory"];
 
-/// How a contained process ended, with what it held of its memory and what it left.
+/// End of a contained process, with the memory that it held and the processes that it left behind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ending {
-    /// How it ended, unless it was ended for its memory.
+    /// Its exit status, unless it was killed for its memory.
     pub status: Option<ExitStatus>,
-    /// How much memory of its own it held when it crashed or was ended (B); 0 if that is not known.
+    /// Private memory that it held when it crashed or was killed (B); 0 if unknown.
     pub held: u64,
-    /// How much it may have (B).
+    /// Its memory limit (B).
     pub bound: u64,
-    /// It was ended because it took more, private and shared memory together.
+    /// True if it was killed for exceeding the limit, private and shared memory together.
     pub exceeded: bool,
-    /// The last of what it wrote on standard error.
+    /// The end of its output on standard error.
     pub last_words: String,
-    /// How many processes it had started and left behind; they were ended.
+    /// Number of processes that it had started and left behind; they were killed.
     pub left: usize,
     /// Names of the first of them.
     pub names: Vec<String>,
-    /// Its process id; `None` if that is not known.
+    /// Its process id; `None` if unknown.
     pub process: Option<u32>,
 }
 
 impl Ending {
-    /// Whether it ended by itself with exit code 0.
+    /// True if it ended by itself with exit code 0.
     #[must_use]
     pub fn is_orderly(&self) -> bool {
         self.status.is_some_and(|status| status.success())
     }
 
-    /// Whether it ran out of its memory, as far as one can tell from outside.
+    /// True if it ran out of memory, as far as this can be detected from outside.
     ///
-    /// What grows by doubling asks for twice what it holds, and holds both while it copies: one that crashes with a third of
-    /// what it may have may have been refused more.
+    /// A buffer that grows by doubling requests twice its size, and holds both while it copies: a process that crashes with a third of its
+    /// limit may have been refused more.
     #[must_use]
     pub fn of_memory(&self) -> bool {
         self.refused() || self.held >= self.bound / 3
     }
 
-    /// Whether it was refused memory: it says so, or it holds all but what a program asks for at once.
+    /// True if it was refused memory: its output contains such a message, or it held all but the size of a usual request.
     fn refused(&self) -> bool {
         self.held >= self.bound / 10 * 9 || NO_MEMORY.iter().any(|words| self.last_words.contains(words))
     }
 
-    /// All that is to be said.
+    /// The complete description.
     #[must_use]
     pub fn how(&self) -> String {
         let bound = in_words(self.bound);
@@ -75,7 +75,7 @@ impl Ending {
         if self.last_words.is_empty() { how } else { format!("{how}; its last words: {}", self.last_words) }
     }
 
-    /// What it had started and left behind, in words; `None` if there was nothing.
+    /// Processes that it had started and left behind, in words; `None` if there were none.
     #[must_use]
     pub fn left_in_words(&self) -> Option<String> {
         let named: Vec<String> = self.names.iter().map(|name| format!("`{}`", name.escape_debug())).collect();

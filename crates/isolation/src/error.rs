@@ -1,19 +1,19 @@
-//! Why a process is not contained.
+//! Reasons why a process is not contained.
 use std::io;
 use thiserror::Error;
 
-/// Why a process is not contained.
+/// Reasons why a process is not contained.
 #[derive(Debug, Error)]
 pub enum ContainError {
-    /// Nobody has started it to be contained.
+    /// The process was not started to be contained.
     #[error("this command is started by servobench itself, which tells it what it may take")]
     NotStarted,
-    /// The system does not give what is needed.
+    /// The system refuses a necessary operation.
     #[error("cannot {action}: {source}")]
     System {
-        /// What was tried.
+        /// The attempted operation.
         action: &'static str,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
 }

@@ -1,35 +1,35 @@
-//! What contains a process that can crash, hang, or take all memory: native code of engines and FMUs, loaders of foreign files.
+//! Containment of a process that can crash, hang, or take all memory: native code of engines and FMUs, loaders of foreign files.
 //!
-//! [`Contained::start`] starts a program, which calls [`contain`] before it does anything else. From there on it is two processes:
+//! [`Contained::start`] starts a program, which calls [`contain`] before it does anything else. From then on it is two processes:
 //!
 //! ```text
-//! this process ── control: closed by its end, or to end it ── keeper ── the contained process ── what it starts
+//! this process ── control: closed at its end, or to kill it ── keeper ── the contained process ── its child processes
 //!              ←─ report: how it ended, what it left ───────
 //!              ←─ standard output and error of the contained process
 //! ```
-//! The *keeper* does nothing but watch. It is in a process group of its own, so that no key of a terminal and no signal to the group of
-//! this process reaches it or what it keeps. All that the contained process starts becomes the keeper's when its parent ends (it is a
-//! child subreaper, prctl(2)), also where it has left group and session (setsid). The keeper hears of the end of this process by the
-//! control socket, however that ends, and ends everything.
+//! The *keeper* only watches. It is in a separate process group, so that no key of a terminal and no signal to the group of this process
+//! reaches it or the processes that it keeps. All descendants of the contained process become the keeper's children when their parent ends
+//! (it is a child subreaper, prctl(2)), also where they have left group and session (setsid). The keeper detects the end of this process by
+//! the control socket, however that ends, and kills everything.
 //!
-//! | what happens | what is done |
+//! | event | action |
 //! |---|---|
-//! | the contained process ends | what it has started and left behind is ended, and the report names it |
-//! | this process ends, also by SIGKILL | the keeper ends everything, and itself |
-//! | the keeper is ended | the contained process ends with it (`PR_SET_PDEATHSIG`) |
-//! | it asks for memory without end | private memory has a hard bound (`RLIMIT_DATA`); the keeper adds up private and shared memory, memfd and files in `/dev/shm`, of all its processes, and ends them above the bound |
-//! | it prints without end | the last of it is kept ([`Stream`]) |
+//! | the contained process ends | processes that it has started and left behind are killed, and the report names them |
+//! | this process ends, also by SIGKILL | the keeper kills everything, and ends |
+//! | the keeper is killed | the contained process ends with it (`PR_SET_PDEATHSIG`) |
+//! | it requests memory without end | private memory has a hard bound (`RLIMIT_DATA`); the keeper adds up private and shared memory, memfd and files in `/dev/shm`, of all its processes, and kills them above the bound |
+//! | it prints without end | the end of its output is kept ([`Stream`]) |
 //!
-//! Foreign code ([`Limits::is_foreign`]) is in a PID namespace of its own where the system allows that: there it sees no other
-//! process, can send a signal to none, and the kernel ends all of them together.
+//! Foreign code ([`Limits::is_foreign`]) is in a separate PID namespace where the system allows that: there it sees no other process, can
+//! send a signal to none, and the kernel kills all of them together.
 //!
 //! Times are measured by [`Stopwatch`], which stands still while this process does not run (SIGSTOP, Ctrl-Z, a paused machine).
 //!
-//! Two processes speak by a [`Channel`], a socket, or by [`SharedMemory`] with a [`Doorbell`] for each direction, which costs less than a
-//! microsecond where both are awake.
+//! Two processes communicate by a [`Channel`], a socket, or by [`SharedMemory`] with a [`Doorbell`] for each direction, which costs less
+//! than a microsecond where both are awake.
 //!
-//! The module `sys` is the door to the operating system: no crate above calls it for processes by other names than those of `std` and of
-//! this crate. Processes are contained on Linux (5.4 or later); elsewhere [`Contained::start`] refuses.
+//! The module `sys` is the only door to the operating system: crates above use processes by `std` and this crate only. Processes are
+//! contained on Linux (5.4 or later); elsewhere [`Contained::start`] refuses.
 
 mod doorbell;
 mod ending;

@@ -1,6 +1,6 @@
 //! Memory of a process.
 
-/// `bytes` in the unit that a reader expects.
+/// `bytes` in a suitable unit.
 #[must_use]
 pub fn in_words(bytes: u64) -> String {
     match bytes {

@@ -1,4 +1,4 @@
-//! What is started, and what it may take.
+//! Programs to start, and their limits.
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -7,18 +7,17 @@ use std::path::PathBuf;
 pub struct Program {
     /// The program.
     pub program: PathBuf,
-    /// What tells it that it is to be contained.
+    /// Arguments that make it call `contain`.
     pub args: Vec<OsString>,
-    /// What its environment has besides that of this process: libraries of Python FMUs need `LD_PRELOAD`, the simulation does
-    /// not.
+    /// Additions to the environment of this process: libraries of Python FMUs need `LD_PRELOAD`, the simulation does not.
     pub env: Vec<(OsString, OsString)>,
 }
 
-/// What a contained process may take.
+/// Limits of a contained process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Memory of it and of all that it starts (B): private and shared. Files that it maps do not count.
+    /// Memory of the process and of all that it starts (B): private and shared. Files that it maps do not count.
     pub memory: u64,
-    /// Whether its code is foreign: then it gets a PID namespace of its own where the system allows that.
+    /// True if its code is foreign: then it gets a separate PID namespace where the system allows that.
     pub is_foreign: bool,
 }

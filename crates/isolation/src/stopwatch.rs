@@ -1,21 +1,21 @@
 //! Time that this process has run.
 //!
-//! Who waits for another process must not take his own sleep for its silence: after a SIGSTOP (Ctrl-Z) of this process, or a pause of
-//! its virtual machine, all clocks of the system have gone on. A thread adds up short steps of the monotonic clock instead. What lies
-//! between two of its steps counts as [`LONGEST`] at most.
+//! A process that waits for another must not take its own sleep for the other's silence: after a SIGSTOP (Ctrl-Z) of this process, or a
+//! pause of its virtual machine, all clocks of the system have advanced. A thread adds up short steps of the monotonic clock instead. The
+//! time between two of its steps counts as [`LONGEST`] at most.
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Between two steps.
+/// Time between two steps.
 const STEP: Duration = Duration::from_millis(20);
-/// What a step may count: more passes between two of them only where the thread did not get to run.
+/// Longest time that a step may count: more passes between two of them only where the thread did not run.
 const LONGEST: Duration = Duration::from_millis(100);
 
 /// Time that has been added up (ns).
 static RUN: AtomicU64 = AtomicU64::new(0);
-/// When it began, where there is no thread that adds up.
+/// Its start, where there is no thread that adds up.
 static CLOCK: OnceLock<Option<Instant>> = OnceLock::new();
 
 /// Measures time in which this process runs.
@@ -25,13 +25,13 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// One that begins now.
+    /// Starts one.
     #[must_use]
     pub fn start() -> Self {
         Self { start: now() }
     }
 
-    /// Time since it began, to a few hundredths of a second.
+    /// Time since its start, to a few hundredths of a second.
     #[must_use]
     pub fn elapsed(&self) -> Duration {
         now().saturating_sub(self.start)
@@ -41,7 +41,7 @@ impl Stopwatch {
 fn now() -> Duration {
     let without_thread = CLOCK.get_or_init(|| {
         let thread = thread::Builder::new().name("stopwatch".into()).spawn(|| add_up(Instant::now()));
-        // Without a thread it is a clock like others.
+        // Without a thread it is an ordinary clock.
         thread.is_err().then(Instant::now)
     });
     without_thread.map_or_else(|| Duration::from_nanos(RUN.load(Relaxed)), |start| start.elapsed())
@@ -61,7 +61,7 @@ fn add_up(mut last: Instant) {
 mod tests {
     use super::*;
 
-    /// It never runs ahead, and comes along where nothing stops the process; how far behind it may be depends on the machine.
+    /// It never runs ahead, and keeps up where nothing stops the process; its largest lag depends on the machine.
     #[test]
     fn it_goes_with_the_clock() {
         let (clock, watch) = (Instant::now(), Stopwatch::start());

@@ -5,43 +5,43 @@ use std::io::{self, PipeReader, Read};
 const KEPT: usize = 4_000;
 /// Bytes that are read at once.
 const CHUNK: usize = 1 << 16;
-/// Chunks that are read in one visit: as much as a pipe holds at most by default (`/proc/sys/fs/pipe-max-size`), so that
-/// nothing that was written before the visit is left, and one that goes on writing holds nobody up.
+/// Chunks that are read in one call: as much as a pipe holds at most by default (`/proc/sys/fs/pipe-max-size`), so that nothing written
+/// before the call is left, and a process that continues to write causes no delay.
 const CHUNKS: usize = 16;
 
-/// Text that comes out of a contained process.
+/// Output text of a contained process.
 #[derive(Debug)]
 pub struct Output {
-    /// Its standard output, unless that goes elsewhere.
+    /// Its standard output, unless redirected.
     pub stdout: Option<Stream<PipeReader>>,
     /// Its standard error.
     pub stderr: Stream<PipeReader>,
 }
 
-/// One stream of the process: it is always read, so that the writer never waits, and of a flood only the end is kept.
+/// One stream of the process: it is always read, so that the writer never waits, and only the end of a flood is kept.
 #[derive(Debug)]
 pub struct Stream<S> {
     /// `None` after its end.
     source: Option<S>,
     kept: Vec<u8>,
-    /// Bytes since the last time it was taken.
+    /// Bytes since the last call of [`take`](Self::take).
     count: u64,
     chunk: Vec<u8>,
 }
 
 impl<S: Read> Stream<S> {
-    /// Listens to `source`, which must not wait: where nothing has come it says [`io::ErrorKind::WouldBlock`].
+    /// Reads from `source`, which must not block: without data it returns [`io::ErrorKind::WouldBlock`].
     pub fn new(source: S) -> Self {
         Self { source: Some(source), kept: Vec::new(), count: 0, chunk: vec![0; CHUNK] }
     }
 
-    /// Where to listen, before its end.
+    /// The source, until its end.
     #[must_use]
     pub fn source(&self) -> Option<&S> {
         self.source.as_ref()
     }
 
-    /// Reads what is there.
+    /// Reads the available bytes.
     pub fn drain(&mut self) {
         for _ in 0..CHUNKS {
             let Some(source) = &mut self.source else { return };
@@ -56,13 +56,13 @@ impl<S: Read> Stream<S> {
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => return,
-                // Nothing comes out of it any more.
+                // The source has no more data.
                 Err(_) => self.source = None,
             }
         }
     }
 
-    /// Text that has come since the last time, and the number of bytes before it that were dropped.
+    /// Text since the last call, and the number of dropped bytes before it.
     pub fn take(&mut self) -> Option<(String, u64)> {
         let kept = &self.kept[self.kept.len().saturating_sub(KEPT)..];
         let dropped = self.count - kept.len() as u64;
@@ -73,7 +73,7 @@ impl<S: Read> Stream<S> {
         some.then_some((text, dropped))
     }
 
-    /// The last bytes, which stay.
+    /// The last bytes, without taking them.
     #[must_use]
     pub fn last_words(&self) -> String {
         let kept = &self.kept[self.kept.len().saturating_sub(KEPT)..];
@@ -85,7 +85,7 @@ impl<S: Read> Stream<S> {
 mod tests {
     use super::*;
 
-    /// A pipe: the bytes that are in it, and whether somebody may still write.
+    /// A pipe: the bytes that are in it, and whether it is still open for writing.
     struct Pipe(Vec<u8>, bool);
 
     impl Read for Pipe {
@@ -123,7 +123,7 @@ mod tests {
         assert!(stream.source().is_none());
     }
 
-    /// One that writes as fast as it is read: a visit ends all the same.
+    /// A source that writes as fast as it is read: a call ends all the same.
     #[test]
     fn a_visit_ends_however_much_comes() {
         let mut stream = Stream::new(io::repeat(0));

@@ -1,4 +1,4 @@
-//! A system that cannot contain a process: whoever asks for one is told so, and where there is one.
+//! A system that cannot contain a process: a request returns an error that names the supported system.
 use crate::ending::Ending;
 use crate::error::ContainError;
 use crate::program::{Limits, Program};
@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicU32;
 use std::thread;
 use std::time::Duration;
 
-/// The longest time between two looks at a number.
+/// The longest time between two checks of a number.
 const GLANCE: Duration = Duration::from_millis(1);
 
 fn unsupported() -> io::Error {
@@ -23,7 +23,7 @@ fn unsupported() -> io::Error {
     io::Error::new(ErrorKind::Unsupported, why)
 }
 
-/// A contained process: there is none.
+/// A contained process; it does not exist here.
 #[derive(Debug)]
 pub struct Contained(Infallible);
 
@@ -53,12 +53,12 @@ impl Contained {
         match self.0 {}
     }
 
-    /// Text that has come out of the process up to now.
+    /// Output text of the process up to now.
     pub fn output(&self) -> MutexGuard<'_, Output> {
         match self.0 {}
     }
 
-    /// Ends the process.
+    /// Kills the process.
     pub fn end(&mut self) -> Option<&Ending> {
         match self.0 {}
     }
@@ -72,13 +72,13 @@ pub fn contain() -> Result<(), ContainError> {
     Err(ContainError::System { action: "contain this process", source: unsupported() })
 }
 
-/// There are none.
+/// Contained processes: none.
 #[must_use]
 pub fn end_all() -> Vec<u32> {
     Vec::new()
 }
 
-/// One end of a channel between two processes: there is none.
+/// One end of a channel between two processes; it does not exist here.
 #[derive(Debug)]
 pub struct Channel(Infallible);
 
@@ -99,7 +99,7 @@ impl Channel {
         match self.0 {}
     }
 
-    /// The same end once more.
+    /// The same end again.
     ///
     /// # Errors
     /// None.
@@ -146,11 +146,11 @@ pub fn claim_standard_streams() -> io::Result<(Channel, File)> {
     Err(unsupported())
 }
 
-/// The file by which a process hands memory to another one: there is none.
+/// The file by which a process hands memory to another one; it does not exist here.
 #[derive(Debug)]
 pub struct MemoryFile(Infallible);
 
-/// Memory that another process sees: there is none.
+/// Memory shared with another process; it does not exist here.
 #[derive(Debug)]
 pub struct SharedMemory(Infallible);
 
@@ -200,10 +200,10 @@ impl SharedMemory {
     }
 }
 
-/// Nobody sleeps until he is woken.
+/// No waiter needs a wake-up.
 pub(crate) fn wake(_: &AtomicU32) {}
 
-/// Sleeps a little; the caller looks.
+/// Sleeps a little; the caller checks the number.
 pub(crate) fn sleep_while(_: &AtomicU32, _: u32, limit: Duration) {
     thread::sleep(limit.min(GLANCE));
 }
@@ -213,16 +213,16 @@ pub fn leave_at_once() -> ! {
     std::process::exit(0)
 }
 
-/// The allocator of the system stays as it is.
+/// The allocator of the system stays unchanged.
 pub fn keep_freed_memory(_: i32, _: i32) {}
 
-/// Memory that this process and what it starts may take together (B); `None` where that is not known.
+/// Memory that this process and its children may take together (B); `None` where unknown.
 #[must_use]
 pub fn memory_of_machine() -> Option<u64> {
     None
 }
 
-/// Bytes of memory that this process may write and does not share; `None` where the system does not say so.
+/// Bytes of memory that this process may write and does not share; `None` where the system does not report it.
 #[must_use]
 pub fn own_memory() -> Option<u64> {
     None

@@ -1,7 +1,7 @@
-//! The door to the operating system for processes: what `std` has no portable name for.
+//! The door to the operating system for processes: functions for which `std` has no portable name.
 //!
 //! Other modules and crates use processes by `std` and by this crate. Processes are contained on Linux; on another system [`elsewhere`]
-//! refuses that, and says where it can be had.
+//! refuses that, and names the supported system.
 
 #[cfg(not(target_os = "linux"))]
 mod elsewhere;

@@ -1,9 +1,9 @@
-//! A system without signals: what ends a program there ends it at once.
+//! A system without signals: a request to end a program ends it at once.
 use std::convert::Infallible;
 use std::io;
 use std::process::ExitStatus;
 
-/// Requests to end this program: none is heard here.
+/// Requests to end this program: none is received here.
 #[derive(Debug)]
 pub struct Interrupts(Infallible);
 
@@ -39,7 +39,7 @@ impl Interrupt {
     }
 }
 
-/// There is no bound of files that would end the process.
+/// Does nothing: the system has no limit of file size that would end the process.
 ///
 /// # Errors
 /// None.
@@ -47,7 +47,7 @@ pub fn refuse_large_files() -> io::Result<()> {
     Ok(())
 }
 
-/// There is no bound of open files that could be raised.
+/// Does nothing: the system has no limit of open files that could be raised.
 pub fn allow_open_files(_: u64) {}
 
 /// No signal ends a process.

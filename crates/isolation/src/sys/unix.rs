@@ -8,7 +8,7 @@ use std::os::unix::process::ExitStatusExt as _;
 use std::process::ExitStatus;
 use std::sync::Arc;
 
-/// Requests to end this program (SIGINT, SIGTERM), which from now on do not end it by themselves.
+/// Requests to end this program (SIGINT, SIGTERM), which then do not end it by themselves.
 #[derive(Debug)]
 pub struct Interrupts(Signals);
 
@@ -25,7 +25,7 @@ impl Interrupts {
         Signals::new([SIGINT, SIGTERM]).map(|signals| Some(Self(signals)))
     }
 
-    /// All of them; the next one is waited for.
+    /// All requests, waiting for the next one.
     pub fn all(&mut self) -> impl Iterator<Item = Interrupt> {
         self.0.forever().map(Interrupt)
     }
@@ -38,16 +38,16 @@ impl Interrupt {
         self.0 == SIGINT
     }
 
-    /// Ends this program as the request would have without anybody listening to it: a shell sees 130 or 143.
+    /// Ends this program as the request would have without a listener: a shell sees 130 or 143.
     pub fn end(self) -> ! {
-        // It returns only where the signal means nothing, and it does not.
+        // It returns only for a signal without effect, which these are not.
         emulate_default_handler(self.0).ok();
         std::process::exit(128 + self.0)
     }
 }
 
-/// From now on a file that grows beyond what the process may write (`RLIMIT_FSIZE`) is an error of the write, as a full disk
-/// is, and not the end of the process.
+/// Makes a file that grows beyond the limit of the process (`RLIMIT_FSIZE`) an error of the write, as a full disk is, and not the end of
+/// the process.
 ///
 /// # Errors
 /// Those of the operating system.
@@ -56,12 +56,12 @@ pub fn refuse_large_files() -> io::Result<()> {
     Ok(())
 }
 
-/// Allows `count` open files at once, or as many as the machine does; never less than now.
+/// Allows `count` open files at once, or as many as the system permits; never fewer than now.
 pub fn allow_open_files(count: u64) {
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let wanted = maximum.map_or(count, |maximum| maximum.min(count));
     if current.is_some_and(|current| current < wanted) {
-        // What is refused leaves things as they were.
+        // A refusal leaves the limit unchanged.
         setrlimit(Resource::Nofile, Rlimit { current: Some(wanted), maximum }).ok();
     }
 }

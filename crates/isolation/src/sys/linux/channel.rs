@@ -7,7 +7,7 @@ use std::os::unix::net::UnixStream;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// One end of a channel between two processes. What is written at one end is read at the other.
+/// One end of a channel between two processes. Bytes written at one end are read at the other.
 #[derive(Debug)]
 pub struct Channel(UnixStream);
 
@@ -21,7 +21,7 @@ impl Channel {
         Ok((Self(one), Self(other)))
     }
 
-    /// From now on reading and writing fail with [`io::ErrorKind::WouldBlock`] after `time` at the latest.
+    /// Sets a timeout: reading and writing then fail with [`io::ErrorKind::WouldBlock`] after `time` at the latest.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -30,7 +30,7 @@ impl Channel {
         self.0.set_write_timeout(Some(time))
     }
 
-    /// The same end once more.
+    /// The same end again.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -69,8 +69,8 @@ impl From<Channel> for Stdio {
     }
 }
 
-/// Takes standard input, a channel, and standard output, a file, of this process for something else: what reads standard input from now on
-/// finds nothing, and what is written on standard output goes to standard error.
+/// Takes over standard input, a channel, and standard output, a file, of this process: code that reads standard input from now on finds it
+/// empty, and output on standard output goes to standard error.
 ///
 /// # Errors
 /// Those of the operating system.

@@ -1,5 +1,5 @@
 #![expect(unsafe_code, reason = "the keeper and the contained process are one program that forks")]
-//! From a program that was started to be contained to two processes.
+//! Containment in a started program: it becomes two processes.
 use super::crash;
 use super::keeper::{Kept, keep};
 use super::namespace;
@@ -17,16 +17,16 @@ use std::io;
 use std::os::fd::{FromRawFd, OwnedFd};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Contains this process as [`Contained::start`](crate::Contained::start) has asked for: it returns in the contained process only.
+/// Contains this process as requested by [`Contained::start`](crate::Contained::start); returns in the contained process only.
 ///
 /// To be called before anything else, while there is one thread.
 ///
 /// # Errors
-/// [`ContainError`]: nobody has started this program to be contained, or the system does not give what is needed.
+/// [`ContainError`]: this program was not started to be contained, or the system refuses a necessary operation.
 pub fn contain() -> Result<(), ContainError> {
     let settings = std::env::var(VARIABLE).ok().and_then(|text| Settings::of_text(&text));
     let settings = settings.ok_or(ContainError::NotStarted)?;
-    // SAFETY: who has set the variable has opened it for this process alone. If somebody else has set it, this fails at once.
+    // SAFETY: the caller that set the variable opened it for this process alone. If it was set by anything else, this fails at once.
     let control = unsafe { OwnedFd::from_raw_fd(settings.control) };
     fcntl_setfd(&control, FdFlags::CLOEXEC).map_err(|_| ContainError::NotStarted)?;
     let cannot = |action| move |errno: Errno| ContainError::System { action, source: errno.into() };
@@ -63,11 +63,11 @@ fn in_namespace(control: OwnedFd, limits: Limits, note: &'static Note) -> Result
         keep(&control, &Kept::Namespace { first, status: status.into() }, limits, note);
     }
     drop((control, status));
-    // The keeper has no process id in here.
+    // The keeper has no process id in this namespace.
     end_with(None)?;
     let for_status = OwnedFd::from(for_status);
     if is_closed(&for_status) {
-        // It has ended before this process could end with it.
+        // The parent has ended before this call.
         leave();
     }
     let first = getpid();
@@ -79,7 +79,7 @@ fn in_namespace(control: OwnedFd, limits: Limits, note: &'static Note) -> Result
     limit(limits, note)
 }
 
-/// Waits for the end of `child`, says how it ended, and for everything else that ends in the namespace.
+/// Waits for the end of `child`, reports it, and waits for everything else that ends in the namespace.
 fn wait_as_first(child: Pid, for_status: &OwnedFd) -> ! {
     loop {
         match wait(WaitOptions::empty()) {
@@ -87,7 +87,7 @@ fn wait_as_first(child: Pid, for_status: &OwnedFd) -> ! {
                 rustix::io::write(for_status, &status.as_raw().to_ne_bytes()).ok();
             }
             Ok(_) | Err(Errno::INTR) => {}
-            // There is nobody left. The keeper ends this process when it has read the status.
+            // All processes have ended. The keeper ends this process when it has read the status.
             Err(_) => loop {
                 poll(&mut [PollFd::new(for_status, PollFlags::empty())], None).ok();
             },
@@ -95,53 +95,53 @@ fn wait_as_first(child: Pid, for_status: &OwnedFd) -> ! {
     }
 }
 
-/// `true` when nobody listens at the other end of a pipe any more.
+/// `true` when the other end of a pipe is closed.
 fn is_closed(pipe: &OwnedFd) -> bool {
     let mut pipes = [PollFd::new(pipe, PollFlags::empty())];
     let now = Timespec { tv_sec: 0, tv_nsec: 0 };
     poll(&mut pipes, Some(&now)).is_ok() && pipes[0].revents().intersects(PollFlags::ERR | PollFlags::HUP)
 }
 
-/// This process ends with its parent.
+/// Makes this process end with its parent.
 fn end_with(parent: Option<Pid>) -> Result<(), ContainError> {
     set_parent_process_death_signal(Some(Signal::KILL))
         .map_err(|errno| ContainError::System { action: "end with the keeper", source: errno.into() })?;
-    // It may have ended before.
+    // The parent may have ended before.
     if parent.is_some() && getppid() != parent {
         leave();
     }
     Ok(())
 }
 
-/// The share of its memory that may be data. Stack and libraries take some of the rest: a process that asks for too much is refused, and
-/// is not ended first for what it has beside its data.
+/// The share of its memory that may be data. Stack and libraries take some of the rest: a process that requests too much is refused, and is
+/// not killed first for memory beside its data.
 const DATA: (u64, u64) = (31, 32);
 
-/// Binds this process to its memory.
+/// Limits the memory of this process.
 fn limit(limits: Limits, note: &'static Note) -> Result<(), ContainError> {
     let cannot = |action| move |errno: Errno| ContainError::System { action, source: errno.into() };
-    // A signal to its own group is for what it has started, and not for the keeper.
+    // A signal to its own group is for its child processes, and not for the keeper.
     setpgid(None, None).map_err(cannot("make a process group"))?;
     let data = limits.memory / DATA.1 * DATA.0;
     let most = getrlimit(Resource::Data).maximum.map_or(data, |most| most.min(data));
     setrlimit(Resource::Data, Rlimit { current: Some(most), maximum: Some(most) }).map_err(cannot("bound memory"))?;
-    // In a namespace of its own, `/proc` alone knows the id that all others see.
+    // In a separate namespace, only `/proc` knows the id that all others see.
     let own = std::fs::read_link("/proc/self").ok().and_then(|link| link.to_str()?.parse().ok());
     note.process.store(own.unwrap_or(0), Relaxed);
     crash::note_in(note);
     Ok(())
 }
 
-/// The child's id; in the child `None`.
+/// The child's id; `None` in the child.
 fn fork() -> Result<Option<Pid>, ContainError> {
-    // SAFETY: this is the only thread, or, in a test, the only one that does something.
+    // SAFETY: this is the only thread, or, in a test, the only active one.
     match unsafe { libc::fork() } {
         -1 => Err(ContainError::System { action: "start a process", source: io::Error::last_os_error() }),
         child => Ok(Pid::from_raw(child)),
     }
 }
 
-/// From now on requests to end are not for the keeper: whoever asks all processes of a name or a service to end asks the simulation too, and
+/// Ignores requests to end, which are not for the keeper: a request to all processes of a name or a service reaches the simulation too, and
 /// with that the keeper ends.
 fn be_deaf() {
     for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGQUIT, libc::SIGTERM] {
@@ -150,7 +150,7 @@ fn be_deaf() {
     }
 }
 
-/// Ends this process, and nothing else: what runs at an end belongs to the contained process.
+/// Ends this process without its exit handlers, which belong to the contained process.
 pub(crate) fn leave() -> ! {
     // SAFETY: it ends.
     unsafe { libc::_exit(0) }

@@ -1,9 +1,9 @@
 #![expect(unsafe_code, reason = "what to do at a crash is told to the system through C")]
 //! Notes of a contained process about its crash.
 //!
-//! The memory of a process is gone when its keeper hears of its end, so the process notes how much it had. Only what is safe
-//! in a signal handler is done there (signal-safety(7)): system calls and atomics. Then all goes its usual way: the action
-//! that was there before is put back, and the instruction that failed fails again.
+//! The memory of a process is gone when its keeper detects its end, so the process notes how much it had. The handler does only what is
+//! safe in a signal handler (signal-safety(7)): system calls and atomics. Then the crash takes its usual course: the previous action is
+//! restored, and the instruction that failed fails again.
 use super::memory;
 use super::note::Note;
 use std::ffi::c_int;
@@ -12,7 +12,7 @@ use std::ptr;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Signals that end a process that has done something wrong.
+/// Signals that end a process after an error.
 const SIGNALS: [c_int; 5] = [libc::SIGSEGV, libc::SIGABRT, libc::SIGBUS, libc::SIGILL, libc::SIGFPE];
 
 /// Data of the signal handler.
@@ -28,7 +28,7 @@ unsafe impl Sync for Known {}
 
 static KNOWN: OnceLock<Known> = OnceLock::new();
 
-/// Notes in `note` how much memory this process holds when it crashes.
+/// Installs handlers that note in `note` the memory of this process when it crashes.
 pub(crate) fn note_in(note: &'static Note) {
     let before = SIGNALS.map(|signal| {
         let mut action = MaybeUninit::<libc::sigaction>::zeroed();
@@ -45,7 +45,7 @@ pub(crate) fn note_in(note: &'static Note) {
             unsafe {
                 let mut action = MaybeUninit::<libc::sigaction>::zeroed().assume_init();
                 action.sa_sigaction = handler as *const () as libc::sighandler_t;
-                // On a stack of its own, where the thread has one: the stack may be what is full.
+                // On a separate stack, where the thread has one: the cause may be a stack overflow.
                 action.sa_flags = libc::SA_SIGINFO | libc::SA_ONSTACK;
                 libc::sigaction(signal, &raw const action, ptr::null_mut());
             }
@@ -58,7 +58,7 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, _: *mut libc::c
     if let Some(held) = memory::held(c"/proc/self/statm") {
         known.note.held.store(held, Relaxed);
     }
-    // SAFETY: the kernel gives a valid `info`. Actions are set as they were; what was sent and not caused by an instruction
+    // SAFETY: the kernel gives a valid `info`. The previous actions are restored; a signal that was sent and not caused by an instruction
     // would not come again by itself, and is sent again with the default action.
     unsafe {
         let sent = (*info).si_code <= 0;

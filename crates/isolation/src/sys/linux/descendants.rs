@@ -1,19 +1,19 @@
-//! The processes that a process has started, and what these have started.
+//! The child processes of a process, and theirs.
 use rustix::process::Pid;
 use std::collections::HashMap;
 
-/// A process as `/proc` has it (proc_pid_stat(5)).
+/// A process as listed in `/proc` (proc_pid_stat(5)).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Process {
     pub(crate) id: i32,
     /// The name of its program, 15 bytes of it.
     pub(crate) name: String,
     parent: i32,
-    /// Has ended, and its parent has not collected its status yet.
+    /// True if it has ended, and its parent has not collected its status yet.
     has_ended: bool,
 }
 
-/// All that `of` has started and that has not ended, in the order of their ids.
+/// All running descendants of `of`, in the order of their ids.
 pub(crate) fn descendants(of: Pid) -> Vec<Process> {
     let of = of.as_raw_pid();
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
@@ -21,7 +21,7 @@ pub(crate) fn descendants(of: Pid) -> Vec<Process> {
     let all: Vec<Process> = ids.filter_map(process).collect();
     let parents: HashMap<i32, i32> = all.iter().map(|process| (process.id, process.parent)).collect();
     let is_below = |process: &Process| {
-        // As many steps as there are processes: what was read one after the other may be a circle.
+        // At most as many steps as there are processes: entries read one after the other may form a circle.
         let mut above = process.parent;
         for _ in 0..parents.len() {
             if above == of {
@@ -42,7 +42,7 @@ fn process(id: i32) -> Option<Process> {
     of_stat(id, &String::from_utf8_lossy(&std::fs::read(format!("/proc/{id}/stat")).ok()?))
 }
 
-/// `4711 (a name) S 1 …`: the name may have any character.
+/// `4711 (a name) S 1 …`: the name may contain any character.
 fn of_stat(id: i32, stat: &str) -> Option<Process> {
     let (before, after) = stat.rsplit_once(')')?;
     let (_, name) = before.split_once('(')?;

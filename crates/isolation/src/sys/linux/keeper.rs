@@ -1,4 +1,4 @@
-//! The keeper: watches the contained process, ends what is to end, and says how it ended.
+//! The keeper: watches the contained process, kills all remaining processes, and reports the end.
 use super::contain::leave;
 use super::descendants::descendants;
 use super::memory::held_by;
@@ -15,9 +15,9 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Between two looks at the memory.
+/// Time between two checks of the memory.
 const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 20_000_000 };
-/// Longest time to end the processes left behind: one that starts others faster than they are ended is left to the system.
+/// Longest time to kill the processes left behind: one that starts others faster than they are killed is left to the system.
 const MOST: Duration = Duration::from_secs(2);
 /// Names in the report; the others are counted.
 const NAMES: usize = 8;
@@ -27,7 +27,7 @@ const NAMES: usize = 8;
 pub(crate) enum Kept {
     /// The contained process.
     Child(Pid),
-    /// The first process of the namespace of the contained process; how that ends comes through a pipe.
+    /// The first process of the namespace of the contained process; the status of the latter comes through a pipe.
     Namespace {
         /// The first process.
         first: Pid,
@@ -43,9 +43,9 @@ pub(crate) struct Report {
     pub(crate) process: i32,
     /// Its wait status (wait(2)).
     pub(crate) status: Option<i32>,
-    /// Memory that it held when it crashed or was ended (B); 0 if that is not known.
+    /// Memory that it held when it crashed or was killed (B); 0 if that is not known.
     pub(crate) held: u64,
-    /// `true` when it was ended for its memory.
+    /// `true` when it was killed for its memory.
     pub(crate) exceeded: bool,
     /// Number of processes it has left behind.
     pub(crate) left: usize,
@@ -57,15 +57,15 @@ pub(crate) struct Report {
 enum Event {
     /// The contained process has ended.
     Ended,
-    /// The program asks for its end.
+    /// The program requests its end.
     Stop,
-    /// More memory than it may have: this much (B).
+    /// Memory above the limit: this much (B).
     Exceeded(u64),
 }
 
 /// Watches to the end.
 pub(crate) fn keep(control: &OwnedFd, kept: &Kept, limits: Limits, note: &'static Note) -> ! {
-    // What the contained process is told and says goes by these: their other ends are to see its end.
+    // Input and output of the contained process use these: their other ends must detect its end.
     if let Ok(nothing) = File::options().read(true).write(true).open("/dev/null") {
         rustix::stdio::dup2_stdin(&nothing).ok();
         rustix::stdio::dup2_stdout(&nothing).ok();
@@ -87,7 +87,7 @@ pub(crate) fn keep(control: &OwnedFd, kept: &Kept, limits: Limits, note: &'stati
         Kept::Namespace { first, status } => {
             report.status = by_itself.then(|| status_from(status)).flatten();
             let left = if by_itself { of_namespace(*first) } else { Vec::new() };
-            // All that is in it ends with it.
+            // All processes of the namespace end with it.
             let of_first = ended(*first);
             report.status = report.status.or(of_first);
             left
@@ -99,15 +99,15 @@ pub(crate) fn keep(control: &OwnedFd, kept: &Kept, limits: Limits, note: &'stati
     }
     report.held = report.held.max(note.held.load(Relaxed));
     if let Ok(bytes) = serde_json::to_vec(&report) {
-        // Nobody may listen any more.
+        // The program may have ended.
         write(control, &bytes).ok();
     }
     leave()
 }
 
-/// Ends a child of the keeper, if it has not ended: its wait status.
+/// Kills a child of the keeper, if it has not ended, and returns its wait status.
 fn ended(child: Pid) -> Option<i32> {
-    // One that has ended is still there as long as nobody has asked how.
+    // A process that has ended still exists until its status is collected.
     kill_process(child, Signal::KILL).ok();
     loop {
         match waitpid(Some(child), WaitOptions::empty()) {
@@ -124,12 +124,12 @@ fn status_from(pipe: &OwnedFd) -> Option<i32> {
     (count == bytes.len()).then(|| i32::from_ne_bytes(bytes))
 }
 
-/// Names of what is left in the namespace of `first`.
+/// Names of the processes left in the namespace of `first`.
 fn of_namespace(first: Pid) -> Vec<String> {
     descendants(first).into_iter().map(|process| process.name).collect()
 }
 
-/// Ends everything that the contained process has left to the keeper: the names.
+/// Kills all processes that the contained process has left to the keeper, and returns their names.
 fn end_left() -> Vec<String> {
     let (start, mut names) = (Instant::now(), None);
     while has_children() && start.elapsed() < MOST {
@@ -144,7 +144,7 @@ fn end_left() -> Vec<String> {
     names.unwrap_or_default()
 }
 
-/// `true` when the keeper has a child that has not ended. Those that have ended are reaped.
+/// `true` when the keeper has a child that has not ended. Ended ones are reaped.
 fn has_children() -> bool {
     loop {
         match wait(WaitOptions::NOHANG) {
@@ -166,7 +166,7 @@ fn watch(control: &OwnedFd, kept: &Kept, limits: Limits, note: &'static Note) ->
         if let Kept::Namespace { status, .. } = kept {
             all.push(PollFd::new(status, PollFlags::IN));
         }
-        // Interrupted: it looks again.
+        // Interrupted: it checks again.
         poll(&mut all, Some(&LOOK)).ok();
         let has_happened = |index: usize| all.get(index).is_some_and(|fd| !fd.revents().is_empty());
         if has_happened(0) || has_happened(2) {

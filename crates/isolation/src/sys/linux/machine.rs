@@ -1,17 +1,17 @@
-//! Memory of the machine, as far as this process may have it.
+//! Memory of the machine, as far as this process may use it.
 use rustix::process::{Resource, getrlimit};
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
-/// Bounds of control groups above this are none: cgroup v1 says "no bound" by the largest multiple of a page.
+/// Bounds of control groups above this are unlimited: cgroup v1 writes the largest multiple of a page.
 const NO_BOUND: u64 = 1 << 62;
 
-/// Keeps `kept` bytes of freed memory for whoever asks next, in pieces of up to `piece` bytes; otherwise it goes back to the system, and
-/// comes again page by page.
+/// Keeps `kept` bytes of freed memory for later requests, in pieces of up to `piece` bytes; otherwise it goes back to the system, and is
+/// faulted in again page by page.
 pub fn keep_freed_memory(kept: i32, piece: i32) {
     #[cfg(target_env = "gnu")]
     #[expect(unsafe_code, reason = "the allocator of the C library has no other door")]
-    // SAFETY: it sets two numbers of the allocator. One that it does not take leaves things as they were.
+    // SAFETY: it sets two numbers of the allocator. A rejected one leaves it unchanged.
     unsafe {
         libc::mallopt(libc::M_MMAP_THRESHOLD, piece);
         libc::mallopt(libc::M_TRIM_THRESHOLD, kept);
@@ -20,8 +20,8 @@ pub fn keep_freed_memory(kept: i32, piece: i32) {
     let _ = (kept, piece);
 }
 
-/// Memory that this process and what it starts may take together (B): that of the machine, of its control groups, and its own
-/// limits (`RLIMIT_AS`, `RLIMIT_DATA`), whichever is least; `None` where nothing says so.
+/// Memory that this process and its children may take together (B): that of the machine, of its control groups, and its own limits
+/// (`RLIMIT_AS`, `RLIMIT_DATA`), whichever is least; `None` where none is known.
 #[must_use]
 pub fn memory_of_machine() -> Option<u64> {
     let of_groups = read_to_string("/proc/self/cgroup").ok();
@@ -38,9 +38,9 @@ fn ram(meminfo: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The least bound of the groups in `groups` (cgroup(7), `/proc/PID/cgroup`) and of all that they are in, mounted at `root`.
+/// The least bound of the groups in `groups` (cgroup(7), `/proc/PID/cgroup`) and of all groups that contain them, mounted at `root`.
 ///
-/// In a container a path of the host may stand there, of which the container sees the end only: then the bound is at `root`.
+/// In a container the path may be one of the host, of which the container sees the end only: then the bound is at `root`.
 fn of_control_groups(groups: &str, root: &Path) -> Option<u64> {
     groups
         .lines()
@@ -59,7 +59,7 @@ fn of_control_groups(groups: &str, root: &Path) -> Option<u64> {
         .min()
 }
 
-/// The bound in `file`; `None` where it says that there is none.
+/// The bound in `file`; `None` where it is unlimited.
 fn bound(file: &Path) -> Option<u64> {
     read_to_string(file).ok()?.trim().parse().ok().filter(|bound| *bound < NO_BOUND)
 }

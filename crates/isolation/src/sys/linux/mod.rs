@@ -1,4 +1,4 @@
-//! Contained processes and what two processes share, on Linux (5.4 or later).
+//! Contained processes and shared objects of two processes, on Linux (5.4 or later).
 
 mod channel;
 mod contain;

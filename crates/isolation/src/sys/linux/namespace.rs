@@ -2,16 +2,16 @@
     unsafe_code,
     reason = "rustix calls what changes namespaces unsafe for the sake of one that is not used here"
 )]
-//! A PID namespace: who is in it sees no process outside, and all in it end with its first process (pid_namespaces(7)).
+//! A PID namespace: a process in it sees no process outside, and all in it end with its first process (pid_namespaces(7)).
 use rustix::process::{getgid, getuid};
 use rustix::thread::{CapabilitySet, CapabilitySets, UnshareFlags, set_capabilities, unshare_unsafe};
 use std::fs;
 use std::io;
 
-/// From now on what this process forks is in a PID namespace of its own, if the system allows that: whether it does.
+/// Puts later child processes into a separate PID namespace, if the system allows that; returns true if it did.
 ///
-/// Who may make one at once does so. Everybody else needs a user namespace around it (user_namespaces(7)), in which user and group
-/// stay what they are; some systems forbid that, and it cannot be had by a process with several threads.
+/// A privileged process does so directly. Others need a user namespace around it (user_namespaces(7)), in which user and group stay
+/// unchanged; some systems forbid that, and a process with several threads cannot do it.
 pub(crate) fn enter() -> bool {
     // SAFETY: file descriptors stay shared.
     if unsafe { unshare_unsafe(UnshareFlags::NEWPID) }.is_ok() {
@@ -22,7 +22,7 @@ pub(crate) fn enter() -> bool {
     if unsafe { unshare_unsafe(UnshareFlags::NEWUSER | UnshareFlags::NEWPID) }.is_err() {
         return false;
     }
-    // Without a map files would belong to nobody: what can be done in the new namespace is given up in any case.
+    // Without a map files would have no owner: capabilities in the new namespace are dropped in any case.
     map(user, group).ok();
     let none = CapabilitySets {
         effective: CapabilitySet::empty(),

@@ -2,23 +2,23 @@
     unsafe_code,
     reason = "memory that the keeper and the contained process share is mapped, and seen as atomics"
 )]
-//! Notes of the contained process where its keeper finds them, also after a crash.
+//! Notes of the contained process in memory that its keeper reads, also after a crash.
 use rustix::mm::{MapFlags, ProtFlags, mmap_anonymous};
 use std::io;
 use std::ptr;
 use std::sync::atomic::{AtomicI32, AtomicU64};
 
-/// The note. Foreign code may write over it: then it says nonsense, which is only said.
+/// The note. Foreign code may overwrite it, which makes the report wrong, and nothing else.
 #[derive(Debug)]
 #[repr(C)]
 pub(crate) struct Note {
-    /// Memory of its own that the process held when it crashed (B).
+    /// Private memory that the process held when it crashed (B).
     pub(crate) held: AtomicU64,
-    /// Its process id as `/proc` has it; 0 until it knows.
+    /// Its process id in `/proc`; 0 until known.
     pub(crate) process: AtomicI32,
 }
 
-/// Memory for a note, which a process that is forked shares; it stays until both have ended.
+/// Memory for a note, shared with forked processes; it stays until all have ended.
 pub(crate) fn note() -> io::Result<&'static Note> {
     let access = ProtFlags::READ | ProtFlags::WRITE;
     // SAFETY: a new mapping at an address that the kernel chooses aliases nothing. It is never unmapped, a page is larger than the note

@@ -1,8 +1,8 @@
-//! Memory that several processes take together.
+//! Total memory of several processes.
 //!
-//! `RLIMIT_DATA` bounds private memory, of one process. What is shared (mappings, memfd, files in `/dev/shm`) has no bound of its own,
-//! and neither has what several processes take together. Both are looked at from outside, now and then: what can be had between two
-//! looks is bounded by the speed of the memory.
+//! `RLIMIT_DATA` bounds private memory, of one process. Shared memory (mappings, memfd, files in `/dev/shm`) has no such bound, and neither
+//! has the total of several processes. Both are checked from outside, periodically: the growth between two checks is bounded by the speed
+//! of the memory.
 use super::descendants::descendants;
 use rustix::process::Pid;
 use std::collections::BTreeMap;
@@ -11,14 +11,14 @@ use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Part of the time that is spent on looking for further processes, and for files of memory.
+/// Reciprocal of the share of time for searches of further processes, and of files in memory.
 const SHARE: u32 = 200;
-/// Least time between two such looks.
+/// Least time between two such searches.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Bytes of a block of `st_blocks` (stat(2)).
 const BLOCK: u64 = 512;
 
-/// Looks at the memory of processes.
+/// Measures the memory of processes.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     /// Parent of all of them.
@@ -26,12 +26,12 @@ pub(crate) struct Sampler {
     processes: Vec<i32>,
     /// Memory files that they have open (B).
     files: u64,
-    /// When the next look for further ones is due.
+    /// Time of the next search.
     due: Instant,
 }
 
 impl Sampler {
-    /// For what `keeper` has started.
+    /// For the descendants of `keeper`.
     pub(crate) fn new(keeper: Pid) -> Self {
         Self { keeper, processes: Vec::new(), files: 0, due: Instant::now() + PAUSE }
     }
@@ -50,11 +50,11 @@ impl Sampler {
         memory.with_files(self.files)
     }
 
-    /// The same, where what several of them share counts once; it takes longer.
+    /// The same, with memory shared among them counted once; it takes longer.
     pub(crate) fn held_once(&self, first: i32) -> u64 {
         let first = Some(first).filter(|first| *first > 0 && !self.processes.contains(first));
         let all = self.processes.iter().copied().chain(first);
-        // A system that does not say it has said the other.
+        // A system without the proportional values has reported the others.
         let memory = all.filter_map(|process| rollup(process).or_else(|| status(process)));
         memory.fold(Memory::default(), Memory::and).with_files(self.files)
     }
@@ -72,19 +72,19 @@ impl Memory {
         Self { private: self.private + other.private, shared: self.shared + other.shared }
     }
 
-    /// With `files`, which may be mapped, or not.
+    /// With `files`, mapped or not.
     fn with_files(self, files: u64) -> u64 {
         self.private + self.shared.max(files)
     }
 }
 
-/// Resident memory by kind, as proc_pid_status(5) has it: files that are mapped do not count.
+/// Resident memory by kind, from proc_pid_status(5): mapped files do not count.
 fn status(process: i32) -> Option<Memory> {
     let text = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     Some(Memory { private: kilobytes(&text, "RssAnon:")? * 1024, shared: kilobytes(&text, "RssShmem:")? * 1024 })
 }
 
-/// The same in proportion to how many processes share a page (`/proc/PID/smaps_rollup`).
+/// The same, each page divided by the number of processes that share it (`/proc/PID/smaps_rollup`).
 fn rollup(process: i32) -> Option<Memory> {
     let text = fs::read_to_string(format!("/proc/{process}/smaps_rollup")).ok()?;
     Some(Memory { private: kilobytes(&text, "Pss_Anon:")? * 1024, shared: kilobytes(&text, "Pss_Shmem:")? * 1024 })
@@ -94,7 +94,7 @@ fn kilobytes(text: &str, name: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(name))?.trim().strip_suffix("kB")?.trim().parse().ok()
 }
 
-/// Memory of the files that are memory (memfd, `/dev/shm`) and that `processes` have open, each once.
+/// Memory of the files in memory (memfd, `/dev/shm`) that `processes` have open, each once.
 fn memory_files(processes: &[i32]) -> u64 {
     let mut files = BTreeMap::new();
     for process in processes {

@@ -18,7 +18,7 @@ impl Settings {
         format!("{} {} {}", self.control, self.limits.memory, u8::from(self.limits.is_foreign))
     }
 
-    /// Settings in `text`; `None` when this program has not written it.
+    /// Settings in `text`; `None` when this program did not write it.
     pub(crate) fn of_text(text: &str) -> Option<Self> {
         let words: Vec<&str> = text.split(' ').collect();
         let [control, memory, is_foreign @ ("0" | "1")] = words[..] else { return None };

@@ -1,5 +1,5 @@
 #![expect(unsafe_code, reason = "memory that is shared with another process is mapped, and seen as atomics")]
-//! Memory that two processes see.
+//! Memory shared by two processes.
 use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, fcntl_get_seals, fstat, ftruncate, memfd_create};
 use rustix::mm::{Advice, MapFlags, ProtFlags, madvise, mmap, munmap};
 use std::ffi::CStr;
@@ -9,14 +9,14 @@ use std::process::Stdio;
 use std::ptr::NonNull;
 use std::{io, ptr};
 
-/// The file by which a process hands memory to another one that it starts. It has no name, and is sealed, so that it cannot shrink
-/// under who has mapped it.
+/// The file by which a process hands memory to another one that it starts. It has no name, and is sealed, so that it cannot shrink while a
+/// process has mapped it.
 #[derive(Debug)]
 pub struct MemoryFile(OwnedFd);
 
 impl MemoryFile {
-    /// `length` bytes of memory, all zero, and the file to hand them over by, as standard input of the other process. Lists of what a
-    /// process has mapped show `name`.
+    /// `length` bytes of memory, all zero, and the file that hands them over, as standard input of the other process. Lists of mappings of
+    /// a process show `name`.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -28,7 +28,7 @@ impl MemoryFile {
         Ok((Self(file), memory))
     }
 
-    /// Standard input of this process, in place of which it gets nothing.
+    /// Standard input of this process, which is replaced by nothing.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -40,7 +40,7 @@ impl MemoryFile {
 
     /// The memory that another process has handed over; `None` if the file is of another kind, or shorter than `least`.
     ///
-    /// Processes that this one forks do not have it.
+    /// Forked processes do not inherit it.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -63,14 +63,14 @@ impl From<MemoryFile> for Stdio {
     }
 }
 
-/// Memory that another process may see and change at any time: nothing but atomics is to be made of it.
+/// Memory that another process may see and change at any time: it may be accessed as atomics only.
 #[derive(Debug)]
 pub struct SharedMemory {
     start: NonNull<u8>,
     length: usize,
 }
 
-// SAFETY: what it points to lives as long as it does, and is seen as atomics only.
+// SAFETY: the mapping lives as long as this value, and is accessed as atomics only.
 unsafe impl Send for SharedMemory {}
 // SAFETY: as above.
 unsafe impl Sync for SharedMemory {}
@@ -102,7 +102,7 @@ impl SharedMemory {
 
 impl Drop for SharedMemory {
     fn drop(&mut self) {
-        // SAFETY: the range is the mapping, and nothing borrows from it any more.
+        // SAFETY: the range is the mapping, and no borrow of it is left.
         let unmapped = unsafe { munmap(self.start.as_ptr().cast(), self.length) };
         debug_assert!(unmapped.is_ok(), "the range is what was mapped");
     }
@@ -118,7 +118,7 @@ mod tests {
         unsafe { memory.start().cast().as_ref() }
     }
 
-    /// Both sides see the same through mappings of their own.
+    /// Both sides see the same bytes through separate mappings.
     #[test]
     fn what_one_side_writes_the_other_reads() {
         let (file, ours) = MemoryFile::new(c"test", 100).unwrap();

@@ -1,4 +1,4 @@
-//! Starts a contained process, listens to it and sees to its end.
+//! Starts a contained process, reads its output and ensures its end.
 use super::keeper::Report;
 use super::settings::{Settings, VARIABLE};
 use crate::ending::Ending;
@@ -18,13 +18,12 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Longest time for a keeper to end what it keeps, before it is ended itself: it may have been stopped, or be slow on a machine that has
-/// much to do.
+/// Longest time for a keeper to kill its processes, before it is killed itself: it may have been stopped, or be slow on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// One at a time: what one child inherits is no other's.
+/// One start at a time: a child must not inherit descriptors of another.
 static STARTING: Mutex<()> = Mutex::new(());
-/// Those that are there; `None` when there are to be no more.
+/// Running ones; `None` when no more may start.
 static THERE: Mutex<Option<Vec<Weak<Shared>>>> = Mutex::new(Some(Vec::new()));
 
 impl Output {
@@ -40,7 +39,7 @@ impl Output {
     }
 }
 
-/// `source`, which from now on does not wait, as a stream.
+/// `source` as a non-blocking stream.
 fn listened_to(source: PipeReader) -> io::Result<Stream<PipeReader>> {
     ioctl_fionbio(&source, true)?;
     Ok(Stream::new(source))
@@ -50,16 +49,16 @@ fn listened_to(source: PipeReader) -> io::Result<Stream<PipeReader>> {
 struct Shared {
     output: Mutex<Output>,
     ending: OnceLock<Ending>,
-    /// Nothing is in it: it is what [`Shared::ended`] is told with.
+    /// Empty; it belongs to the condition variable [`Shared::ended`].
     told: Mutex<()>,
     ended: Condvar,
     limits: Limits,
-    /// Is written to when the process is to end.
+    /// Written to request the end of the process.
     stop: OwnedFd,
     on_end: Box<dyn Fn() + Send + Sync>,
 }
 
-/// A contained process, which is there until this is dropped, or ends before.
+/// A contained process, which runs until this is dropped, or ends before.
 pub struct Contained {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
@@ -72,11 +71,11 @@ impl std::fmt::Debug for Contained {
 }
 
 impl Contained {
-    /// Starts `program`, which calls [`contain`](crate::contain). `stdout` is its standard output; without one it is listened to, as
-    /// standard error is. `on_end` is called when [`ending`](Self::ending) has become known.
+    /// Starts `program`, which calls [`contain`](crate::contain). `stdout` is its standard output; without one it is read, like standard
+    /// error. `on_end` is called when [`ending`](Self::ending) has become known.
     ///
     /// # Errors
-    /// Those of the system, which may have no process, thread or descriptor to give.
+    /// Those of the system, which may have no process, thread or descriptor left.
     pub fn start(
         program: &Program,
         stdin: Stdio,
@@ -107,10 +106,10 @@ impl Contained {
             on_end: Box::new(on_end),
         });
         let mut process = Command::new(&program.program);
-        // A group of its own: Ctrl-C and other signals to the group of this process are not for it.
+        // A separate group: Ctrl-C and other signals to the group of this process do not reach it.
         process.args(&program.args).envs(program.env.iter().map(|(name, value)| (name, value))).process_group(0);
         process.stdin(stdin).stdout(for_stdout).stderr(for_stderr);
-        // The thread comes first: when there is none to be had, nothing has been started yet.
+        // The thread comes first: when it cannot be created, nothing has been started yet.
         let (hand_over, handed_over) = channel();
         let for_thread = Arc::clone(&shared);
         let thread = thread::Builder::new()
@@ -118,7 +117,7 @@ impl Contained {
             .spawn(move || listen(&handed_over, &watched, &for_thread))?;
         register(&shared)?;
         let started = start(process, limits)?;
-        // It waits for that.
+        // The thread waits for that.
         hand_over.send(started).ok();
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -136,12 +135,12 @@ impl Contained {
         drop(self.shared.ended.wait_timeout_while(told, time, has_not_ended).unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Text that has come out of the process up to now.
+    /// Output text of the process up to now.
     pub fn output(&self) -> MutexGuard<'_, Output> {
         self.shared.drained()
     }
 
-    /// Ends the process, if it has not ended, and says how it ended.
+    /// Kills the process, if it has not ended, and returns its ending.
     pub fn end(&mut self) -> Option<&Ending> {
         if let Some(thread) = self.thread.take() {
             self.shared.stop();
@@ -160,20 +159,20 @@ impl Drop for Contained {
 
 impl Shared {
     fn drained(&self) -> MutexGuard<'_, Output> {
-        // What a panic leaves is text.
+        // A panic leaves valid text.
         let mut output = self.output.lock().unwrap_or_else(PoisonError::into_inner);
         output.drain();
         output
     }
 
     fn stop(&self) {
-        // It fails only where it is full, which is as good.
+        // It fails only where it is full, which serves as well.
         rustix::io::write(&self.stop, &1_u64.to_ne_bytes()).ok();
     }
 }
 
-/// Ends all contained processes of this one, and waits for that, a few seconds at most; none can be started after that. For a program
-/// that ends. Their process ids, as far as they are known.
+/// Kills all contained processes of this one, and waits for that, a few seconds at most; none can be started after that. For a program that
+/// ends. Returns their process ids, as far as they are known.
 pub fn end_all() -> Vec<u32> {
     let all = THERE.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
     let all: Vec<Arc<Shared>> = all.iter().filter_map(Weak::upgrade).collect();
@@ -187,7 +186,7 @@ pub fn end_all() -> Vec<u32> {
     all.iter().filter_map(|shared| shared.ending.get()?.process).collect()
 }
 
-/// Notes that it is there, unless there are to be no more.
+/// Registers it, unless no more may start.
 fn register(shared: &Arc<Shared>) -> io::Result<()> {
     let mut there = THERE.lock().unwrap_or_else(PoisonError::into_inner);
     let there = there.as_mut().ok_or(io::ErrorKind::Interrupted)?;
@@ -196,7 +195,7 @@ fn register(shared: &Arc<Shared>) -> io::Result<()> {
     Ok(())
 }
 
-/// The keeper, and the socket that it hears of this process by.
+/// The keeper, and the control socket by which it detects the end of this process.
 struct Started {
     keeper: Child,
     pidfd: OwnedFd,
@@ -225,9 +224,9 @@ fn start(mut process: Command, limits: Limits) -> io::Result<Started> {
     }
 }
 
-/// Listens until the process ends, by itself or because it is to.
+/// Reads output until the process ends, by itself or on request.
 fn listen(handed_over: &Receiver<Started>, watched: &[OwnedFd], shared: &Shared) {
-    // It could not be started.
+    // The start failed.
     let Ok(mut started) = handed_over.recv() else { return };
     let mut stopped = None;
     loop {
@@ -237,25 +236,25 @@ fn listen(handed_over: &Receiver<Started>, watched: &[OwnedFd], shared: &Shared)
         }
         if stop && stopped.is_none() {
             stopped = Some(Instant::now());
-            // It ended in the meantime, which is as good.
+            // It ended in the meantime, which serves as well.
             started.control.shutdown(Shutdown::Write).ok();
         }
         if stopped.is_some_and(|since| since.elapsed() > PATIENCE) {
             started.keeper.kill().ok();
         }
     }
-    // It is not yet reaped, so that its group is still its own.
+    // It is not yet reaped, so that its group id is still valid.
     kill_process_group(Pid::from_child(&started.keeper), Signal::KILL).ok();
     let status = started.keeper.wait().ok();
     let ending = ending(status, report(&mut started.control), shared);
-    // Nobody else sets it.
+    // This is the only writer.
     shared.ending.set(ending).ok();
     drop(shared.told.lock().unwrap_or_else(PoisonError::into_inner));
     shared.ended.notify_all();
     (shared.on_end)();
 }
 
-/// Waits for something to happen: whether the keeper has ended, and whether it is to.
+/// Waits for an event; returns true if the keeper has ended, and true if a stop is requested.
 fn wait(keeper: &OwnedFd, watched: &[OwnedFd], shared: &Shared, is_stopped: bool) -> (bool, bool) {
     const GLANCE: Timespec = Timespec { tv_sec: 0, tv_nsec: 50_000_000 };
     let open = {
@@ -277,12 +276,12 @@ fn wait(keeper: &OwnedFd, watched: &[OwnedFd], shared: &Shared, is_stopped: bool
     (ended, stop)
 }
 
-/// Report of the keeper from before it ended.
+/// Report that the keeper wrote before it ended.
 fn report(control: &mut UnixStream) -> Option<Report> {
-    // Whoever has inherited its end does not hold anybody up.
+    // A process that has inherited its end must not cause a wait.
     control.set_nonblocking(true).ok()?;
     let mut bytes = Vec::new();
-    // What came before an error counts.
+    // Bytes before an error count.
     control.read_to_end(&mut bytes).ok();
     serde_json::from_slice(&bytes).ok()
 }
