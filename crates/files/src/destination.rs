@@ -11,7 +11,7 @@ pub enum Destination {
     File,
     /// A folder.
     Folder,
-    /// A device: what is written goes there at once, and several may write there.
+    /// A device: bytes are written there at once, and several writers may share it.
     Device,
     /// A pipe, a socket, or a descriptor of this process by its name below `/dev` or `/proc`.
     Pipe,
@@ -39,8 +39,8 @@ impl Destination {
         }
     }
 
-    /// Opens the place at `path`, which is of this kind. A descriptor of ours is used itself, so that what is printed there otherwise
-    /// follows it; what another process has opened as a file is written behind what it holds.
+    /// Opens the place at `path`, which is of this kind. A descriptor of ours is used itself, so that later output to it follows; a file
+    /// opened by another process is appended to.
     ///
     /// # Errors
     /// Those of the operating system.

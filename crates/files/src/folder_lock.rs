@@ -3,7 +3,7 @@ use crate::sys;
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
-/// A folder that nobody else can lock until this is dropped or the process ends, however that ends.
+/// A folder that no other process can lock until this is dropped or the process ends, however that ends.
 #[derive(Debug)]
 pub struct FolderLock(#[expect(dead_code, reason = "the lock ends when the file is closed")] File);
 
@@ -11,7 +11,7 @@ impl FolderLock {
     /// Locks `folder`.
     ///
     /// # Errors
-    /// [`TryLockError::WouldBlock`] where somebody else has locked it; otherwise those of the operating system: there is no such folder,
+    /// [`TryLockError::WouldBlock`] where another process has locked it; otherwise those of the operating system: there is no such folder,
     /// or its file system has no locks.
     pub fn of(folder: &Path) -> Result<Self, TryLockError> {
         sys::lock_folder(folder).map(Self)

@@ -1,12 +1,11 @@
-//! Files by somebody else: opened without waiting, read up to a bound, quoted up to a few characters, named by their digest; the name that
-//! one of them probably means; and what else a program needs of files that `std` has no name for: which file it is, folders that one
-//! process uses at a time, files without a name.
+//! Foreign files: opened without waiting, read up to a bound, quoted up to a few characters, named by their digest; the nearest name to a
+//! mistyped one; and other functions of files for which `std` has no name: identity of a file, folders that one process uses at a time,
+//! files without a name.
 //!
-//! What a scenario names, a recording, results and an archive are written by whoever sent them. Under their names may be a FIFO that
-//! nobody writes to, a device without end, a file larger than the memory, or one that is none of their reader's business.
+//! Files that a scenario names, recordings, results and archives come from any sender. Under their names may be a FIFO without a writer, an
+//! endless device, a file larger than the memory, or one that their reader must not see.
 //!
-//! The module `sys` is the door to the operating system: no crate above calls it for files by other names than those of `std` and of
-//! this crate.
+//! The module `sys` is the only door to the operating system: crates above use files by `std` and this crate only.
 
 mod destination;
 mod folder_lock;

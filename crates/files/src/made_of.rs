@@ -1,20 +1,20 @@
-//! Which files a scenario is made of.
+//! Files that a scenario is made of.
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::io::{self, Read};
 
-/// What a file is to a scenario.
+/// Role of a file in a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FileRole {
     /// The scenario itself.
     Scenario,
-    /// The model that `[axis]` stands on: values that the scenario does not give are its.
+    /// The model of `[axis]`: it has the values that the scenario does not give.
     AxisModel,
-    /// The model that `[motor]` stands on.
+    /// The model of `[motor]`.
     MotorModel,
-    /// The model that `[drive]` stands on.
+    /// The model of `[drive]`.
     DriveModel,
     /// A table of points.
     Table,
@@ -27,7 +27,7 @@ pub enum FileRole {
 }
 
 impl FileRole {
-    /// The table of a scenario whose values come from it, if it is a model.
+    /// The table of a scenario with its values, if it is a model.
     #[must_use]
     pub const fn modelled(self) -> Option<&'static str> {
         match self {
@@ -44,7 +44,7 @@ impl FileRole {
 pub struct MadeOf {
     /// Its path from the root of the scenario, `<embedded>/…` for one that is built in.
     pub path: String,
-    /// What it is to the scenario.
+    /// Its role in the scenario.
     pub role: FileRole,
     /// Its size (bytes).
     pub size: u64,
@@ -60,7 +60,7 @@ impl MadeOf {
     }
 }
 
-/// SHA-256 of all that `source` has, in hexadecimal digits, and how many bytes that are.
+/// SHA-256 of the whole of `source`, in hexadecimal digits, and its number of bytes.
 ///
 /// # Errors
 /// Those of the operating system.

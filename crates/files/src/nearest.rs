@@ -1,4 +1,4 @@
-//! The name that was probably meant: what a file names and nothing has.
+//! The nearest existing name to one that does not exist.
 
 /// The candidate nearest to `name`, when one is near: differing in case only, or in at most a third of its letters.
 #[must_use]

@@ -1,15 +1,15 @@
-//! What messages quote of a file by somebody else: enough to find the word, too little to read the file.
+//! Quotes of a foreign file in messages: enough to find the word, too little to read the file.
 //!
-//! A scenario may name any file. What is wrong with it is said by its place; a message that quoted whole lines would print, into the
-//! log of a build that everybody can read, whatever file somebody chose to name.
+//! A scenario may name any file. A mistake in it is reported with its place; a message that quoted whole lines would print any file that a
+//! user names into the log of a build that everyone can read.
 use std::fmt;
 
-/// Characters of a foreign word that a message quotes at most.
+/// Largest number of characters of a foreign word in a message.
 pub const MOST_QUOTED: usize = 12;
-/// Characters of a name.
+/// Largest number of characters of a name.
 const LONGEST_NAME: usize = 40;
 
-/// The beginning of a text, with `…` where something was left out, and without control characters.
+/// The beginning of a text, with `…` for the omitted part, and without control characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quoted<'a> {
     text: &'a str,
@@ -22,8 +22,8 @@ pub const fn quoted(text: &str) -> Quoted<'_> {
     Quoted { text, most: MOST_QUOTED }
 }
 
-/// The beginning of a name by which a thing in a file is found, of a joint or a variable: without more of it than of other words nobody
-/// could tell two of them apart.
+/// The beginning of a name that identifies a part of a file, of a joint or a variable: as few characters as of other words would not
+/// distinguish two of them.
 #[must_use]
 pub const fn named(name: &str) -> Quoted<'_> {
     Quoted { text: name, most: LONGEST_NAME }
@@ -40,11 +40,11 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
-/// Marks that words of a file stand between in the messages of other parsers.
+/// Marks around words of a file in the messages of other parsers.
 const MARKS: [char; 3] = ['`', '"', '\''];
 
-/// A message of somebody else's parser, in which each word of the file between quotation marks is as short as [`quoted`] has it, and so
-/// is what is longer than any word of a message.
+/// A message of a foreign parser, in which each word of the file between quotation marks is shortened as by [`quoted`], and so is every
+/// word longer than those of messages.
 #[must_use]
 pub fn with_short_quotes(message: &str) -> String {
     let mut short = String::new();
@@ -55,10 +55,10 @@ pub fn with_short_quotes(message: &str) -> String {
         let mut letters = from_mark.chars();
         let Some(mark) = letters.next() else { break };
         let inner = letters.as_str();
-        // An apostrophe within a word opens nothing.
+        // An apostrophe within a word is not a quotation mark.
         let is_within = mark == '\'' && before.chars().next_back().is_some_and(char::is_alphanumeric);
         short.push(mark);
-        // A word of the file may have the mark in it: what it ends with is the last one that is followed by no letter.
+        // A word of the file may contain the mark: its end is the last one that is not followed by a letter.
         let closing = inner.match_indices(mark).map(|(end, _)| end);
         let end = closing.into_iter().find(|end| !inner[end + mark.len_utf8()..].starts_with(char::is_alphanumeric));
         rest = match end.filter(|_| !is_within) {
@@ -74,7 +74,7 @@ pub fn with_short_quotes(message: &str) -> String {
     short
 }
 
-/// The longest word of a message: what is longer is of the file.
+/// The longest word of a message: a longer one is from the file.
 const LONGEST_WORD: usize = 40;
 
 fn push_words(text: &str, to: &mut String) {
@@ -88,10 +88,10 @@ fn push_words(text: &str, to: &mut String) {
     }
 }
 
-/// Names that a list shows.
+/// Largest number of names in a list.
 const MOST_LISTED: usize = 20;
 
-/// Names of a file that one of them can be chosen from, as a message lists them; `none` where there are none.
+/// Names of a file to choose from, as a message lists them; `none` where there are none.
 #[must_use]
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>, none: &str) -> String {
     let mut names = names.into_iter();

@@ -1,10 +1,10 @@
-//! Regular files, and nothing else under their names.
+//! Regular files only.
 use crate::sys::{self, Kind};
 use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Which file it is, whatever it is called: links lead to the same one.
+/// Identity of a file, whatever its name: links lead to the same one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId([u64; 2]);
 
@@ -17,7 +17,7 @@ impl FileId {
         sys::identity(path).map(Self)
     }
 
-    /// Identity of the regular file that standard input comes from, if it does.
+    /// Identity of the regular file on standard input, if it is one.
     #[must_use]
     pub fn of_standard_input() -> Option<Self> {
         sys::identity_of_standard_input().map(Self)
@@ -26,11 +26,11 @@ impl FileId {
 
 /// Opens a regular file of `most` bytes at most for reading.
 ///
-/// It never waits, as a FIFO makes its reader do. What was opened is looked at, since the name may stand for something else by then;
-/// before that the name is, so that no device is opened, which may do something.
+/// It never waits, as opening a FIFO would. The opened file is checked, since the name may stand for another one by then; before that the
+/// name is, so that no device is opened, which may have an effect.
 ///
 /// # Errors
-/// Those of the operating system; [`ErrorKind::InvalidInput`] with what it is instead of a file; [`ErrorKind::FileTooLarge`].
+/// Those of the operating system; [`ErrorKind::InvalidInput`] with the actual kind instead of a file; [`ErrorKind::FileTooLarge`].
 pub fn open(path: &Path, most: u64) -> io::Result<File> {
     regular(&std::fs::metadata(path)?, most)?;
     let mut options = OpenOptions::new();
@@ -41,7 +41,7 @@ pub fn open(path: &Path, most: u64) -> io::Result<File> {
     Ok(file)
 }
 
-/// What is known of a regular file of `most` bytes at most.
+/// Metadata of a regular file of `most` bytes at most.
 ///
 /// # Errors
 /// As [`open`].
@@ -51,7 +51,7 @@ pub fn metadata(path: &Path, most: u64) -> io::Result<Metadata> {
     Ok(about)
 }
 
-/// Makes the file `path`, which must not be there yet: its owner's alone, and a program if it `is_program`.
+/// Creates the file `path`, which must not exist yet: with rights for its owner only, and executable if it `is_program`.
 ///
 /// # Errors
 /// Those of the operating system.
@@ -70,12 +70,12 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path, most)?;
     let expected = usize::try_from(file.metadata()?.len()).unwrap_or(0);
     let mut bytes = Vec::with_capacity(expected);
-    // A file may grow, and those of `/proc` say that they have none.
+    // A file may grow, and those of `/proc` report a length of zero.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
 }
 
-/// Reads a regular file of `most` bytes at most, which holds text.
+/// Reads a text file, a regular file of `most` bytes at most.
 ///
 /// # Errors
 /// As [`open`]; [`ErrorKind::InvalidData`] when it is not in UTF-8.
@@ -95,7 +95,7 @@ fn too_large(most: u64) -> io::Error {
     io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {}, the most that is read here", size(most)))
 }
 
-/// So many bytes in words.
+/// A number of bytes in words.
 fn size(bytes: u64) -> String {
     match bytes {
         0..1_024 => format!("{bytes} bytes"),
@@ -127,7 +127,7 @@ mod tests {
         refused.to_string()
     }
 
-    /// A FIFO that nobody writes to would keep its reader waiting: the test would not end.
+    /// A FIFO without a writer would keep its reader waiting: the test would not end.
     #[test]
     fn what_is_no_file_is_refused_at_once() {
         let room = tempfile::tempdir().unwrap();
@@ -148,7 +148,7 @@ mod tests {
         std::fs::write(&path, "0123456789").unwrap();
         assert_eq!(read_text(&path, 10).unwrap(), "0123456789");
         assert_eq!(read(&path, 9).unwrap_err().to_string(), "it has more than 9 bytes, the most that is read here");
-        // One that says that it has no bytes, and has.
+        // A file that reports a length of zero, and has content.
         let endless = read(Path::new("/proc/self/maps"), 9).unwrap_err();
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
         std::fs::write(&path, [0xff]).unwrap();

@@ -1,8 +1,8 @@
-//! Errors of a machine that has too little of something, as opposed to those of a file.
+//! Errors of a machine with too few resources, as opposed to those of a file.
 use crate::sys;
 use std::io;
 
-/// `true` when the operating system refuses for want of descriptors, processes, memory or room on a disk: another time, or on another
+/// `true` when the operating system refuses for want of descriptors, processes, memory or space on a disk: another time, or on another
 /// machine, the same would succeed.
 #[must_use]
 pub fn is_shortage(error: &io::Error) -> bool {
@@ -26,7 +26,7 @@ mod tests {
         assert_eq!(are, [true, true, false, false]);
         let open = [24, 23, 28, 2].map(|code| is_too_many_open(&io::Error::from_raw_os_error(code)));
         assert_eq!(open, [true, true, false, false]);
-        // A file that is too large for us is not one that is too large for the system.
+        // A file that is too large for us may still fit the system.
         assert!(!is_shortage(&io::ErrorKind::FileTooLarge.into()));
     }
 }

@@ -1,12 +1,12 @@
 //! Bounds that hold before XML is parsed: parsers take time with the square of the number of attributes of an element, memory with the
 //! number of elements, and the stack with the depth of elements in each other.
 
-/// How much there may be.
+/// Largest amounts in an XML file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct XmlBounds {
     /// Bytes of the file.
     pub bytes: usize,
-    /// Elements within each other.
+    /// Nesting depth of elements.
     pub depth: usize,
     /// Attributes of one element.
     pub attributes: usize,
@@ -17,19 +17,19 @@ pub struct XmlBounds {
 /// The bound that is exceeded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct XmlExcess {
-    /// The byte where it is.
+    /// Its byte offset.
     pub at: usize,
-    /// What there is too much of.
+    /// The exceeded quantity, in words.
     pub what: &'static str,
-    /// The most.
+    /// The bound.
     pub most: usize,
 }
 
 impl XmlBounds {
-    /// Holds the text against the bounds. It need not be XML: what is none is for the parser to refuse.
+    /// Checks the text against the bounds. It need not be XML: the parser refuses other text.
     ///
     /// # Errors
-    /// The bound that is exceeded, and the byte where it is.
+    /// The exceeded bound, and its byte offset.
     pub fn hold(&self, text: &str) -> Result<(), XmlExcess> {
         let beyond = |at, what, most| Err(XmlExcess { at, what, most });
         if text.len() > self.bytes {
@@ -71,7 +71,7 @@ impl XmlBounds {
     }
 }
 
-/// Length of the tag that `text` begins with, and how many quoted values are in it.
+/// Length of the tag that `text` begins with, and its number of quoted values.
 fn tag(text: &str) -> (usize, usize) {
     let (mut quote, mut values) = (None, 0);
     for (at, byte) in text.bytes().enumerate() {

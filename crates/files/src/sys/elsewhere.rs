@@ -6,10 +6,10 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
-/// Name of the file that stands for the lock of its folder.
+/// Name of the file that represents the lock of its folder.
 const LOCK: &str = ".servobench.lock";
 
-/// Digest of the real path: symbolic links lead to the same, hard links do not.
+/// Digest of the real path: symbolic links lead to the same one, hard links do not.
 pub(crate) fn identity(path: &Path) -> io::Result<[u64; 2]> {
     let digest = Sha256::digest(path.canonicalize()?.as_os_str().as_encoded_bytes());
     let (first, second) = digest.split_at(digest.len() / 2);
@@ -17,7 +17,7 @@ pub(crate) fn identity(path: &Path) -> io::Result<[u64; 2]> {
     Ok([word(first), word(second)])
 }
 
-/// There is no FIFO to wait for.
+/// Does nothing: there is no FIFO to wait for.
 pub(crate) fn without_waiting(_: &mut OpenOptions) {}
 
 /// A new file has the rights of its folder.
@@ -32,12 +32,12 @@ pub(crate) fn kind(of: FileType) -> Kind {
     }
 }
 
-/// `true` when memory or room on a disk ran out.
+/// `true` when memory or space on a disk ran out.
 pub(crate) fn is_shortage(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::OutOfMemory | ErrorKind::StorageFull)
 }
 
-/// The number of open files is not known to have a bound.
+/// Always `false`: no bound on the number of open files is known.
 pub(crate) fn is_too_many_open(_: &io::Error) -> bool {
     false
 }
@@ -50,13 +50,13 @@ pub(crate) fn lock_folder(folder: &Path) -> Result<File, TryLockError> {
     Ok(file)
 }
 
-/// The path that these bytes are in UTF-8.
+/// The path with these bytes as UTF-8.
 pub(crate) fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
     let lossy = |error: FromUtf8Error| String::from_utf8_lossy(error.as_bytes()).into_owned();
     String::from_utf8(bytes).unwrap_or_else(lossy).into()
 }
 
-/// Standard output has no name, so that nobody asks for it.
+/// An error: standard output has no name here, and is never requested.
 pub(crate) fn standard_output() -> io::Result<File> {
     Err(ErrorKind::Unsupported.into())
 }
@@ -66,12 +66,12 @@ pub(crate) fn standard_error() -> io::Result<File> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// Standard input has no name, so that its file is not known.
+/// `None`: standard input has no name, so that its file is unknown.
 pub(crate) fn identity_of_standard_input() -> Option<[u64; 2]> {
     None
 }
 
-/// Descriptors have no names.
+/// `None`: descriptors have no names.
 pub(crate) fn descriptor(_: &Path) -> Option<u32> {
     None
 }

@@ -1,7 +1,7 @@
-//! The door to the operating system for files: what `std` has no portable name for.
+//! The door to the operating system for files: functions for which `std` has no portable name.
 //!
-//! Other modules and crates use files by `std` and by this crate. A system that is not a Unix has [`elsewhere`]; each of its functions
-//! gives what `std` alone knows.
+//! Other modules and crates use files by `std` and by this crate. A system that is not a Unix has [`elsewhere`]; its functions use `std`
+//! alone.
 
 #[cfg(not(unix))]
 mod elsewhere;

@@ -10,7 +10,7 @@ use std::os::unix::ffi::OsStringExt as _;
 use std::os::unix::fs::{FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
-/// Links that are followed at most, as Linux has it.
+/// Largest number of links that are followed, as in Linux.
 const MOST_LINKS: usize = 40;
 
 /// Device and inode: links lead to the same.
@@ -19,12 +19,12 @@ pub(crate) fn identity(path: &Path) -> io::Result<[u64; 2]> {
     Ok([about.dev(), about.ino()])
 }
 
-/// Opening does not wait for a writer of a FIFO.
+/// Makes opening a FIFO not wait for a writer.
 pub(crate) fn without_waiting(options: &mut OpenOptions) {
     options.custom_flags((OFlags::NONBLOCK | OFlags::CLOEXEC).bits().cast_signed());
 }
 
-/// A new file is its owner's alone, to read, to write, and to run if it `is_program`.
+/// Gives a new file rights for its owner only, to read, to write, and to run if it `is_program`.
 pub(crate) fn make_private(options: &mut OpenOptions, is_program: bool) {
     options.mode(if is_program { 0o700 } else { 0o600 });
 }
@@ -40,7 +40,7 @@ pub(crate) fn kind(of: FileType) -> Kind {
     }
 }
 
-/// `true` when descriptors, processes, memory or room on a disk ran out.
+/// `true` when descriptors, processes, memory or space on a disk ran out.
 pub(crate) fn is_shortage(error: &io::Error) -> bool {
     const SHORTAGES: [Errno; 7] =
         [Errno::MFILE, Errno::NFILE, Errno::AGAIN, Errno::NOMEM, Errno::NOSPC, Errno::DQUOT, Errno::FBIG];
@@ -63,29 +63,29 @@ pub(crate) fn lock_folder(folder: &Path) -> Result<File, TryLockError> {
     Ok(file)
 }
 
-/// The path that these bytes are.
+/// The path with these bytes.
 pub(crate) fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
     OsString::from_vec(bytes).into()
 }
 
-/// Standard output, once more.
+/// Standard output, duplicated.
 pub(crate) fn standard_output() -> io::Result<File> {
     Ok(io::stdout().as_fd().try_clone_to_owned()?.into())
 }
 
-/// Standard error, once more.
+/// Standard error, duplicated.
 pub(crate) fn standard_error() -> io::Result<File> {
     Ok(io::stderr().as_fd().try_clone_to_owned()?.into())
 }
 
-/// Identity of the regular file that standard input comes from, if it does.
+/// Identity of the regular file on standard input, if it is one.
 pub(crate) fn identity_of_standard_input() -> Option<[u64; 2]> {
     let about = std::fs::metadata("/dev/stdin").ok().filter(Metadata::is_file)?;
     Some([about.dev(), about.ino()])
 }
 
-/// The descriptor of this process that `path` is a name of: `/dev/stdout` and `/dev/fd/1` lead to `/proc/self/fd/1`, which is a link to
-/// whatever is open there. To replace one of these links would help nobody.
+/// The descriptor of this process that `path` names: `/dev/stdout` and `/dev/fd/1` lead to `/proc/self/fd/1`, which is a link to the open
+/// file. These links must not be replaced.
 pub(crate) fn descriptor(path: &Path) -> Option<u32> {
     let mut path = std::path::absolute(path).ok()?;
     for _ in 0..MOST_LINKS {

@@ -6,12 +6,12 @@ use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::ops::Deref;
 use std::path::Path;
 
-/// A file that only this process has, and that is gone when the process is, whatever ends it.
+/// A file that only this process has, and that is gone at the end of the process, whatever its cause.
 #[derive(Debug)]
 pub struct UnnamedFile(File);
 
 impl UnnamedFile {
-    /// An empty one on the disk that holds `folder`.
+    /// An empty file on the disk that holds `folder`.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -39,17 +39,17 @@ impl UnnamedFile {
     }
 }
 
-/// Bytes of a file that nobody writes any more, in memory as far as somebody looks at them.
+/// Bytes of a file that is no longer written, in memory as far as they are read.
 #[derive(Debug)]
 pub struct MappedFile(Mmap);
 
 impl MappedFile {
-    /// Gives memory back that was taken to look at the bytes. They can be looked at again; nothing is lost.
+    /// Gives back memory that was taken by reading the bytes. They can be read again; nothing is lost.
     pub fn release(&self) {
         #[cfg(unix)]
         {
-            // It is a wish: where it cannot be granted the memory stays until somebody needs it.
-            // SAFETY: the mapping is shared and never written, so that a page that is dropped comes back from the file.
+            // A hint only: where it is not followed the memory stays until it is needed.
+            // SAFETY: the mapping is shared and never written, so that a dropped page comes back from the file.
             let _ = unsafe { self.0.unchecked_advise(memmap2::UncheckedAdvice::DontNeed) };
         }
     }
