@@ -1,5 +1,5 @@
-//! Numbers on their way to another process: floating-point numbers as their bits, which JSON would round and of which it lacks
-//! some, and long integers as digits.
+//! Numbers on their way to another process: floating-point numbers as their bits, because JSON would round them and lacks some, and long
+//! integers as digits.
 
 /// A floating-point number.
 pub mod float {

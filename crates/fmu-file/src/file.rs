@@ -1,19 +1,19 @@
-//! The file, and how it is started.
+//! The file of an FMU, and its start.
 use crate::value::Value;
 use servobench_config::choices;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A file and how it is started.
+/// A file and its start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FmuFile {
     /// The file.
     pub path: PathBuf,
-    /// Start values by variable; what has a unit is converted to that of its variable.
+    /// Start values by variable; a value with a unit is converted to that of its variable.
     pub start: Vec<(String, Value)>,
-    /// Where it runs.
+    /// Process that it runs in.
     pub isolation: Isolation,
-    /// Whether its event mode is used, if it has one (FMI 3.0); otherwise it deals with events by itself.
+    /// True if its event mode is used, if it has one (FMI 3.0); otherwise it handles events internally.
     pub event_mode: bool,
 }
 
@@ -30,12 +30,12 @@ choices! {
     }
 }
 
-/// What an FMU in a process of its own may take.
+/// Limits of an FMU in a separate process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bounds {
     /// Real time for any one call, loading and initialisation being one.
     pub call_timeout: Duration,
-    /// Memory that it may have for itself, the program's included (B). Files that it maps do not count.
+    /// Its private memory, the program's included (B). Files that it maps do not count.
     pub memory: u64,
 }
 

@@ -1,5 +1,5 @@
-//! An FMU as a simulation names it: which file, how it is started, where it runs, which numbers are exchanged, and mistakes in any of
-//! these. Plain data: what opens and calls an FMU is the crate `fmi`.
+//! An FMU as a simulation names it: its file, its start, the process it runs in, the numbers exchanged, and mistakes in any of these. Plain
+//! data: the crate `fmi` opens and calls an FMU.
 
 pub mod bits;
 mod file;

@@ -4,9 +4,9 @@ use std::fmt::{self, Display, Formatter};
 /// A part of a request that does not fit the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FmuMistake {
-    /// Which part of the request.
+    /// The part of the request.
     pub at: FmuEntry,
-    /// Mistake.
+    /// The mistake, in words.
     pub message: String,
     /// Remedy; may be empty.
     pub help: String,
@@ -17,13 +17,13 @@ pub struct FmuMistake {
 pub enum FmuEntry {
     /// The file itself.
     File,
-    /// Its conduct: it crashed or did not come back, which is not a mistake in any data.
+    /// Its conduct: it crashed or did not return, which is not a mistake in any data.
     Conduct,
     /// The length of its steps.
     Step,
-    /// Whether its event mode is used.
+    /// The use of its event mode.
     EventMode,
-    /// Where it runs.
+    /// The process that it runs in.
     Isolation,
     /// The start value of this variable.
     Start(String),
@@ -34,7 +34,7 @@ pub enum FmuEntry {
 }
 
 impl FmuMistake {
-    /// Something that is wrong with the file itself.
+    /// A mistake in the file itself.
     #[must_use]
     pub fn of_file(error: &impl Display) -> Self {
         Self { at: FmuEntry::File, message: error.to_string(), help: String::new() }

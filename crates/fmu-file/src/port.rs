@@ -1,20 +1,19 @@
-//! Numbers that are exchanged.
+//! Numbers exchanged with an FMU.
 
-/// A number that is exchanged with an FMU, in SI units. The FMU has it in the unit of its model description; what has none there
-/// counts in SI units.
+/// A number exchanged with an FMU, in SI units. The FMU has it in the unit of its model description, or in SI units if that gives none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SiPort {
     /// Name of the variable, or `name[2]`, `name[2,1]` of an element of an array, counted from 1.
     pub variable: String,
-    /// What the number is on our side; `None` if it may be anything.
+    /// Its unit in the scenario; `None` if any is accepted.
     pub unit: Option<SiUnit>,
 }
 
 /// An SI unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SiUnit {
-    /// As people write it.
+    /// Its usual notation.
     pub name: String,
-    /// Exponents of kilogram, metre, second and ampere. The radian, which some count and some do not, is one.
+    /// Exponents of kilogram, metre, second and ampere. The radian, which some count and some do not, counts as one.
     pub exponents: [i32; 4],
 }

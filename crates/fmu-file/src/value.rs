@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 pub enum Value {
     /// For numbers of any type that can hold it, in the unit of the variable.
     Number(#[serde(with = "bits::float")] f64),
-    /// For numbers, in a unit of its own; `fmi::Setup` takes it once it is converted. It may also be just a text.
+    /// For numbers, with a separate unit; `fmi::Setup` takes it after conversion. It may also be a mere text.
     Quantity {
-        /// As it was written.
+        /// The original text.
         text: String,
         /// In SI units.
         #[serde(with = "bits::float")]
