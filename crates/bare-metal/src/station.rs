@@ -13,14 +13,14 @@ use servobench_plcopen::{
 };
 
 const LIMITS: Limits = Limits { velocity: 1.0, acceleration: 5.0, jerk: 50.0, snap: 1000.0 };
-/// Base ticks of 62.5 µs in a cycle of the bus, and in one of the PLC.
+/// Base ticks of 62.5 µs per cycle of the bus, and per cycle of the PLC.
 const BUS: u64 = 16;
 const PLC: u64 = 160;
-/// Counts of the drive in a metre.
+/// Counts of the drive per metre.
 const COUNTS: f64 = 1e6;
 
-/// Where the drive is told to be (m) `bus_cycles` after power-on, when the program goes to `position` (m), and from there back and
-/// forth by a tenth of a metre; no number when something cannot be set up.
+/// Position of the drive (m) `bus_cycles` after power-on, when the program moves to `position` (m), and from there back and forth by a
+/// tenth of a metre; NaN when something cannot be set up.
 #[expect(unsafe_code, reason = "the name is for a caller in C, and no other symbol of the program has it")]
 #[unsafe(no_mangle)]
 extern "C" fn servobench_station_position(position: f64, bus_cycles: u32) -> f64 {
@@ -101,7 +101,7 @@ impl Program {
     }
 }
 
-/// A drive that is where it is told to be, as far as its power state lets it.
+/// A drive that follows its commanded position at once, as far as its power state lets it.
 #[derive(Default)]
 struct Drive {
     power: PowerMemory,
