@@ -1,4 +1,5 @@
-//! The `MuJoCo` library, loaded at first use: a program with this engine starts where the library is not, and says so when it is needed.
+//! The `MuJoCo` library, loaded at first use: a program with this engine starts without the library, and reports it as missing at first
+//! use.
 //!
 //! The crate `mujoco-rs` calls the functions of the library by their names. Here each of them is defined under its name and passes the call
 //! on to the loaded library, so that no program is linked with it.
@@ -19,7 +20,7 @@ const FROM_PROGRAM: [&str; 3] = ["../native/lib", "../../native/lib", "."];
 
 static LOADED: OnceLock<Result<Functions, String>> = OnceLock::new();
 
-/// Where the library is; `None` where it is not installed.
+/// Path of the library; `None` where it is not installed.
 fn place() -> Option<PathBuf> {
     if let Some(folder) = var_os(FOLDER) {
         return Some(PathBuf::from(folder).join(FILE)).filter(|file| file.is_file());
@@ -29,7 +30,7 @@ fn place() -> Option<PathBuf> {
     FROM_PROGRAM.iter().map(|way| folder.join(way).join(FILE)).find(|file| file.is_file())
 }
 
-/// Why the library cannot be used; `None` where it is installed.
+/// Reason why the library cannot be used; `None` where it is installed.
 pub(crate) fn missing() -> Option<String> {
     if place().is_some() {
         return None;
@@ -43,12 +44,13 @@ pub(crate) fn missing() -> Option<String> {
 /// Loads the library, once.
 ///
 /// # Errors
-/// Why it cannot be loaded, in words.
+/// The reason why it cannot be loaded, in words.
 pub(crate) fn load() -> Result<(), String> {
     loaded().map(drop).map_err(str::to_owned)
 }
 
-/// The functions of the library. The engine loads it before it calls one; a caller that does not ends its process with the reason.
+/// The functions of the library. The engine loads it before it calls one; a caller without a loaded library ends its process with the
+/// reason.
 fn functions() -> &'static Functions {
     match loaded() {
         Ok(functions) => functions,
@@ -85,7 +87,7 @@ macro_rules! functions {
             #[expect(unsafe_code, reason = "the name is that of the library, whose caller keeps its requirements")]
             #[unsafe(no_mangle)]
             unsafe extern "C" fn $name($($argument: $type),*) $(-> $result)? {
-                // SAFETY: the caller keeps what the library requires of the same call.
+                // SAFETY: the caller keeps the requirements of the library for the same call.
                 unsafe { (functions().$name)($($argument),*) }
             }
         )+

@@ -1,4 +1,4 @@
-//! Handling of messages from `MuJoCo`, which go to us instead of a file `MUJOCO_LOG.TXT` in the working folder.
+//! Handling of messages from `MuJoCo`, which it would otherwise write to a file `MUJOCO_LOG.TXT` in the working folder.
 use mujoco_rs::prelude::{MjLogMessage, MjtLogLevel, log_config, set_log_config, set_log_handler};
 use servobench_files::with_short_quotes;
 use std::cell::RefCell;

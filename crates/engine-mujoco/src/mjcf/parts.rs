@@ -44,7 +44,7 @@ pub(super) struct Motor {
 }
 
 impl Parts {
-    /// Finds the parts that `file` names.
+    /// Finds the parts named by `file`.
     ///
     /// # Errors
     /// [`MechanicsError::Refused`] with everything that is missing or unsuitable.
@@ -149,8 +149,7 @@ pub(super) fn load_coordinate(data: &mut Data, motor: usize, load: LoadJoint) ->
     LoadCoordinate::new(posed(load.id, load.kind), &below(load.id), &below(motor))
 }
 
-/// The actuator of the axis, if it is a motor on the motor joint without dynamics of its own; without a motor joint it
-/// may act on any.
+/// The actuator of the axis, if it is a motor on the motor joint without internal dynamics; without a motor joint it may act on any joint.
 fn actuator(model: &MjModel, file: &MjcfModel, joint: Option<usize>) -> Result<Motor, Refusal> {
     let name = &file.actuator;
     let id = find(model, MjtObjBase::mjOBJ_ACTUATOR, "actuator", name)?;
