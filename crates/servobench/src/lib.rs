@@ -1,4 +1,4 @@
-//! A servo axis in closed loop: load a scenario, set its keys, check it, run it, read what was measured.
+//! A servo axis in closed loop: load a scenario, set its keys, check it, run it, read the measurements.
 //!
 //! ```
 //! use servobench::{Metric, Scenario};
@@ -47,8 +47,8 @@
 //!
 //! # A controller of your own
 //!
-//! [`Bench`] goes tick by tick. What acts in a tick comes as [`External`]: efforts, a set-point, or the output of a controller that takes
-//! the place of the drive.
+//! [`Bench`] advances tick by tick. The inputs of a tick are given as [`External`]: efforts, a set-point, or the output of a controller
+//! that takes the place of the drive.
 //!
 //! ```
 //! use servobench::{Bench, Controller, External, Metric, Scenario, Signal};
@@ -82,7 +82,7 @@
 //!
 //! # Parts
 //!
-//! The program's suites, reports and FMUs stand on the same parts: [`check`] (objections), [`preview`], [`run`](mod@run) (measuring and
+//! The program's suites, reports and FMUs use the same parts: [`check`] (objections), [`preview`], [`run`](mod@run) (measuring and
 //! judging), [`size`] (memory), [`usage`].
 
 mod bench;

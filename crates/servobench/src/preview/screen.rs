@@ -221,7 +221,7 @@ fn mode_lines(modes: &Modes, screen: &mut Screen) {
     screen.line("modes", &all);
 }
 
-/// A damping ratio; what the eigenvalues round away is none.
+/// A damping ratio; a rounding error of the eigenvalues is shown as 0.
 fn damping(ratio: f64) -> String {
     if ratio < 1e-9 { "0".into() } else { Quantity::new(ratio, "").to_string() }
 }
