@@ -12,7 +12,7 @@ pub enum RunError {
     /// The closed loop cannot be built, or its run ended early.
     #[error(transparent)]
     Loop(Error),
-    /// It reached its time limit.
+    /// The time limit was reached.
     #[error(
         "its {which} of time, {} s, was reached at {reached:.3} s of {length:.3} s simulated; allow it longer with `run.time_limit` and \
          `--time-limit`, or shorten the run",

@@ -83,7 +83,7 @@ fn less_than_two_periods_is_absent_and_refused() {
     }
 }
 
-/// The mode that is asked for counts, not the lowest one; a rigid axis needs 20 ms.
+/// The mode that the scenario names counts, not the lowest one; a rigid axis needs 20 ms.
 #[test]
 fn what_is_asked_for_says_how_long() {
     let fast = SLOW.replace("\"3 s\"", "\"0.7 s\"").replace("[limits]", "[measure]\nmode = \"20 Hz\"\n[limits]");
@@ -142,7 +142,7 @@ fn the_value_of_a_run_is_the_largest_of_its_rests() {
     assert!(value(&self::run(&sooner).metrics, pp) > 4e-3, "it has died away by a fifth");
 }
 
-/// A window as large as the way holds a load that never moved: settling is not judged, and `check` says why.
+/// A window as large as the distance holds a load that never moved: settling is not judged, and `check` reports why.
 #[test]
 fn a_window_as_large_as_the_way_judges_nothing() {
     let text = SLOW.replace(

@@ -1,4 +1,4 @@
-//! What an engine objects to, and the key or line that is to blame.
+//! Objections of an engine, and the key or line that is to blame.
 use servobench::Engines;
 use servobench::check::Objection;
 use servobench_plant::{

@@ -1,4 +1,4 @@
-//! A longer run is never greener: what swings or grows in a run does so in every longer one, and the verdict says so.
+//! A longer run is never greener: an oscillation or growth in a run is in every longer one, and so is its verdict.
 //!
 //! The sweep is small in ordinary runs: `SERVOBENCH_SWEEP=500 cargo test --release -p servobench-suite --test longer` runs five hundred
 //! scenarios, and prints how many were red.
@@ -19,7 +19,7 @@ struct Unstable {
     ten_periods: f64,
 }
 
-/// A position loop in the master above its bound, between limits of force, of its own velocity or of the speed of the drive.
+/// A position loop in the master above its bound, between limits of force, of its velocity or of the speed of the drive.
 fn master(random: &mut Random) -> Unstable {
     let delay = random.index(3);
     // A frame there and one back, and the drive's cycle, 1 ms each; as much again for each cycle of delay either way.

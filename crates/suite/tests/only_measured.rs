@@ -1,4 +1,4 @@
-//! Of a run whose recording nobody wants fewer signals are recorded; what is measured of it and what it comes to are the same.
+//! A run whose recording is not needed records fewer signals; measurements and verdict are the same.
 use servobench::{Engines, Run};
 use servobench_metrics::Name;
 use servobench_plant::{EngineName, Exact};

@@ -1,4 +1,4 @@
-//! What is kept of a recording has no influence on what is measured.
+//! The kept part of a recording has no influence on the measurements.
 use servobench::{Engines, Run};
 use servobench_metrics::Name;
 use servobench_plant::EngineName;

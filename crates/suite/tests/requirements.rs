@@ -1,4 +1,4 @@
-//! Scenarios whose runs break a requirement, or come close to one, break what their first line says and nothing else.
+//! Scenarios whose runs break a requirement, or come close to one, break those in their first line and no others.
 use servobench::Engines;
 use servobench_metrics::{Expectation, Incident, Occasion, Standing};
 use servobench_plant::{EngineName, Exact};
@@ -65,8 +65,8 @@ fn an_expected_event_has_its_time() {
     assert_eq!(missing, "expected, but did not occur: the event `end_stop` from 1 s to 2 s");
 }
 
-/// In both files the contact is meant, or nobody's doing: no lift and no expectation keeps them green. Pressed at a stop in another
-/// state the axis comes to harm.
+/// In both files the contact is intended, or without power: they stay green without expectations and with them. Pressed at a stop in
+/// another state the axis comes to harm.
 #[test]
 fn a_contact_in_homing_or_without_power_is_none_that_harms() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -95,7 +95,7 @@ fn what_harms_nothing_can_be_expected_too() {
     }
 }
 
-/// Of those with FMUs the files are made by commands; they run as a suite of the program.
+/// Scenarios with FMUs need files made by commands; they run as a suite of the program.
 #[test]
 fn every_shipped_scenario_meets_its_requirements() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -146,7 +146,7 @@ fn each_run_breaks_what_its_first_line_says() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The way through the grid of ticks that a pause shifts by a rounding: the move after it is no aborted one.
+/// A pause shifts the next move on the grid of ticks by a rounding error; that move does not count as aborted.
 #[test]
 fn a_pause_before_a_move_does_not_let_it_off() {
     let text = std::fs::read_to_string(folder().join("torque-too-small.toml")).unwrap();

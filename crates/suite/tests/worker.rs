@@ -1,4 +1,4 @@
-//! The worker's side, called as a process would call it: what it says is what the same run here says of itself.
+//! The worker's side, called as a process would call it: its messages are the results of the same run in this process.
 #![cfg(unix)]
 use servobench::Engines;
 use servobench_metrics::Quantity;
@@ -49,12 +49,12 @@ fn order(text: &str) -> Order {
     }
 }
 
-/// How it ended, which is what it said last.
+/// Its end, which is its last message.
 fn served(order: &Order) -> End {
     answered(order).0
 }
 
-/// The same, and all that it said.
+/// The same, and all of its messages.
 fn answered(order: &Order) -> (End, Vec<serde_json::Value>) {
     let mut out = Vec::new();
     let end = answer(order, &mut tempfile::tempfile().unwrap(), &ENGINES, &mut out);

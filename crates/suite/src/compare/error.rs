@@ -104,7 +104,7 @@ pub enum CompareError {
         /// The reason.
         why: String,
     },
-    /// It is slower than the requested duration.
+    /// The requested duration is shorter than that of the run at its own limits.
     #[error(
         "`{scenario}` takes {shortest} at its own limits, longer than the {wanted} that are wanted: moves are slowed and not \
          sped up; name at least {shortest}, or raise its limits"

@@ -106,7 +106,7 @@ impl Worker {
         }
     }
 
-    /// Closes its input: there are no more orders.
+    /// Closes its input after the last order.
     pub(super) fn dismiss(&self) {
         // A worker that has ended needs no notice.
         self.channel.close().ok();

@@ -201,7 +201,7 @@ impl Workers {
 pub(super) enum Broken {
     /// By the worker.
     Worker(WorkerError),
-    /// It exceeded its limit and was killed.
+    /// Its time limit was exceeded, and it was killed.
     Late,
 }
 

@@ -1,4 +1,4 @@
-//! What goes wrong in one run stays there: a panic, a worker that crashes, hangs, takes all memory or speaks nonsense.
+//! Failures stay within their run: a panic, a worker that crashes, hangs, takes all memory or sends nonsense.
 #![cfg(target_os = "linux")]
 mod native;
 mod served;
@@ -62,7 +62,7 @@ impl Engine for PanickingEngine {
     }
 }
 
-/// `exact` works, `rapier` panics, `mujoco` does what native code does by mistake, in a worker.
+/// `exact` works, `rapier` panics, `mujoco` has faults of native code, in a worker.
 const ENGINES: Engines =
     Engines { installed: &[&servobench_plant::Exact, &PanickingEngine(EngineName::Rapier), &Native], ..Engines::NONE };
 
@@ -88,7 +88,7 @@ fn workers_of(script: &str, timeout: Duration, limits: RunLimits) -> (tempfile::
     (folder, Workers::new(command))
 }
 
-/// What comes of a job that ends without a verdict; nothing stays in the folder.
+/// Failure of a job that ends without a verdict; nothing stays in the folder.
 fn broken_in((folder, workers): &(tempfile::TempDir, Workers), job: &Job) -> Box<Broken> {
     let broken = execute(job, &ENGINES, workers, &mut |_| {}).unwrap_err();
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing but the program is there");

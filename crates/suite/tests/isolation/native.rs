@@ -1,11 +1,11 @@
 #![expect(unsafe_code, reason = "real crashes need what Rust does not let happen")]
-//! An engine that does what native code does by mistake; the name of the body says what. Where it says nothing it is `exact`.
+//! An engine with faults of native code, selected by [`MISCHIEF`]; without it, it is `exact`.
 use servobench_plant::{Engine, EngineName, Exact, Mechanics, MechanicsError, MechanicsSetup};
 use std::hint::black_box;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Says what the next engine that is built does.
+/// Environment variable that selects the fault of the next engine.
 pub(crate) const MISCHIEF: &str = "SUITE_TEST_MISCHIEF";
 
 pub(crate) struct Native;
@@ -44,7 +44,7 @@ impl Engine for Native {
 }
 
 fn start_a_daemon() {
-    // The shell ends at once, and nobody waits for what it has started.
+    // The shell ends at once, without waiting for the process that it has started.
     let mut shell = Command::new("sh");
     shell.args(["-c", "setsid sleep 3601 &"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     assert!(shell.status().unwrap().success());

@@ -31,7 +31,7 @@ fn run_in(workers: &Workers, job: &Job) -> Run {
     execute(job, &ENGINES, workers, &mut |_| {}).unwrap_or_else(|broken| panic!("{}", broken.error))
 }
 
-/// How a worker whose engine does this ended.
+/// End of a worker whose engine does this, in words.
 fn end_of(mischief: &str, limits: RunLimits) -> String {
     let broken = broken_in(&workers_that(mischief, limits), &slide(&[EngineName::Mujoco])[0]);
     assert!(broken.until_then.is_none() && !broken.error.is_input());
@@ -55,7 +55,7 @@ fn a_worker_that_ends_is_reported_as_what_it_is() {
     assert!(how.starts_with("it asked for more memory than the 300 MB that it may have"), "{how}");
 }
 
-/// What it has started is gone, although it has left session and group; what was said on standard output is kept.
+/// Processes that it has started are gone, although they have left session and group; its standard output is kept.
 #[test]
 fn nothing_is_left_of_a_worker() {
     let sleeping = || {
@@ -127,7 +127,7 @@ fn a_run_in_a_worker_is_the_run_here() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
-/// Several at once, each used again and again: results are those of a worker of its own for each.
+/// Several at once, each used again and again: results are those of a separate worker for each.
 #[test]
 fn workers_that_serve_again_give_the_same() {
     let all: Vec<Job> = (1..=12)

@@ -1,4 +1,4 @@
-//! Workers that are none: a shell script that says what a worker could say. Standard input is the socket; nobody contains it.
+//! Fake workers: a shell script that sends messages a worker could send. Standard input is the socket; the script is not contained.
 use super::*;
 
 fn broken_by(script: &str, timeout: Duration) -> Box<Broken> {
@@ -33,7 +33,7 @@ fn a_worker_that_hangs_is_ended() {
     }
 }
 
-/// The reason is what the worker says of itself; warnings and colours on standard error are not part of it.
+/// The reason is the worker's own report; warnings and colours on standard error are not part of it.
 #[test]
 fn the_reason_is_the_workers_last_word_alone() {
     let error = error_of(
