@@ -235,7 +235,7 @@ fn planned_limit(runs: &[Run<'_>], derivative: usize) -> Option<f64> {
 /// Content of a channel of a derivative of the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Content {
-    /// It is the derivative.
+    /// The derivative.
     Curve,
     /// The derivative in some moves; others do not bound it.
     CurveAndImpulses,

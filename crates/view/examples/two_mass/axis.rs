@@ -12,14 +12,14 @@ const STEPS: u32 = 8;
 /// Force per current (N/A).
 const FORCE_CONSTANT: f64 = 44.0;
 
-/// What to simulate.
+/// A simulated case.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Case {
     /// Name of the scenario.
     pub(crate) name: &'static str,
     /// Order of the profile, 3 or 4.
     pub(crate) order: u8,
-    /// Whether positions are angles.
+    /// True if positions are angles.
     pub(crate) rotary: bool,
     /// Length of the run (s).
     pub(crate) duration: f64,

@@ -22,7 +22,7 @@ pub(crate) struct View {
     pub(crate) range: Option<[f64; 2]>,
 }
 
-/// What was read back.
+/// Data that were read back.
 #[derive(Default)]
 pub(crate) struct Content {
     /// Entities with data, static or over time.
@@ -35,9 +35,9 @@ pub(crate) struct Content {
     pub(crate) places: BTreeMap<String, Vec<(i64, [f32; 3])>>,
     /// First point and label of each tick of the rulers.
     pub(crate) ticks: Vec<(f32, String)>,
-    /// What stands in lanes, by value.
+    /// Texts in lanes, by value.
     pub(crate) words: BTreeMap<String, Vec<(String, String)>>,
-    /// What stands beside points.
+    /// Labels of points.
     pub(crate) labels: BTreeMap<String, String>,
     /// The texts of documents.
     pub(crate) documents: Vec<String>,
@@ -54,7 +54,7 @@ pub(crate) struct Content {
 }
 
 impl Content {
-    /// Takes what `chunk` of a blueprint says of a view.
+    /// Takes the properties of a view from `chunk` of a blueprint.
     fn read_view(&mut self, chunk: &Chunk) {
         let path = chunk.entity_path().to_string();
         let Some(id) = path.strip_prefix("/view/").and_then(|rest| rest.split('/').next()) else { return };
@@ -155,7 +155,7 @@ pub(crate) fn compared(runs: &[(&str, &Recording)], options: &ViewOptions) -> Co
     read(&comparison_rrd(runs, options).unwrap())
 }
 
-/// Every entity that a view asks for exists; a view that asks for all below an entity asks for something.
+/// Every entity that a view queries exists; a query of all entities below another one finds at least one.
 pub(crate) fn assert_views_are_fed(content: &Content) {
     for query in &content.queries {
         let found = query.strip_suffix("/**").map_or_else(

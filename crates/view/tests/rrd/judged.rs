@@ -1,4 +1,4 @@
-//! What came of a run: verdict, limits, settling, calls, limits that cut, channels that nobody expected.
+//! Outcome of a run: verdict, limits, settling, calls, limits that were reached, channels beyond the catalogue.
 use crate::content::{assert_views_are_fed, compared, written};
 use crate::{example, options};
 use servobench_base::Rate;
@@ -91,7 +91,7 @@ fn what_is_allowed_is_drawn_at_the_curve_that_it_bounds() {
     assert_views_are_fed(&content);
 }
 
-/// Bands of one plot hid each other: each limit has a lane, and what never cut has none.
+/// Bands of one plot hid each other: each limit has a lane, except those that were never reached.
 #[test]
 fn limits_that_cut_have_a_lane_each() {
     let mut recording = example(3);

@@ -1,4 +1,4 @@
-//! What a file holds, read back with Rerun's own decoder.
+//! Content of a file, read back with Rerun's own decoder.
 #[path = "../../examples/two_mass/axis.rs"]
 mod axis;
 mod content;
@@ -15,7 +15,7 @@ use servobench_trace::{LogEntry, Recording};
 use servobench_view::{ViewOptions, comparison_rrd, run_rrd};
 use std::collections::BTreeSet;
 
-/// Longer than what is kept of a curve, so that thinning is at work.
+/// Fewer than the recorded instants of a curve, so that curves are thinned.
 const MAX_INSTANTS: usize = 2_000;
 
 fn example(order: u8) -> Recording {

@@ -1,4 +1,4 @@
-//! What a person reads: titles, scales, bodies, disturbances.
+//! Readable parts: titles, scales, bodies, disturbances.
 use crate::axis::{Case, run};
 use crate::content::{assert_views_are_fed, compared, written};
 use crate::{MAX_INSTANTS, example, options};

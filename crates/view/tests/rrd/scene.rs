@@ -1,10 +1,10 @@
-//! The 3D view by numbers: where bodies stand, and what stands beside them.
+//! The 3D view by numbers: places of bodies, and the labels beside them.
 use crate::axis::{Case, run};
 use crate::content::{Content, compared, written};
 use crate::{example, options};
 use servobench_view::ViewOptions;
 
-/// What the ruler says of a place along the rail: the line through its first and its last tick.
+/// Reading of the ruler at a place along the rail: the line through its first and its last tick.
 fn reading(content: &Content, place: f32) -> f64 {
     let value = |label: &str| label.split(' ').next().unwrap().parse::<f64>().unwrap();
     let (first, last) = (&content.ticks[0], content.ticks.last().unwrap());
@@ -32,7 +32,7 @@ fn a_body_stands_above_the_mark_of_its_position() {
     assert!(early > 10, "the load at about 1.1 mm is among them: {early}");
 }
 
-/// What is enlarged is the deflection against the motor and nothing else; the pointer at the ruler is not.
+/// Only the deflection relative to the motor is enlarged; the pointer at the ruler is not.
 #[test]
 fn only_the_deflection_is_enlarged() {
     let recording = example(4);
@@ -46,7 +46,7 @@ fn only_the_deflection_is_enlarged() {
     assert!(content.title("Axis").starts_with("Axis, deflection × 7: "));
 }
 
-/// An axis that stands still while 250 mm are asked for stands at the mark of 0, on a ruler of 250 mm.
+/// An axis that stands still with a reference of 250 mm stands at the mark of 0, on a ruler of 250 mm.
 #[test]
 fn the_ruler_is_as_long_as_what_was_asked_for() {
     let mut recording = example(3);
