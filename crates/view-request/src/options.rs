@@ -19,7 +19,7 @@ pub struct ViewOptions {
     pub allowed: Vec<(Name, f64)>,
     /// Settling window, ± (axis unit): drawn around the residual vibration, with the instant from which on the load stays in it.
     pub window: Option<f64>,
-    /// Start of the residual vibration when there is no move (s).
+    /// Start of the residual vibration without a move (s).
     pub residual_from: Option<f64>,
     /// Largest number of instants per curve. A longer channel is thinned to a minimum/maximum envelope: every extreme stays, at
     /// its own instant.
@@ -47,11 +47,11 @@ pub struct Verdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// It kept all its limits.
+    /// All limits were kept.
     Passed,
-    /// It exceeded at least one.
+    /// At least one limit was exceeded.
     Failed,
-    /// It has no limits.
+    /// The run has no limits.
     #[default]
     Unjudged,
 }
