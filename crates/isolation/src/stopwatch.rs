@@ -15,7 +15,7 @@ const LONGEST: Duration = Duration::from_millis(100);
 
 /// Time that has been added up (ns).
 static RUN: AtomicU64 = AtomicU64::new(0);
-/// Its start, where there is no thread that adds up.
+/// Its start, where no thread adds up.
 static CLOCK: OnceLock<Option<Instant>> = OnceLock::new();
 
 /// Measures time in which this process runs.
@@ -61,7 +61,7 @@ fn add_up(mut last: Instant) {
 mod tests {
     use super::*;
 
-    /// It never runs ahead, and keeps up where nothing stops the process; its largest lag depends on the machine.
+    /// A stopwatch never runs ahead, and keeps up where nothing stops the process; its largest lag depends on the machine.
     #[test]
     fn it_goes_with_the_clock() {
         let (clock, watch) = (Instant::now(), Stopwatch::start());

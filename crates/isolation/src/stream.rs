@@ -24,7 +24,7 @@ pub struct Stream<S> {
     /// `None` after its end.
     source: Option<S>,
     kept: Vec<u8>,
-    /// Bytes since the last call of [`take`](Self::take).
+    /// Bytes since the last call of [`Stream::take`].
     count: u64,
     chunk: Vec<u8>,
 }

@@ -1,9 +1,9 @@
 #![cfg(target_os = "linux")]
 #![expect(unsafe_code, reason = "what foreign code does needs more than Rust lets happen")]
-//! A contained process and all that it starts end when they are to, whoever is ended first; how is said.
+//! A contained process and all its child processes end as intended, whichever is killed first, and the end is reported.
 //!
-//! The contained process is this test program, which does what a variable says. Each test is done with and without a PID namespace, where
-//! the system gives one.
+//! The contained process is this test program, with a task in an environment variable. Each test runs with and without a PID namespace,
+//! where the system gives one.
 use servobench_isolation::{Contained, Ending, Limits, Program, Stopwatch, contain};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const DOES: &str = "ISOLATION_TEST_DOES";
 const LONG: Duration = Duration::from_secs(30);
 
-/// Not a test: the process that the others start. It says its id and that of what it starts, as `/proc` has them.
+/// Not a test: the process that the others start. It prints its id and those of its child processes, as in `/proc`.
 #[test]
 #[ignore = "the process that the other tests start"]
 fn contained() {
@@ -51,7 +51,7 @@ fn contained() {
 
 fn say_own_id() {
     let line = format!("id {}\n", std::fs::read_link("/proc/self").unwrap().display());
-    // In one piece: who reads it takes what is there.
+    // In one piece: the reader takes what is there.
     std::io::stderr().write_all(line.as_bytes()).unwrap();
 }
 
@@ -61,7 +61,7 @@ fn hang() -> ! {
     }
 }
 
-/// A process that leaves parent, group and session, and is deaf to what it could be asked to end by.
+/// A process that leaves parent, group and session, and ignores all signals that request its end.
 fn daemon() {
     // SAFETY: the only thread forks.
     unsafe {
@@ -97,7 +97,7 @@ fn ending(does: &str, limits: Limits) -> Ending {
     process.ending().unwrap().clone()
 }
 
-/// The processes that have said their ids, once there are `count` of them.
+/// The ids that the processes have printed, once there are `count` of them.
 fn ids(process: &Contained, count: usize) -> Vec<u32> {
     let (start, mut said) = (Instant::now(), String::new());
     loop {
@@ -112,7 +112,7 @@ fn ids(process: &Contained, count: usize) -> Vec<u32> {
     }
 }
 
-/// What `/proc` says of a process: its state, and who has started it; `None` for one that has ended.
+/// Entry of a process in `/proc`: its state and its parent; `None` for one that has ended.
 fn stat(id: u32) -> Option<(String, u32)> {
     let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     let mut words = stat.rsplit_once(") ")?.1.split(' ');
@@ -172,7 +172,7 @@ fn its_group_is_its_own() {
     }
 }
 
-/// Its keeper is ended by somebody: it does not go on without. To be asked to end is not enough.
+/// Its keeper is killed: the process ends with it. A mere request to end does not suffice.
 #[test]
 fn it_ends_with_its_keeper() {
     for limits in both() {
@@ -193,7 +193,7 @@ fn it_ends_with_its_keeper() {
     }
 }
 
-/// Whoever has started it is killed, and cannot do anything about it any more.
+/// Its parent is killed, and cannot react any more.
 #[test]
 fn it_ends_with_who_has_started_it() {
     for kind in ["0", "1"] {
