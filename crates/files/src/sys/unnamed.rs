@@ -39,7 +39,7 @@ impl UnnamedFile {
     }
 }
 
-/// Bytes of a file that is no longer written, in memory as far as they are read.
+/// Bytes of a file that is not written any more, in memory as far as they are read.
 #[derive(Debug)]
 pub struct MappedFile(Mmap);
 
