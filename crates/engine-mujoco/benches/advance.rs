@@ -1,4 +1,4 @@
-//! What `advance` costs above the bare engine step of the same model: two masses at 16 kHz.
+//! Cost of `advance` above the bare engine step of the same model: two masses at 16 kHz.
 //!
 //! `MUJOCO_DYNAMIC_LINK_DIR=<target>/native/lib cargo bench -p servobench-engine-mujoco`
 

@@ -4,10 +4,9 @@ use servobench_base::{Coordinate, Setpoint};
 use servobench_plant::{Chain, Drive, Link};
 use std::f64::consts::TAU;
 
-/// Amplitude (m) that a 1 m move of three or four boxes leaves on an undamped mode of `frequency` (Hz).
+/// Amplitude (m) that a 1 m move of three or four moving averages leaves on an undamped mode of `frequency` (Hz).
 ///
-/// A profile whose n-th derivative switches on and off at all partial sums of the box lengths is the convolution of n
-/// boxes.
+/// A profile whose n-th derivative switches on and off at all partial sums of the lengths `boxes` is a step through n moving averages.
 fn residual(boxes: &[f64], frequency: f64) -> f64 {
     let w = TAU * frequency;
     let link = Link { stiffness: 10.0 * w * w, damping: 0.0 };
@@ -35,9 +34,9 @@ fn residual(boxes: &[f64], frequency: f64) -> f64 {
     y.hypot(v / w)
 }
 
-/// Oracle: X·∏|sin(ωT/2)/(ωT/2)|. The move of Lambrechts under a jerk and under a snap limit, at its own mode and at
-/// frequencies where much is left. The bench asks for 1 %; a base that is right in the mean only would be off by
-/// (ω·h)²/12 = 2e-5, and beside the zero at 39 Hz RK4's error of the frequency, 4.6e-10, counts 2600 times.
+/// Oracle: X·∏|sin(ωT/2)/(ωT/2)|. The move of Lambrechts under a jerk and under a snap limit, at its own mode and at frequencies where much
+/// is left. The bench requires 1 %; a base that is right in the mean only would be off by (ω·h)²/12 = 2e-5, and beside the zero at 39 Hz
+/// RK4's error of the frequency, 4.6e-10, counts 2600 times.
 #[test]
 fn residual_vibration_is_that_of_the_closed_form() {
     let jerk_limited = [1.0, 0.2, 0.1];

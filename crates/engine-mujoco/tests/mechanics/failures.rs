@@ -1,4 +1,4 @@
-//! What goes wrong is said; what would is refused.
+//! Errors are reported; inputs that would cause them are refused.
 use super::{STEP, body, efforts, free_omega, mujoco, setup, two_mass, unchecked};
 use servobench_base::Coordinate;
 use servobench_engine_mujoco::Mujoco;
@@ -72,7 +72,7 @@ fn a_damper_that_rk4_blows_up_is_refused() {
     }
 }
 
-/// A fatal error cannot be caught: whoever must survive it needs a process of its own, as this test does.
+/// A fatal error cannot be caught: a program that must survive it needs a separate process, as this test does.
 #[test]
 fn a_fatal_error_is_said_and_ends_the_process_with_code_1() {
     const INSIDE: &str = "SERVOBENCH_TEST_FATAL";

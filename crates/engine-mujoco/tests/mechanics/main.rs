@@ -43,7 +43,7 @@ fn mujoco(chain: Chain, drive: Drive, step: f64, initial: &[(f64, f64)]) -> Box<
     Mujoco.build(&setup(chain, drive, step, initial)).unwrap()
 }
 
-/// The chain as a user's own MJCF file, of which nobody checks whether RK4 can carry it.
+/// The chain as a user's own MJCF file, for which the stability of RK4 is not checked.
 fn unchecked(chain: &Chain, step: f64, initial: &[(f64, f64)]) -> Box<dyn Mechanics> {
     let model = Model::Mjcf(MjcfModel {
         xml: chain_to_mjcf(chain, Drive::Effort, step),
