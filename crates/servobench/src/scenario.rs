@@ -57,8 +57,8 @@ impl Scenario {
     /// `(200.0, "m/s3")`, a pure number, `true` or `false`, or a text as the file would have it.
     ///
     /// # Errors
-    /// [`Error::Setting`] of a text that is not a key, [`Error::Scenario`] of a key that the scenario has not, or a value that does not fit
-    /// it. The scenario is then as it was.
+    /// [`Error::Setting`] of a text that is not a key, [`Error::Scenario`] of a key that the scenario does not have, or a value that does
+    /// not fit it. The scenario is then unchanged.
     pub fn set(&mut self, key: &str, value: impl Into<Value>) -> Result<&mut Self, Error> {
         *self = self.with([(key, value.into())])?;
         Ok(self)

@@ -83,7 +83,7 @@ pub fn longest_move(scenario: &Scenario) -> Option<f64> {
     distances.reduce(f64::max).filter(|distance| *distance > 0.0)
 }
 
-/// Velocity, acceleration, jerk and snap that the moves of a scenario are limited to, of each the largest; `None` where none goes from rest to
+/// Limits of velocity, acceleration, jerk and snap in the moves of a scenario, each the largest; `None` where no move goes from rest to
 /// rest by limits.
 #[must_use]
 pub fn limits_of_set_point(scenario: &Scenario) -> Option<Limits> {

@@ -28,7 +28,7 @@ pub(super) fn objections(scenario: &Scenario) -> Vec<Objection> {
     found
 }
 
-/// A run as it is planned.
+/// A planned run.
 struct Planned<'a> {
     scenario: &'a Scenario,
     question: Question,

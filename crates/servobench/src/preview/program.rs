@@ -1,4 +1,4 @@
-//! The moves as they are planned, and limits that no run of them can keep.
+//! The planned moves, and limits that no run of them can keep.
 use super::{Doubt, Units};
 use servobench_metrics::{DisplayUnits, Limit, Name, Quantity, Scope};
 use servobench_scenario::{Actuator, BusMode, Scenario, Step};
@@ -11,7 +11,7 @@ const NO_SHORTER: [Name; 2] = [Name::MoveTime, Name::MoveAndSettlingTime];
 /// A limit equal to the planned duration may differ from it by rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The moves as they are planned.
+/// The planned moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedProgram {
     /// Moves, each with its peaks.
