@@ -317,7 +317,7 @@ impl Making<'_> {
         }
     }
 
-    /// Continues with all of them, each of the job at its place in `jobs`, until each has ended.
+    /// Continues all searches, each for the job at its place in `jobs`, until each has ended.
     fn search(&mut self, searches: &mut [Search], jobs: &[usize], metric: Name) -> Result<(), EqualError> {
         loop {
             let wanted: Vec<Vec<f64>> = searches.iter().map(Search::wanted).collect();
