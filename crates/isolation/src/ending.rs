@@ -21,7 +21,7 @@ pub struct Ending {
     pub last_words: String,
     /// Number of processes that it had started and left behind; they were killed.
     pub left: usize,
-    /// Names of the first of them.
+    /// Names of the first few of them.
     pub names: Vec<String>,
     /// Its process id; `None` if unknown.
     pub process: Option<u32>,

@@ -49,7 +49,7 @@ pub(crate) struct Report {
     pub(crate) exceeded: bool,
     /// Number of processes it has left behind.
     pub(crate) left: usize,
-    /// Names of the first of them.
+    /// Names of the first few of them.
     pub(crate) names: Vec<String>,
 }
 
