@@ -35,7 +35,7 @@ choices! {
 pub struct Bounds {
     /// Real time for any one call, loading and initialisation being one.
     pub call_timeout: Duration,
-    /// Its private memory, the program's included (B). Files that it maps do not count.
+    /// Limit of its private memory, the program's included (B). Files that it maps do not count.
     pub memory: u64,
 }
 
